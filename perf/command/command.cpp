@@ -10,19 +10,15 @@ void require(device::Backend backend) {
 
 namespace {
 
-const std::vector<std::string> app_names = {"gas", "springs", "options", "flow"};
+const std::vector<std::string> app_names = {"gas", "springs", "options", "flow", "parachute"};
 
 }  // namespace
 
 std::string app_help(const std::string& purpose) {
-  return purpose + ": gas, springs, options, or flow (that of drogue-parachute)";
+  return purpose + ": gas, springs, options, flow (that of drogue-parachute) or parachute";
 }
 
-void require_app(const std::string& app) {
-  if (app == "parachute")
-    throw Failure(ExitCode::usage, "the flow of drogue-parachute is named 'flow' here: give --app flow");
-  require_name("app", app, app_names);
-}
+void require_app(const std::string& app) { require_name("app", app, app_names); }
 
 void require_name(const std::string& kind, const std::string& name, const std::vector<std::string>& valid) {
   for (const std::string& known : valid)

@@ -50,6 +50,8 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
   if (options.app.empty())
     options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
   require_app(options.app);
+  if (options.app == "parachute")
+    throw Failure(ExitCode::usage, "there is no table of canopies; those of the flow have --app flow");
   if (options.app == "springs" && options.table == "block-size")
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "

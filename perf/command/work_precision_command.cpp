@@ -48,6 +48,7 @@ constexpr WorkPrecision apps[] = {
     {"gas", gas_work_precision, "solution", "time to the end of the run"},
     {"springs", springs_work_precision, "solution", "time to the end of the run"},
     {"flow", flow_work_precision, "solution", "time to the end of the run"},
+    {"parachute", parachute_work_precision, "solution", "time to the end of the run"},
     {"options", options_work_precision, "option", "time of a batch, by option"}};
 
 const WorkPrecision& work_precision_of(const std::string& name) {
@@ -137,7 +138,9 @@ Command work_precision_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "work-precision",
       "Time to solution and error over meshes, schemes and backends; of gas beside a second-order scheme, of "
-      "options for known prices, of flow for vortices of Taylor and Green and a lid-driven cavity");
+      "options for known prices, of flow for vortices of Taylor and Green and a lid-driven cavity, of "
+      "parachute "
+      "for a canopy that opens");
   app->add_option("--app", options->app, app_help("Kernels whose problems are run"))->capture_default_str();
   app->add_option("--backend", options->backend, "auto takes all that are present")
       ->check(CLI::IsMember(backend_choices()))

@@ -1,10 +1,12 @@
 #include "perf/problems/inflation.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
-#include <vector>
+#include <utility>
 
 #include "common/program/failure.hpp"
+#include "common/program/signals.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 
@@ -17,13 +19,6 @@ constexpr std::array<flow::StateField, 7> saved_fields = {
     flow::StateField::velocity_x, flow::StateField::velocity_y, flow::StateField::velocity_z,
     flow::StateField::rate_x,     flow::StateField::rate_y,     flow::StateField::rate_z,
     flow::StateField::pressure};
-
-parachute_app::Sheets sheets(const flow::Parameters& p) {
-  parachute_app::Canopy c9;
-  c9.edge_length = 0.7 * (p.high[0] - p.low[0]) / p.cells[0];
-  c9.payload.fixed = true;
-  return parachute_app::make_all_sheets({}, {c9}, p.density, p.viscosity);
-}
 
 /// State that a sample begins from.
 struct State {
@@ -59,6 +54,14 @@ void restore(coupling::Solver& solver, const State& state) {
   solver.set_block(state.block);
 }
 
+/// Puts the flat cloth into the uniform stream.
+void start(coupling::Solver& solver, const Problem& problem) {
+  const std::vector<double> stream(values_of(problem.parameters.flow, flow::StateField::velocity_z), speed);
+  solver.upload(flow::StateField::velocity_z, stream);
+  solver.upload_cloth(problem.positions, std::vector<fabric::Vector>(problem.positions.size()));
+  solver.start();
+}
+
 void fly_to(coupling::Solver& solver, double time) {
   if (solver.advance(time, -1, {}) != flow::Stop::target)
     throw Failure(ExitCode::numerical_failure, "a step of the parachute benchmark failed");
@@ -66,9 +69,10 @@ void fly_to(coupling::Solver& solver, double time) {
 
 }  // namespace
 
-coupling::Parameters parameters(const std::array<int, 3>& cells, bool with_contact) {
-  coupling::Parameters p;
-  p.flow.cells = cells;
+Problem problem(const Discretization& d) {
+  Problem result;
+  coupling::Parameters& p = result.parameters;
+  p.flow.cells = d.cells;
   p.flow.low = {-6.0, -6.0, -9.0};
   p.flow.high = {6.0, 6.0, 15.0};
   p.flow.density = 1.225;
@@ -77,32 +81,59 @@ coupling::Parameters parameters(const std::array<int, 3>& cells, bool with_conta
   p.flow.boundary[4].kind = flow::BoundaryKind::inflow;
   p.flow.boundary[4].velocity = {0.0, 0.0, speed};
   p.flow.boundary[5].kind = flow::BoundaryKind::outflow;
-  p.flow.time_scheme = flow::TimeScheme::ab2;
-  p.flow.cfl = 0.25;
+  p.flow.time_scheme = d.time_scheme;
+  p.flow.cfl = d.cfl;
   p.flow.max_dt = 0.01;
-  const parachute_app::Sheets canopy = sheets(p.flow);
-  p.fabric = canopy.fabric;
-  p.sheet.law_of_vertex = canopy.laws;
-  p.fabric.contact.self = with_contact;
-  return p;
+  parachute_app::Canopy c9;
+  c9.edge_length = d.edge * (p.flow.high[0] - p.flow.low[0]) / d.cells[0];
+  c9.payload.fixed = true;
+  parachute_app::Sheets canopy = parachute_app::make_all_sheets({}, {c9}, p.flow.density, p.flow.viscosity);
+  p.fabric = std::move(canopy.fabric);
+  p.sheet.law_of_vertex = std::move(canopy.laws);
+  p.sheet.kernel = d.kernel;
+  p.fabric.contact.self = d.with_contact;
+  result.positions = std::move(canopy.positions);
+  return result;
 }
 
-Sample flight(const coupling::Parameters& p, coupling::Solver& solver, double lead, long milliseconds) {
+Sample flight(const Problem& problem, coupling::Solver& solver, double lead, long milliseconds) {
   const auto state = std::make_shared<State>();
-  return {[=, &solver] {
+  return {[=, &problem, &solver] {
             if (!state->x.empty()) return restore(solver, *state);
-            const std::vector<double> stream(values_of(p.flow, flow::StateField::velocity_z), speed);
-            solver.upload(flow::StateField::velocity_z, stream);
-            const auto x = sheets(p.flow).positions;
-            solver.upload_cloth(x, std::vector<fabric::Vector>(x.size()));
-            solver.start();
+            start(solver, problem);
             fly_to(solver, lead);
-            save(solver, p, *state);
+            save(solver, problem.parameters, *state);
           },
           [=, &solver] {
             fly_to(solver, state->progress.time + 1e-3 * static_cast<double>(milliseconds));
             return milliseconds;
           }};
+}
+
+std::optional<Opening> opening(const Problem& problem, coupling::Solver& solver, double end_time) {
+  constexpr int intervals = 50;
+  const double dt = end_time / intervals;
+  start(solver, problem);
+  Opening result;
+  std::vector<double> given = {0.0};  // momentum, N s, after each interval
+  double before = 0.0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 1; k <= intervals; ++k) {
+    if (interrupted()) return {};
+    fly_to(solver, k * dt);
+    const double force = -solver.total_force_on_air()[2];
+    given.push_back(given.back() + 0.5 * dt * (before + force));
+    before = force;
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.steps = solver.progress().step;
+  result.impulse = given.back();
+  const double half = 0.5 * result.impulse;
+  const auto after = std::ranges::find_if(given, [&](double value) { return value >= half; });
+  if (after != given.begin() && after != given.end())
+    result.half_time =
+        dt * (static_cast<double>(after - given.begin()) - (*after - half) / (*after - *(after - 1)));
+  return result;
 }
 
 double imbalance(const coupling::Parameters& p, coupling::Solver& solver) {

@@ -52,6 +52,13 @@ bool gas_work_precision(const Selection& selection, const SolutionSink& sink);
 /// small grids, WENO-Z, the central scheme and transforms.
 bool flow_work_precision(const Selection& selection, const SolutionSink& sink);
 
+/// Opens a C-9 from its flat cloth in a stream of 10 m/s for 1 s on successively finer grids on each backend,
+/// with finer cloth, other time steps and schemes, and other delta functions of the coupling.
+/// `opening-impulse` is the momentum given to the air, `opening-time` the time of half of it. Errors are
+/// relative to a solution on twice the cells per axis of the finest grid, with half the time step, computed
+/// first. `quick` selects two small grids, 0.05 s and three discretizations.
+bool parachute_work_precision(const Selection& selection, const SolutionSink& sink);
+
 /// Prices the puts of `known_puts`, repeated to fill a batch, on each backend. Method `pide` runs in all
 /// combinations of mesh, steps per interval, one or two grids, and exercise (in the solve, split off,
 /// European); the baseline scheme on the same meshes where it supports the jumps; `cos` with decreasing

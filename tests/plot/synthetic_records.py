@@ -314,6 +314,20 @@ def flights(machine=H200):
     return [record("parachute-flight/cuda/60x60x120/c9", 0.6e-3, machine, facts)]
 
 
+def openings(machine=H200):
+    """An opening parachute with errors of 2 / n on n cells across; fine cloth costs twice as much."""
+    found = []
+    for problem, edge, n in itertools.product(("opening-impulse", "opening-time"), ("0.7", "0.35"), (15, 30, 60)):
+        facts = {
+            "problem": problem, "backend": "cuda", "kernel": "cbs43", "time": "ab2 0.25", "edge": edge, "cells": n,
+            "steps": n, "status": "ok", "message": "",
+        }  # fmt: skip
+        case = f"parachute-solution/{problem}/cuda/cbs43 ab2 0.25 edge {edge}/{n}"
+        seconds = 1e-5 * n**3 * (2.0 if edge == "0.35" else 1.0)
+        found.append(record(case, seconds, machine, facts, error=2.0 / n))
+    return found
+
+
 def flow_solvers(machine=H200):
     """A direct and an iterative pressure solver, and the memory of a solver."""
     cells = 64**3

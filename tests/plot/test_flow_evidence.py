@@ -63,6 +63,16 @@ class Page(Folder):
         default = next(row for row in rows if row[:2] == ["CUDA", "WENO-Z"])
         self.assertEqual("100 ms", default[rows[0].index("to 0.01")])
 
+    def test_openings_of_canopies_follow_the_solutions_of_flow(self):
+        page, files = self.page(records.flow_solutions() + records.openings(), app="flow")
+        self.assertIn("solution_drifting-vortices_nvidia-h200.png", files)
+        self.assertIn("solution_opening-impulse_nvidia-h200.png", files)
+        rows = page.tables[H200, "Opening C-9: impulse: error against time"]
+        self.assertEqual({"B-splines 4-3", "B-splines 4-3, edges of 0.35 cells"}, {r[1] for r in rows if r[0] == "CUDA"})
+        # An error of 0.1 is met by 20 cells, in 0.08 s.
+        default = next(row for row in rows if row[:2] == ["CUDA", "B-splines 4-3"])
+        self.assertEqual("80 ms", default[rows[0].index("to 0.1")])
+
     def test_published_times_are_those_of_their_cost_per_cell_and_step(self):
         # 128^3 cells, 82 steps of 0.25 h to 1 s, 5.22 ns per cell and step.
         seconds, error = PUBLISHED_RESULTS[0].points[0]

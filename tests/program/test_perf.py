@@ -218,6 +218,25 @@ class PressureTable(perf_program.PerfTest):
             self.assertLess(iterations[1e-6], iterations[1e-10])
 
 
+class WorkPrecisionOfCanopies(perf_program.PerfTest):
+    def test_records_are_valid(self):
+        self.expect(0, "work-precision", "--app", "parachute", "--quick", "--backend", "serial", "--out", "runs.jsonl")
+        records = self.records("runs.jsonl")
+        self.assertEqual(12, len(records))
+        errors = {}
+        for record in records:
+            facts = record["facts"]
+            self.assertEqual(("passed", "ok", "s per solution"), (record["check"], facts["status"], record["unit"]))
+            self.assertEqual(f"parachute-solution/{facts['problem']}/serial", record["case"].rsplit("/", 2)[0])
+            errors[facts["problem"], facts["kernel"], facts["time"], facts["edge"], facts["cells"]] = record["error"]
+        self.assertEqual(12, len(errors))
+        for (problem, *scheme, cells), error in errors.items():
+            self.assertTrue(0.0 < error < 0.5, (problem, scheme, cells))
+            # Cloth much finer than its air converges less regularly.
+            if scheme[2] == "0.7" and cells == 12:
+                self.assertLess(2.0 * error, errors[problem, *scheme, 8])
+
+
 class WorkPrecisionOfFlow(perf_program.PerfTest):
     def test_records_are_valid(self):
         self.expect(0, "work-precision", "--app", "flow", "--quick", "--backend", "serial", "--out", "runs.jsonl")
@@ -291,7 +310,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
-                            (["work-precision", "--app", "parachute"], "is named 'flow'"),
+                            (["table", "transfers", "--app", "parachute"], "have --app flow"),
                             (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers"),
                             (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],

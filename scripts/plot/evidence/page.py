@@ -41,8 +41,11 @@ def _options_sections(evidence: Evidence, machine: Machine) -> list[Section]:
 
 
 def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
-    solved = evidence.select(machine, "flow-solution")
-    found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
+    failed = evidence.failed_runs_on(machine)
+    found = []
+    for kind in ("flow-solution", "parachute-solution"):
+        failed_of_kind = [record for record in failed if record.kind == kind]
+        found += work_precision_section.sections(machine, evidence.select(machine, kind), failed_of_kind)
     ceilings = [record for record in evidence.ceilings if record.machine == machine]
     found += steps.sections(evidence.select(machine, "flow-step"), roofline.bandwidths(ceilings))
     found += steps.sections(evidence.select(machine, "parachute-flight"))

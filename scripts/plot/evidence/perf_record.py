@@ -22,6 +22,9 @@ _FACTS = {
         "problem": str, "backend": str, "advection": str, "time_scheme": str, "pressure": str, "diffusion": str,
         "cells": int,
     },
+    "parachute-solution": {
+        "problem": str, "backend": str, "kernel": str, "time": str, "edge": str, "cells": int,
+    },
     "ceiling": {"backend": str},
     "gas-transfers": {"backend": str, "memory": str, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float},
     "gas-block": {"backend": str, "form": str, "block": int, "cells": int},
@@ -51,6 +54,7 @@ _OPTIONAL = {
     "flow-pressure": {"tolerance": float, "iterations": int},
     "flow-memory": {"driver_bytes": int},
     "flow-solution": {"status": str, "message": str},
+    "parachute-solution": {"status": str, "message": str},
     "gas-solution": {
         "weno_power": float, "splitting": str, "time_scheme": str, "precision": str, "status": str, "message": str,
     },
@@ -105,7 +109,7 @@ class Record:
 
     @property
     def app(self) -> str:
-        """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, flights to flow."""
+        """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, canopies to flow."""
         app = self.kind.partition("-")[0]
         return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow"}.get(app, app)
 

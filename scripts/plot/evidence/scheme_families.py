@@ -3,11 +3,17 @@
 from ..flow import scheme_family as flow
 from ..gas import scheme_family as gas
 from ..options import scheme_family as options
+from ..parachute import scheme_family as parachute
 from ..springs import scheme_family as springs
 from .perf_record import Record
 from .scheme_family import SchemeFamily
 
-_BY_KIND = {"springs-solution": springs.FAMILY, "options-solution": options.FAMILY, "flow-solution": flow.FAMILY}
+_BY_KIND = {
+    "springs-solution": springs.FAMILY,
+    "options-solution": options.FAMILY,
+    "flow-solution": flow.FAMILY,
+    "parachute-solution": parachute.FAMILY,
+}
 
 
 def family_of(record: Record) -> SchemeFamily:
