@@ -7,9 +7,10 @@ namespace drogue::options {
 /// Half width of the grid of [Shi] in x = ln(spot/strike), with the strike in the middle.
 inline constexpr double baseline_half_width = 4.0;
 
-/// Jumps by [Shi], section 4.6.2: exact masses of cells of the density, none within epsilon = h. The variance
-/// of the jumps within epsilon is diffusion. `jumps.exit_mass` and `exit_price` are the B_l of Listing 4.6,
-/// jumps to below the grid; values above the grid are 0.
+/// Jumps of [Shi], section 4.6.2: all integrals over |y| > epsilon = h are sums of nodal values h g(k h), of
+/// which those at k = -1 and 1 count half. Beyond the last node of a sum the integral is exact, as are
+/// `jumps.exit_mass` and `exit_price`, the B_l of Listing 4.6 for jumps to below the grid. The variance of
+/// the jumps within epsilon is diffusion. Values above the grid are 0.
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION Jumps<R> baseline_jumps(const ThreadGroup& group, const PutPack<R>& put,
                                                const LevyMeasure<R>& measure, const Grid<R>& grid, R* w,
@@ -31,20 +32,36 @@ KOKKOS_INLINE_FUNCTION Jumps<R> baseline_jumps(const ThreadGroup& group, const P
   });
   group.each([=](int thread) {
     for (int d = 1 + thread; d <= mesh; d += group.threads()) {
-      const R near = d == 1 ? h : (d - 0.5) * h, far = (d + 0.5) * h;
-      w[layout.place(d)] = beyond(near, 1.0, 0.0) - beyond(far, 1.0, 0.0);
-      w[layout.place(-d)] = beyond(near, -1.0, 0.0) - beyond(far, -1.0, 0.0);
+      R up = 0.0, down = 0.0;
+      for (int q = 0; q < Mixture::size; ++q) {
+        up += c[q] * exponential((beta - s[q]) * (double(d) * h));
+        down += c[q] * exponential((-beta - s[q]) * (double(d) * h));
+      }
+      const double part = (d == 1 ? 0.5 : 1.0) / d;
+      w[layout.place(d)] = part * up;
+      w[layout.place(-d)] = part * down;
       if (d < mesh) {
         exit_mass[d] = beyond((d + 0.5) * h, -1.0, 0.0);
         exit_price[d] = exponential((double(d) - grid.strike) * h) * beyond((d + 0.5) * h, -1.0, 1.0);
       }
     }
   });
+  const Kokkos::Array<R, 2> nodal = sums(group, [=](int lane) {
+    R rate = 0.0, price = 0.0;
+    for (int d = 1 + lane; d <= mesh; d += group.lanes) {
+      const R up = w[layout.place(d)], down = w[layout.place(-d)], growth = exponential(double(d) * h);
+      rate += up + down;
+      price += (growth - 1.0) * (up - down * device::reciprocal(growth));
+    }
+    return Kokkos::Array<R, 2>{rate, price};
+  });
+  const R end = (mesh + 0.5) * h;
+  const R tails = beyond(end, 1.0, 0.0) + beyond(end, -1.0, 0.0);
   Jumps<R> jumps{};
   jumps.w = w;
   jumps.exit_mass = exit_mass;
   jumps.exit_price = exit_price;
-  jumps.rate = beyond(h, 1.0, 0.0) + beyond(h, -1.0, 0.0);
+  jumps.rate = nodal[0] + tails;
   R small_variance = measure.variance;
   for (int q = 0; q < Mixture::size; ++q)
     for (int side = -1; side <= 1; side += 2) {
@@ -52,8 +69,8 @@ KOKKOS_INLINE_FUNCTION Jumps<R> baseline_jumps(const ThreadGroup& group, const P
       small_variance = small_variance - c[q] * (h + 1.0 / decay) / decay * exponential(-decay * h);
     }
   jumps.diffusion = 0.5 * (put.variance + small_variance);
-  jumps.drift =
-      put.rate - put.dividend - jumps.diffusion - (beyond(h, 1.0, 1.0) + beyond(h, -1.0, 1.0) - jumps.rate);
+  jumps.drift = put.rate - put.dividend - jumps.diffusion -
+                (nodal[1] + beyond(end, 1.0, 1.0) + beyond(end, -1.0, 1.0) - tails);
   return jumps;
 }
 

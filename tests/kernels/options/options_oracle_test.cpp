@@ -5,6 +5,7 @@
 #include "kernels/options/levy/hankel_table.hpp"
 #include "kernels/options/pricer.hpp"
 #include "kernels/reference/options/levy.hpp"
+#include "kernels/reference/options/printed_scheme.hpp"
 #include "kernels/reference/options/scheme.hpp"
 #include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
@@ -106,6 +107,58 @@ TEST(OptionsOracle, NodeValuesOfStiffAndPureJumpsMatchTheSerialSolve) {
 // This mesh sums over jumps by transforms; `solve_put` sums directly.
 TEST(OptionsOracle, NodeValuesOfATransformedMeshMatchTheSerialSolve) {
   EXPECT_LT(difference(testing::random_contracts(1, 6)[0], 256, 12), 1e-7);
+}
+
+/// Largest difference between prices of the baseline and a serial solve of the printed scheme, at nodes with
+/// half to twice the strike.
+double baseline_difference(Contract c, int mesh, int steps) {
+  Settings settings;
+  settings.method = Method::baseline;
+  settings.mesh = mesh;
+  settings.steps = steps;
+  const reference::PrintedPut put{c.rate,
+                                  c.dividend,
+                                  c.maturity,
+                                  c.variance,
+                                  {c.jump[0], c.jump[1], c.jump[2], c.jump[3]},
+                                  c.style == Style::american,
+                                  4.0,
+                                  mesh,
+                                  steps};
+  const std::vector<double> expected = solve_printed_put(put);
+  std::vector<Contract> contracts;
+  std::vector<double> nodes;
+  for (int i = 0; i <= mesh; ++i) {
+    const double x = 8.0 * i / mesh - 4.0;
+    if (std::abs(x) > std::log(2.0)) continue;
+    c.spot = c.strike * std::exp(x);
+    contracts.push_back(c);
+    nodes.push_back(expected[static_cast<std::size_t>(i)]);
+  }
+  std::vector<Price> prices(contracts.size());
+  create_pricer(backend, settings)->price(contracts, prices);
+  double worst = 0.0;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    worst = std::max(worst, std::abs(prices[k].price / c.strike - nodes[k]));
+  return worst;
+}
+
+TEST(OptionsOracle, BaselineMatchesTheSerialSolveOfThePrintedScheme) {
+  Contract c;
+  c.rate = 0.1;
+  c.dividend = 0.03;
+  const double rows[4][5] = {{1.0, 8.15, -2.5, 0.767, 0.4},
+                             {-0.5, 15.0, -5.0, 0.5, 0.1},
+                             {-1.2, 9.0, 3.0, 0.3, 0.2},
+                             {2.0, 11.0, -5.0, 0.0, 0.3}};
+  for (const auto& row : rows)
+    for (const Style style : {Style::american, Style::european}) {
+      for (int k = 0; k < 4; ++k) c.jump[k] = row[k];
+      c.variance = row[4];
+      c.style = style;
+      c.strike = style == Style::american ? 1.0 : 2.0;
+      EXPECT_LT(baseline_difference(c, 48, 48), 1e-7) << row[0];
+    }
 }
 
 /// Node of the table and the tabulated density there.
