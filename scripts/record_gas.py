@@ -49,7 +49,8 @@ def baseline_rows(program, backend, work):
             "--set",
             f"output.times=[{end_time}]",
             "--set",
-            "verify.l1_density=1.0",
+            # The error after 208 steps is 1.2986/cells on every mesh.
+            f"verify.l1_density={1.36 / cells}",
             "--set",
             "output.history_every=0",
         )
@@ -83,7 +84,8 @@ def long_rows(program, backend, work, largest):
             'boundary.right="reflecting"',
             f"output.times=[{end_time}]",
             "output.history_every=0",
-            "verify.l1_density=1e3",
+            # The exact solution has no walls; 10^6 steps change the sums by 2.3e-13.
+            "verify={conservation=1e-12}",
         )
         results = [run(program, "sod", backend, folder, *sets) for folder in folders]
         same = not any(r["exit_code"] for r in results) and not differing_datasets(

@@ -54,6 +54,7 @@ class Result(gas_program.GasTest):
             self.assertEqual({"name", "value", "tolerance", "passed"}, set(check))
         self.assertTrue(0.0 < told["dt_min"] <= told["dt_max"] < 0.4)
         self.assertEqual({"touches": 0, "cells": 0, "redone_steps": 0}, told["limiter"])
+        self.assertEqual({"space": 5, "time": 3}, told["order"])
         self.assertTrue(0.0 < told["timing"]["compute_s"] < told["timing"]["wall_s"])
         # Three stages and the end of a step.
         self.assertGreaterEqual(told["ledger"]["kernel_launches"], 2 * told["steps"])

@@ -157,6 +157,9 @@ void Simulation::describe(run::ResultDocument& result) {
   result.dt_min = now.dt_min;
   result.dt_max = now.dt_max;
   set_limiter_metrics({now.limited_faces, _solver->limited_cells(), now.redone}, result.metrics);
+  // Orders for smooth flow; SSP Runge-Kutta has the third with three stages as with four.
+  result.metrics.set("order", "space", std::int64_t{5});
+  result.metrics.set("order", "time", std::int64_t{3});
   result.timing.compute_s = _settings.baseline ? phases.compute : _compute_s;
   result.timing.h2d_s = _settings.baseline ? phases.h2d : _h2d_s;
   result.timing.d2h_s = _settings.baseline ? phases.d2h : 0.0;
