@@ -27,7 +27,7 @@ Case roll_case(device::Backend backend, int vertices, long steps, fabric::Integr
             return roll::steps(run->p, *run->solver, steps);
           },
           [=] { return roll::imbalance(run->p, *run->solver); },
-          roll::tolerance,
+          roll::tolerance(vertices),
           [=] {
             return Facts{name, static_cast<std::int64_t>(run->p.mass.size()), variant};
           }};

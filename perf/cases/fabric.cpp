@@ -34,7 +34,7 @@ Case scatter_case(int vertices, long steps) {
                           }};
           },
           [=] { return sheet::energy_drift(run->p, run->state); },
-          sheet::tolerance,
+          sheet::tolerance(fabric::Integrator::rk4),
           [=] {
             return Facts{"serial", static_cast<std::int64_t>(run->p.mass.size()), "scatter-loop"};
           }};
@@ -65,6 +65,8 @@ Case sheet_case(device::Backend backend, int vertices, long steps, const FabricV
   };
   const auto run = std::make_shared<Run>();
   const std::string name(device::name(backend));
+  fabric::Parameters changed;
+  variant.apply(changed);
   return {"springs-step/" + name + "/" + std::to_string(vertices) + (*variant.name ? "/" : "") + variant.name,
           device::needs_device(backend),
           "step",
@@ -78,7 +80,7 @@ Case sheet_case(device::Backend backend, int vertices, long steps, const FabricV
             return sheet::steps(run->p, *run->solver, steps);
           },
           [=] { return sheet::energy_drift(run->p, *run->solver); },
-          sheet::tolerance,
+          sheet::tolerance(changed.integrator),
           [=] {
             return Facts{name, static_cast<std::int64_t>(run->p.mass.size()), variant.name};
           }};

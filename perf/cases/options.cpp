@@ -8,7 +8,7 @@ namespace {
 Case batch_case(device::Backend backend, std::size_t count, int mesh, int steps) {
   const std::string name(device::name(backend)), grid = std::to_string(mesh) + "x" + std::to_string(steps);
   Case batch = puts::batch("options/" + name + "/" + std::to_string(count) + "/" + grid, backend, count,
-                           {.mesh = mesh, .steps = steps}, puts::tolerance);
+                           {.mesh = mesh, .steps = steps}, puts::tolerance(mesh));
   batch.facts = [=] { return Facts{name, static_cast<std::int64_t>(count), grid}; };
   return batch;
 }
@@ -19,9 +19,9 @@ Case surface_case(device::Backend backend, const puts::SurfaceSize& size, bool a
   const std::string count =
       std::to_string(size.sets) + "x" + std::to_string(size.strikes) + "x" + std::to_string(size.maturities);
   const std::string variant = apart ? "apart" : "surface";
-  Case surface =
-      puts::surface("options-surface/" + name + "/" + variant + "/" + count, backend, size,
-                    {.mesh = 128, .steps = 32, .surface = !apart, .time_copies = !apart}, puts::tolerance);
+  Case surface = puts::surface("options-surface/" + name + "/" + variant + "/" + count, backend, size,
+                               {.mesh = 128, .steps = 32, .surface = !apart, .time_copies = !apart},
+                               puts::tolerance(128));
   const auto prices = static_cast<std::int64_t>(size.sets * size.strikes * size.maturities);
   surface.facts = [=] { return Facts{name, prices, variant + " " + count}; };
   return surface;

@@ -12,7 +12,7 @@ namespace drogue::perf {
 
 namespace {
 
-constexpr double tridiagonal_tolerance = 1e-12;  ///< relative to the largest unknown
+constexpr double tridiagonal_tolerance = 1e-14;  ///< relative to the largest unknown
 constexpr int checked_systems = 64;
 
 /// Implicit time steps of `count` options with random diffusion, drift and step size.

@@ -29,7 +29,8 @@ Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count);
 double imbalance(const fabric::Parameters& p, fabric::Solver& solver);
 inline constexpr std::size_t most_checked = 30'000;
 
-/// Tolerance of the imbalance, that of the shipped scenes with self-contact: error of friction and time step.
-inline constexpr double tolerance = 2e-2;
+/// Tolerance of the imbalance, an error of friction and time step: five times the largest of
+/// docs/evidence/springs-contact-h200.jsonl and of springs-contact/serial/640, the mesh of quick runs.
+constexpr double tolerance(int vertices) { return vertices < 10'000 ? 2e-2 : 3e-4; }
 
 }  // namespace drogue::perf::roll

@@ -41,6 +41,10 @@ State start(const fabric::Parameters& p) {
   return state;
 }
 
+double tolerance(fabric::Integrator integrator) {
+  return integrator == fabric::Integrator::rk4 ? 1e-8 : 5e-6;
+}
+
 double default_dt(const fabric::Parameters& p, fabric::Solver& solver) {
   const State from = start(p);
   solver.upload(from.x, from.v);

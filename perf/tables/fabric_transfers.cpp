@@ -65,7 +65,7 @@ Case case_of(device::Backend backend, const FabricTransfer& row) {
                           [=] { return run->parts; }};
           },
           [=] { return sheet::energy_drift(run->p, run->state); },
-          sheet::tolerance};
+          sheet::tolerance(fabric::Integrator::rk4)};
 }
 
 nlohmann::json facts_of(device::Backend backend, const FabricTransfer& row, const Record& record) {

@@ -41,9 +41,10 @@ Case case_of(device::Backend backend, const OptionsTransfer& line) {
   const std::string name = "options-transfers/" + std::string(device::name(backend)) + "/" +
                            method_name(line.method) + "/" + std::to_string(line.printed.options) + "/" +
                            std::to_string(line.printed.mesh);
-  return puts::batch(name, backend, static_cast<std::size_t>(line.printed.options),
-                     {.method = line.method, .mesh = line.printed.mesh, .time_copies = true},
-                     line.method == options::Method::baseline ? baseline_tolerance : puts::tolerance);
+  return puts::batch(
+      name, backend, static_cast<std::size_t>(line.printed.options),
+      {.method = line.method, .mesh = line.printed.mesh, .time_copies = true},
+      line.method == options::Method::baseline ? baseline_tolerance : puts::tolerance(line.printed.mesh));
 }
 
 nlohmann::json facts_of(device::Backend backend, const OptionsTransfer& line, const Record& record) {
