@@ -421,6 +421,28 @@ class Failures(springs_program.SpringsTest):
                 checks = json.loads((self.folder / f"out/{scene}/result.json").read_text(encoding="utf-8"))["checks"]
                 self.assertTrue(any(not check["passed"] for check in checks))
 
+    def test_wrong_materials_and_integrators_fail_shipped_scenes(self):
+        """A modulus or ratio off by a thousandth, and a second-order integrator, exceed the tolerances of scenes."""
+        for scene, change, names in (
+                ("pulled-rectangle", "material.membrane_modulus=1001", {"values_2_displacement_y"}),
+                ("pulled-rectangle", "material.poisson=0.301", {"values_2_displacement_y"}),
+                ("pulled-triangle", "material.membrane_modulus=1100", {"values_1_displacement_y"}),
+                ("hung-sheet", "material.membrane_modulus=150", {"values_0_elastic_energy"}),
+                ("chain", "time.integrator=verlet", {"frequency", "energy_drift"}),
+                ("string-longitudinal", "time.integrator=verlet", {"energy_drift"})):
+            with self.subTest(scene, change=change):
+                self.expect(5, scene, "--quiet", "--backend", "serial", "--overwrite", "--out", "out",
+                            sets=[change, "output.fields=[]"])
+                failed = {check["name"] for check in self.result("out")["checks"] if not check["passed"]}
+                self.assertLessEqual(names, failed)
+
+    def test_result_states_the_order_in_time(self):
+        for integrator, damping, order in (("rk4", 1, 4), ("verlet", 0, 2), ("verlet", 1, 1)):
+            with self.subTest(order):
+                self.expect(0, "chain", "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=[
+                    "verify={}", f"time.integrator={integrator}", f"damping.relative={damping}"])
+                self.assertEqual({"time": order}, self.result("out")["order"])
+
     def assert_fails_alone(self, names, scene, *sets):
         """Expects exactly the named checks to fail; returns the history of the run."""
         self.expect(5, scene, "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=sets)

@@ -133,6 +133,17 @@ struct FrontSpeed {
   std::string axis = "x";
 };
 
+/// Quantity of the final state.
+enum class FinalQuantity { displacement_x, displacement_y, displacement_z, von_mises, elastic_energy };
+
+/// Expected value of the final state, of the vertex nearest to `at` except for the energy.
+struct FinalValue {
+  FinalQuantity quantity = FinalQuantity::elastic_energy;
+  std::vector<double> at;  ///< rest coordinates, m; empty for the energy
+  double value = 0.0;      ///< m, N/m or J
+  double tolerance = 0.0;  ///< relative
+};
+
 /// Relative tolerances.
 struct Verify {
   std::optional<double> intersections, energy_balance, penetration;
@@ -140,6 +151,7 @@ struct Verify {
   std::optional<double> young, poisson, hencky, catenary, stretch;
   std::optional<Frequency> frequency;
   std::optional<FrontSpeed> front_speed;
+  std::vector<FinalValue> values;
 };
 
 struct SpringsScene {

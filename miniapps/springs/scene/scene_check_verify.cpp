@@ -107,6 +107,18 @@ void check_verify(const Table& root, const SpringsScene& scene) {
     require(root, has_rows, "verify.frequency", rows);
     check_frequency(root, scene);
   }
+  for (std::size_t k = 0; k < verify.values.size(); ++k) {
+    const FinalValue& value = verify.values[k];
+    const std::string path = "verify.values[" + std::to_string(k) + "].";
+    const bool of_vertex = value.quantity != FinalQuantity::elastic_energy;
+    require(root, value.value != 0.0, path + "value", "a number other than 0, since the error is relative");
+    if (of_vertex)
+      require(root, !value.at.empty(), path + "quantity", "at, a position");
+    else
+      require(root, value.at.empty(), path + "at", "a quantity of a vertex");
+    if (value.quantity == FinalQuantity::von_mises)
+      require(root, !scene.mesh.triangles.empty(), path + "quantity", "a mesh with triangles");
+  }
   if (verify.front_speed) {
     require(root, has_rows, "verify.front_speed", rows);
     require(root, scene.output.probes.size() >= 2, "verify.front_speed", "two output.probes");

@@ -32,14 +32,6 @@ const Choices<std::string> axes_choices = {{"x", "x"},   {"y", "y"},   {"z", "z"
                                            {"xz", "xz"}, {"yz", "yz"}, {"xyz", "xyz"}};
 const std::vector<std::string> of_place = {"x", "y", "z"}, of_place_and_time = {"x", "y", "z", "t"};
 
-/// Three numbers; an empty vector is an absent value.
-Codec optional_vector_codec(std::vector<double>& value) {
-  Codec codec = scene::reals_codec(value, 3, false);
-  codec.type = "[real, real, real]";
-  codec.print = [print = codec.print, &value] { return value.empty() ? std::nullopt : print(); };
-  return codec;
-}
-
 /// Subset of x, y and z in any order; stored in ascending order.
 Codec axes_codec(std::string& axes) {
   Codec codec = scene::choice_codec(axes, axes_choices);
@@ -276,6 +268,13 @@ void declare_time(Table& table, Time& time) {
 }
 
 }  // namespace
+
+scene::Codec optional_vector_codec(std::vector<double>& value) {
+  Codec codec = scene::reals_codec(value, 3, false);
+  codec.type = "[real, real, real]";
+  codec.print = [print = codec.print, &value] { return value.empty() ? std::nullopt : print(); };
+  return codec;
+}
 
 scene::Codec vector_codec(fabric::Vector& value) {
   return {"[real, real, real]",

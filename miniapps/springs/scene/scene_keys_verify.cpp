@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "common/scene/codec.hpp"
 #include "miniapps/springs/scene/scene_keys.hpp"
 
@@ -8,7 +10,18 @@ using scene::Table;
 
 const scene::Choices<std::string> axis_choices = {{"x", "x"}, {"y", "y"}, {"z", "z"}};
 
+const scene::Choices<FinalQuantity> quantity_choices = {{"displacement_x", FinalQuantity::displacement_x},
+                                                        {"displacement_y", FinalQuantity::displacement_y},
+                                                        {"displacement_z", FinalQuantity::displacement_z},
+                                                        {"von_mises", FinalQuantity::von_mises},
+                                                        {"elastic_energy", FinalQuantity::elastic_energy}};
+
 }  // namespace
+
+std::string name_of(FinalQuantity quantity) {
+  return std::ranges::find(quantity_choices, quantity, [](const auto& choice) { return choice.second; })
+      ->first;
+}
 
 void declare_verify(Table& table, Verify& verify) {
   const auto tolerance = [&table](const std::string& name, std::optional<double>& place,
@@ -93,6 +106,21 @@ void declare_verify(Table& table, Verify& verify) {
                 "Axis along which the front displaces");
       },
       "The speed of a front between the first two probes, timed at half of their largest displacements");
+  table.tables(
+      "values", verify.values,
+      [](Table& t, FinalValue& value) {
+        t.value("quantity", scene::choice_codec(value.quantity, quantity_choices),
+                "Displacement (m) or Cauchy's von Mises stress (N/m) of a vertex, or the elastic energy (J)")
+            .required();
+        t.value("at", optional_vector_codec(value.at),
+                "Position at rest, except of the energy; the nearest vertex is used")
+            .unit("m");
+        t.value("value", scene::real_codec(value.value), "Expected value, not 0").required();
+        t.value("tolerance", scene::real_codec(value.tolerance), "Largest relative error that passes")
+            .at_least(0.0)
+            .required();
+      },
+      "Values that the final state must have");
 }
 
 }  // namespace drogue::springs_app

@@ -13,6 +13,14 @@ namespace {
 
 using fabric::Vector;
 
+/// Order of the positions in dt. Impulses of contact, and dashpots in the middle of Verlet's step, are of
+/// first order.
+std::int64_t order_in_time(const SpringsScene& scene) {
+  if (scene.contact.asked_for()) return 1;
+  if (scene.time.integrator == fabric::Integrator::rk4) return 4;
+  return scene.damping.relative > 0.0 ? 1 : 2;
+}
+
 /// Largest product z of absolute damping and dt. Beyond it, half a kick of Verlet's method, which scales the
 /// velocity by (1 - z/4)/(1 + z/4), turns velocities around.
 constexpr double turning_damping = 4.0;
@@ -256,6 +264,7 @@ std::string Simulation::failure_text(bool restart_written) {
 
 void Simulation::describe(run::ResultDocument& result) {
   result.driver = _settings.baseline ? "seed" : _solver->driver();
+  result.metrics.set("order", "time", order_in_time(_scene));
   result.dt_min = _dt_min;
   result.dt_max = _dt_max;
   result.timing.compute_s = _compute_s;

@@ -150,6 +150,9 @@ std::vector<fabric::Stress> Simulation::stress_of(const StressKind& kind) {
 FinalState Simulation::final_state() {
   const fabric::Parameters& p = _problem.parameters;
   FinalState state;
+  state.elastic_energy = _solver->totals().elastic;
+  if (std::ranges::count(_scene.verify.values, FinalQuantity::von_mises, &FinalValue::quantity) > 0)
+    state.von_mises = stress_values("vertex_von_mises", stress_of({true, fabric::StressMeasure::cauchy}));
   state.mass = _problem.mass;
   state.payload = _problem.payload;
   std::vector<Vector> x(_problem.x.size()), v(x.size()), force(x.size());

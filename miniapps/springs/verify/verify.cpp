@@ -7,6 +7,7 @@
 #include "common/run/history_reader.hpp"
 #include "common/run/statistics.hpp"
 #include "miniapps/springs/scene/expressions.hpp"
+#include "miniapps/springs/scene/scene_keys.hpp"
 #include "miniapps/springs/simulation/contact_state.hpp"
 #include "miniapps/springs/verify/closed_forms.hpp"
 #include "miniapps/springs/verify/probe.hpp"
@@ -155,6 +156,17 @@ double front_speed(const SpringsScene& scene, const History& history) {
   return distance(place(0), place(1)) / (rise("probe_1_") - rise("probe_0_"));
 }
 
+/// Value of the final state that `wanted` names.
+double final_value(const SpringsScene& scene, const FinalState& state, const FinalValue& wanted) {
+  if (wanted.quantity == FinalQuantity::elastic_energy) return state.elastic_energy;
+  const auto vertex = static_cast<std::size_t>(nearest_vertex(scene.mesh, wanted.at));
+  if (wanted.quantity == FinalQuantity::von_mises) return state.von_mises[vertex];
+  const std::size_t axis = wanted.quantity == FinalQuantity::displacement_x   ? 0
+                           : wanted.quantity == FinalQuantity::displacement_y ? 1
+                                                                              : 2;
+  return state.x[vertex][axis] - scene.mesh.rest[vertex][axis];
+}
+
 }  // namespace
 
 double imbalance(const FinalState& state) {
@@ -255,6 +267,11 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
   if (wanted.front_speed)
     add("front_speed", relative_error(front_speed(scene, history), wanted.front_speed->value),
         wanted.front_speed->tolerance);
+  for (std::size_t k = 0; k < wanted.values.size(); ++k) {
+    const FinalValue& value = wanted.values[k];
+    add("values_" + std::to_string(k) + "_" + name_of(value.quantity),
+        relative_error(final_value(scene, state, value), value.value), value.tolerance);
+  }
   if (wanted.equilibrium) add("equilibrium", imbalance(state), *wanted.equilibrium);
   if (wanted.energy_drift) add("energy_drift", energy_drift(history), *wanted.energy_drift);
   if (wanted.energy_balance) add("energy_balance", energy_imbalance(history), *wanted.energy_balance);

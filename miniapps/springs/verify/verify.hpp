@@ -16,6 +16,8 @@ struct FinalState {
   double largest_load = 0.0;          ///< largest dead load on a vertex without gravity, N
   double mass = 0.0;                  ///< total, kg
   double payload = 0.0;               ///< part of the mass, kg
+  double elastic_energy = 0.0;        ///< J
+  std::vector<double> von_mises;      ///< of every vertex, N/m; empty unless the scene verifies one
 };
 
 /// Adds errors and checks of the scene's [verify]; `history` is the history.csv of the run. Throws `Failure`

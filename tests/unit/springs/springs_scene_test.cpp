@@ -298,6 +298,12 @@ TEST(SpringsScene, RefusesChecksWithoutTheirQuantity) {
   EXPECT_TRUE(holds(error_of({"verify.frequency={value=3,tolerance=1}"}), "probe of that number"));
   EXPECT_TRUE(holds(error_of({"verify.frequency={tolerance=1}", probe}), "needs a value"));
   EXPECT_EQ(error_of({"verify.frequency={mode=[0,1],tolerance=1}", probe, "initial.prestretch=0.01"}), "");
+  const auto value = [](const std::string& keys) { return "verify.values=[{" + keys + ",tolerance=1}]"; };
+  EXPECT_EQ(error_of({value("quantity=\"elastic_energy\",value=1")}), "");
+  EXPECT_TRUE(holds(error_of({value("quantity=\"elastic_energy\",value=0")}), "relative"));
+  EXPECT_TRUE(
+      holds(error_of({value("quantity=\"elastic_energy\",at=[0,0,0],value=1")}), "a quantity of a vertex"));
+  EXPECT_TRUE(holds(error_of({value("quantity=\"von_mises\",value=1")}), "needs at, a position"));
   EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0.5,1],tolerance=1}", probe}), "integers"));
 }
 
