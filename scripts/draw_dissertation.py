@@ -68,7 +68,7 @@ def draw_convergence(axes, runs, names, measure, unit):
         axis[1].set_ylabel("difference from next mesh")
         for a in axis:
             a.set_xlabel("time (s)")
-            a.legend(fontsize=7, frameon=False)
+            a.legend(fontsize=7, edgecolor="none")
 
 
 def chord(runs, to):
@@ -104,7 +104,7 @@ def drum(runs, to):
         found += runs.series("drum-cone", f"drum-series-{points}", "masses=equal", "time.end_time=2", times_of(2), "verify={}",
                              "output.history_every=100000", f"mesh.disk.vertices={points}")  # fmt: skip
     draw_convergence(axes[1:], found, [f"{row['vertices']} points" for row in found], "area", "m$^2$")
-    figure.savefig(to / "shi-5-3.png", dpi=110)
+    figure.savefig(to / "shi-5-3.png", dpi=80)
 
 
 def strip(runs, to):
