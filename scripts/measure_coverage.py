@@ -5,8 +5,8 @@
                                 [--models gh,kou] [--styles european] [--seed 1] [--backend auto] [--out FILE]
 
 For a new fit of the constants in kernels/options/pide/error_estimate.hpp. The prices are those of finite differences, to the
-tolerance or on a given grid. References: for European options Fourier's integral (`--method cos`), which shares no code; for
-American options finite differences on 2048 intervals with 1024 steps. A row is undecided, and not counted, if one of both has
+tolerance or on a given grid. References: for European options Fourier's integral (`--method cos`), which shares no part of the
+method; for American options finite differences on 2048 intervals with 1024 steps. A row is undecided, and not counted, if one of both has
 no price, or the reference states an error above a tenth of the stated error to be tested. The table has, per model and style:
 rows counted; the part that is covered; the quotient of stated and true error below which a tenth and half of the rows are;
 undecided rows. The median quotient is the overestimate.

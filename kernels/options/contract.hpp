@@ -33,7 +33,7 @@ struct Contract {
 /// Result of pricing a contract.
 enum class PriceStatus : unsigned char {
   ok,
-  coarse,  ///< priced, but `error` exceeds the tolerance
+  coarse,  ///< priced, but `error` exceeds the tolerance, which chose the mesh
   failed,  ///< no usable price; `Price::failure` states the reason
 };
 

@@ -27,11 +27,13 @@ enum class ExerciseRule : unsigned char {
 /// Settings of a pricer. Either mesh and steps are given, or the tolerance chooses them.
 struct Settings {
   Method method = Method::pide;
-  int mesh = 0;             ///< spatial intervals; 0: chosen by `tolerance`
-  int steps = 0;            ///< time steps; 0: chosen by `tolerance`
-  double tolerance = 1e-4;  ///< bound of |price - true price|, relative to the strike
-  bool greeks = false;      ///< `cos` computes delta, gamma and theta; the other methods always do
-  int host_threads = 0;     ///< host threads for the tables of `cos`; 0: one per core
+  int mesh = 0;   ///< spatial intervals; 0: chosen by `tolerance`
+  int steps = 0;  ///< time steps; 0: chosen by `tolerance`
+  /// Bound of |price - true price|, relative to the strike, beyond which a price is `PriceStatus::coarse`. A
+  /// given mesh has none.
+  double tolerance = 1e-4;
+  bool greeks = false;   ///< `cos` computes delta, gamma and theta; the other methods always do
+  int host_threads = 0;  ///< host threads for the tables of `cos`; 0: one per core
   bool surface = false;  ///< consecutive contracts that differ only in the strike share solves; `pide` only
   ExerciseRule exercise = ExerciseRule::exact;  ///< `pide` only
   bool single_grid = false;  ///< with `mesh`, `pide` only: no extrapolation and no error; for comparison

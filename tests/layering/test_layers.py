@@ -23,6 +23,19 @@ class Repository(unittest.TestCase):
             if path.startswith(("miniapps/", "common/")):
                 self.assertEqual([], layers.reaches_kokkos(path, TEXTS))
 
+    def test_methods_for_options_share_no_part(self):
+        """Each checks the other. What both include lies in no folder of a method."""
+        mine, other = "kernels/options/cos/", ("pide", "levy", "grid", "transforms", "batch", "surface", "normalized_put.hpp")
+        reached, rest = set(), [path for path in TEXTS if path.startswith(mine)]
+        self.assertGreater(len(rest), 10)
+        while rest:
+            path = rest.pop()
+            if path in reached or path not in TEXTS:
+                continue
+            reached.add(path)
+            rest += [name for own, name in layers.includes(TEXTS[path]) if own]
+        self.assertEqual([], [path for path in sorted(reached) if path.startswith(tuple(f"kernels/options/{name}" for name in other))])
+
     def test_sources_that_use_kokkos_include_it(self):
         self.assertEqual([], [path for path in TEXTS
                               if path.startswith("kernels/") and layers.uses_kokkos_unseen(path, TEXTS)])

@@ -261,9 +261,18 @@ class Prices(options_program.OptionsTest):
             self.assertEqual(not words, "--tolerance" in written["1e4"])
             self.assertTrue(all("--method cos may price it" in message for message in written.values()))
         self.price(4, content, "--mesh", "128", "--steps", "16384")
-        self.assertEqual(["failed", "failed", "coarse", "failed"], [price["status"] for price in self.prices()])
+        self.assertEqual(["failed", "failed", "ok", "failed"], [price["status"] for price in self.prices()])
         self.price(4, content, *FAST)
         self.assertEqual(["ok", "failed", "ok", "ok"], [price["status"] for price in self.prices()])
+
+    def test_only_a_tolerance_makes_a_row_coarse(self):
+        """A given grid has no tolerance that it could miss."""
+        content = batch([row("a", delta=0, variance=0, maturity=1, **{"lambda": 0.1})])
+        self.price(0, content, "--tolerance", "1e-9")
+        self.assertEqual("coarse", self.prices()[0]["status"])
+        self.price(0, content, "--mesh", "64", "--steps", "16")
+        self.assertEqual("ok", self.prices()[0]["status"])
+        self.assertGreater(float(self.prices()[0]["error"]), 1e-4)
 
     def test_summary_counts_rows_by_status(self):
         run = self.expect(0, "price", "example", *FAST, "--tolerance", "1e-3")

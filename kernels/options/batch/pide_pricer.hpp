@@ -285,7 +285,7 @@ class PidePricer {
     batch.count = static_cast<int>(rows.size());
     batch.mesh = resolution.mesh;
     batch.steps = resolution.steps;
-    batch.tolerance = _settings.tolerance;
+    batch.tolerance = tolerance_of(_settings);
     batch.split = _settings.exercise == ExerciseRule::split;
     batch.single_grid = _settings.single_grid;
     batch.level = scratch_level<ExecutionSpace>(resolution.mesh);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -26,6 +27,11 @@ struct Refinement {
   int steps_multiplier = 1;  ///< steps per four intervals
   double error = 0.0;        ///< previous estimate, money
 };
+
+/// Tolerance, relative to the strike, beyond which a price is `coarse`; infinite on a given mesh.
+[[nodiscard]] inline double tolerance_of(const Settings& settings) {
+  return settings.mesh != 0 ? std::numeric_limits<double>::infinity() : settings.tolerance;
+}
 
 /// Number of steps on a mesh: that of the settings, or `steps_multiplier` for each four intervals.
 [[nodiscard]] inline int steps_of(const Settings& settings, int mesh, int steps_multiplier) {

@@ -5,7 +5,6 @@
 #include "kernels/options/contract.hpp"
 #include "kernels/options/cos/bermudan.hpp"
 #include "kernels/options/cos/characteristic_exponent.hpp"
-#include "kernels/options/normalized_put.hpp"
 
 namespace drogue::options {
 
@@ -29,8 +28,10 @@ struct AmericanPut {
   /// Throws nothing but std::bad_alloc.
   explicit AmericanPut(const Contract& contract);
 
-  /// True if early exercise never pays, so that the price is that of the European option.
-  [[nodiscard]] bool never_exercised() const { return !early_may_pay(rate, dividend); }
+  /// True if early exercise never pays, so that the price is that of the European option. Exercise of a
+  /// put gains rate - dividend spot/strike per year, where the spot is below the strike: at most the larger
+  /// one of rate and rate - dividend.
+  [[nodiscard]] bool never_exercised() const { return rate <= 0.0 && dividend >= rate; }
 
   /// Chooses interval and cosines for `dates` to 8 `dates` dates and fills in the puts and the table.
   /// `maturity` in years. The last date is no later than the time after which discounted payoffs are worth

@@ -53,10 +53,10 @@ KOKKOS_INLINE_FUNCTION double splitting_error(double premium, int mesh, int step
 /// 1) leaves a part of them. In space the scale is sqrt(spread), spread = 2 D T, by which finite differences
 /// smooth the kink of the payoff: y^{1/2}, y = h^2/spread. A kink that hardly spreads (short maturities, pure
 /// jumps) has an order far below two, and the ratio grows faster, as y^{3/4}. 1/steps and y^{1/2} are
-/// derived; 0.3, 6.5, 1/500, 0.45, y^{3/4} and the root of `drift_ratio` are empirical.
+/// derived; 0.5, 6.5, 1/500, 0.45, y^{3/4} and the root of `drift_ratio` are empirical.
 template <class R>
 KOKKOS_INLINE_FUNCTION R error_factor(R h, int steps, R spread, R drift_ratio) {
-  const R in_time = device::minimum(R(0.3), R(6.5 / steps)) * device::square_root(drift_ratio);
+  const R in_time = device::minimum(R(0.5), R(6.5 / steps)) * device::square_root(drift_ratio);
   const R y = h * h / device::maximum(spread, h * h * (1.0 / 500)), root = device::square_root(y);
   return device::maximum(in_time, 0.45 * root * device::square_root(device::maximum(root, R(1.0))));
 }
@@ -118,7 +118,7 @@ KOKKOS_INLINE_FUNCTION R drift_in_deviations(const PutPack<R>& put, const LevyMe
 
 /// Error of the skewness of Kou's jumps, as a fraction of the strike. Jumps in the cell around 0 have the
 /// right variance on the grid, but no skewness. The error is the missing third cumulant divided by the
-/// variance, times V_xxx/6, for which 0.06 is an empirical value. 4 f, since the coarser grid misses up to
+/// variance, times V_xxx/6, for which 0.15 is an empirical value. 4 f, since the coarser grid misses up to
 /// sixteen times the part f that the finer one misses.
 template <class R>
 KOKKOS_INLINE_FUNCTION R kou_skewness_error(const PutPack<R>& put, const LevyMeasure<R>& measure, R h) {
@@ -130,7 +130,7 @@ KOKKOS_INLINE_FUNCTION R kou_skewness_error(const PutPack<R>& put, const LevyMea
   const R p = put.jump[1];
   const R missed =
       6.0 * put.jump[0] * device::absolute(third_missed(p, put.jump[2]) - third_missed(1.0 - p, put.jump[3]));
-  return 0.06 * missed * device::reciprocal(device::maximum(put.variance + measure.variance, R(1e-100)));
+  return 0.15 * missed * device::reciprocal(device::maximum(put.variance + measure.variance, R(1e-100)));
 }
 
 /// Error of the skewness of generalized hyperbolic jumps, as a fraction of the strike. Jumps shorter than a

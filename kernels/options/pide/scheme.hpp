@@ -62,11 +62,15 @@ KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>
 }
 
 /// Implicit diffusion beyond D that the explicit jumps require for stability; the same amount is subtracted
-/// explicitly. IMEX-BDF2 damps the highest mode of an implicit symbol I and an explicit symbol E while 3E <=
-/// 4/dt + I.
+/// explicitly. A mode of implicit symbol I and explicit symbol E is multiplied by the roots z of
+///   (3/2 z^2 - 2 z + 1/2)/dt + I z^2 + E (2 z - 1) = 0.
+/// One of them is -1 where 3E = 4/dt + I: the limit of stability, at which the mode alternates without decay.
+/// The scheme keeps a tenth below it, 3E <= 3.6/dt + I, so that such modes decay. The tenth is empirical:
+/// docs/options.md, "Stability".
 template <class R>
 KOKKOS_INLINE_FUNCTION R added_diffusion(const PutPack<R>& put, const Jumps<R>& jumps, R diffusion, R dt) {
-  const R bound = 3.6 * device::reciprocal(dt);
+  constexpr double limit = 4.0, margin = 0.9;
+  const R bound = margin * limit * device::reciprocal(dt);
   R added[4] = {0.0, 0.0, 0.0, 0.0};  // independent maxima, for instruction-level parallelism
   AngleCosines::each([&](int k, double cosine) {
     const double form = 2.0 - 2.0 * cosine;

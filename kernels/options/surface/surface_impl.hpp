@@ -161,7 +161,7 @@ class SurfaceImpl final : public Pricer {
     const int count = static_cast<int>(_staged_queries.size());
     interpolate_prices(space,
                        {_contracts, _strike_groups, _values, _queries, _prices, resolution.mesh,
-                        resolution.steps, _settings.tolerance},
+                        resolution.steps, tolerance_of(_settings)},
                        count);
     space.fence("drogue::options: strikes are priced");
     times.compute += computing.seconds();

@@ -346,6 +346,21 @@ TEST(OptionsProperty, ReportsTheReasonOfAFailure) {
   EXPECT_GT(price.steps, price.mesh / 4);
 }
 
+// A given mesh has no tolerance that a price could miss.
+TEST(OptionsProperty, OnlyAToleranceMakesAPriceCoarse) {
+  Contract rare{.style = Style::european, .maturity = 1.0};
+  std::ranges::copy(std::array{0.1, 11.0, -5.0, 0.0}, rare.jump);
+  for (const bool surface : {false, true}) {
+    Settings given = on_mesh(64, 16), chosen;
+    given.surface = chosen.surface = surface;
+    chosen.tolerance = 1e-9;
+    EXPECT_EQ(priced(chosen, {rare})[0].status, PriceStatus::coarse);
+    const Price price = priced(given, {rare})[0];
+    EXPECT_EQ(price.status, PriceStatus::ok);
+    EXPECT_GT(price.error, given.tolerance);
+  }
+}
+
 // The approximate reciprocals of devices and of AVX-512 overflow for a jump scale of 1e-300; a division does
 // not, and gives the price of vanishing jumps.
 TEST(OptionsProperty, PricesVanishingJumpsOrReportsTheOverflow) {
