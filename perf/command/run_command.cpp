@@ -48,10 +48,14 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
   const std::vector<Case> cases = matching_cases(filter, options.quick);
   if (cases.empty()) throw no_case(options, filter);
   const nlohmann::json here = provenance(device::device_facts());
+  const double overhead = timer_overhead();
+  std::printf("timer: %.3f us per work; a sample repeats works of less than %.0f ms\n", 1e6 * overhead,
+              1e3 * shortest_sample);
   std::vector<nlohmann::json> lines;
   bool passed = true;
-  for (const Record& record : measure(cases, warm_up_rounds, kept_rounds(options.quick))) {
+  for (const Record& record : measure(cases, warm_up_rounds, run_rounds)) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
+    lines.back()["instrument"] = {{"overhead", overhead}, {"works", record.repeats}, {"units", record.units}};
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);
     std::printf("%-32s %12.3f us per %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
@@ -79,7 +83,7 @@ Command run_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand("run", "Measure, in interleaved rounds after a warm-up");
   app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
   app->add_option("--out", options->out, "File for the records, one JSON line a case");
-  app->add_flag("--quick", options->quick, "Small cases and few samples");
+  app->add_flag("--quick", options->quick, "Small cases");
   return {app, [options](const std::vector<std::string>& kokkos) {
             const std::regex filter = filter_of(options->filter);
             run::require_writable(options->out);

@@ -116,6 +116,18 @@ TEST(Comparison, RefusesOneCaseOfTwoMachinesInAFile) {
   }
 }
 
+TEST(Comparison, FindsAPlantedSlowdownInMeasuredRecordsAlone) {
+  const std::string folder = std::string(DROGUE_SOURCE_DIR) + "/docs/evidence/planted/";
+  const std::vector<MeasuredCase> before = read_records(folder + "old.jsonl"),
+                                  after = read_records(folder + "new.jsonl");
+  for (const ComparedCase& row : compare_records(before, after))
+    EXPECT_EQ(row.verdict == Verdict::slower || row.verdict == Verdict::faster,
+              row.name == "tridiagonal/serial/64/scan/64")
+        << row.name << " " << word(row.verdict);
+  for (const ComparedCase& row : compare_records(before, before))
+    EXPECT_EQ(row.verdict, Verdict::same) << row.name;
+}
+
 TEST(Annotation, EscapesWhatEndsItAndHoldsNoVerdict) {
   ComparedCase row{"a:b,c", Verdict::error_changed, "error 1 %\nnow 2", {}};
   EXPECT_EQ(annotation(row, true), "::error title=a%3Ab%2Cc::error 1 %25%0Anow 2\n");
