@@ -28,13 +28,15 @@ double quantile(std::vector<double> values, double level) {
   return std::lerp(values[below], values[above], place - static_cast<double>(below));
 }
 
-/// Lower quartiles of blocks of successive samples of a run; two blocks at least of four samples or more.
-/// Disturbances prolong a time, so the lower quartile outlasts bursts that a median does not.
+/// Lower quartiles of blocks of successive samples of a run. A single run of four samples or more has two
+/// blocks at least. Several runs share the blocks, so that more samples make them longer. Disturbances
+/// prolong a time, so the lower quartile outlasts bursts that a median does not.
 std::vector<double> quartiles_of(const Blocks& kind, const Runs& runs) {
   std::vector<double> quartiles;
+  const std::size_t most = std::max<std::size_t>(kind.most / runs.size(), 1);
   for (const std::vector<double>& run : runs) {
-    const std::size_t n = run.size();
-    const std::size_t count = std::clamp<std::size_t>(n / kind.least_length, n >= 4 ? 2 : 1, kind.most);
+    const std::size_t n = run.size(), least = n >= 4 ? 2 : 1;
+    const std::size_t count = std::clamp<std::size_t>(n / kind.least_length, std::min(least, most), most);
     const auto start = [&](std::size_t k) {
       return run.begin() + static_cast<std::ptrdiff_t>(k * n / count);
     };

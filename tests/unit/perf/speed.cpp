@@ -142,6 +142,26 @@ TEST(SpeedVerdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
   EXPECT_EQ(judge_speed({compare_speed(before, {run(1.5), run(1.5)})}).front(), SpeedVerdict::slower);
 }
 
+TEST(SpeedVerdict, MoreRunsFindSmallerChanges) {
+  const auto found = [](int runs) {
+    Random random(29);
+    int slower = 0;
+    for (int pair = 0; pair < 50; ++pair) {
+      Runs before, after;
+      for (int run = 0; run < runs; ++run) {
+        before.push_back(quiet(random, 30));
+        after.push_back(quiet(random, 30));
+        for (double& sample : after.back()) sample *= 1.06;
+      }
+      if (judge_speed({compare_speed(before, after)}).front() == SpeedVerdict::slower) ++slower;
+    }
+    return slower;
+  };
+  const int of_one = found(1), of_three = found(3);
+  EXPECT_LT(of_one, of_three);
+  EXPECT_GE(of_three, 45);
+}
+
 TEST(SpeedVerdict, SmallChangesAreNone) {
   Random random(11);
   std::vector<double> before, after;
