@@ -6,6 +6,7 @@
 
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
+#include "common/scene/nearest.hpp"
 #include "perf/cases/cases.hpp"
 #include "perf/command/command.hpp"
 #include "perf/command/filter.hpp"
@@ -38,6 +39,10 @@ std::vector<Case> matching_cases(const std::regex& filter, bool quick) {
 Failure no_case(const RunOptions& options, const std::regex& filter) {
   const std::string list = options.quick ? "drogue-perf list --quick" : "drogue-perf list";
   const auto left_out = options.quick ? matching_cases(filter, false).size() : 0;
+  std::vector<std::string> names;
+  for (const Case& c : all_cases(options.quick)) names.push_back(c.name);
+  if (const auto nearest = scene::nearest(options.filter, names); nearest && left_out == 0)
+    return {ExitCode::usage, "no case matches '" + options.filter + "'; did you mean \"" + *nearest + "\"?"};
   return {ExitCode::usage,
           "no case matches '" + options.filter + "'" +
               (left_out > 0 ? " but " + std::to_string(left_out) + " that --quick leaves out" : "") +

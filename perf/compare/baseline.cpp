@@ -66,6 +66,7 @@ std::string describe_age(const MeasuredCase& before, const MeasuredCase& after) 
   const auto old_date = seconds_of(before.origin("date")), new_date = seconds_of(after.origin("date"));
   if (!old_date || !new_date) return "";
   const double hours = std::difftime(*new_date, *old_date) / 3600.0;
+  if (std::abs(hours) < 1.0) return "";
   const bool in_days = std::abs(hours) >= 48.0;
   char text[64];
   std::snprintf(text, sizeof text, "; %.1f %s %s", std::abs(in_days ? hours / 24.0 : hours),

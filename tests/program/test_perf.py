@@ -331,6 +331,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "transfers", "--backend", "gpu"], "gpu"),
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
                             (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),
+                            (["run", "--filter", "gas-step/serial/1025"], 'did you mean "gas-step/serial/1024"?'),
                             (["run", "--filter", "["], "--filter '[' is not a valid regular expression"),
                             (["run", "--filter", "(" * 20000 + ")" * 20000], "more than 1000 characters"),
                             (["run", "--quick", "--filter", "^options/serial/256/128x32$"], "but 1 that --quick leaves out"),
