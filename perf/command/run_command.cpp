@@ -11,6 +11,7 @@
 #include "perf/command/command.hpp"
 #include "perf/command/filter.hpp"
 #include "perf/measure/record.hpp"
+#include "perf/memory/device_memory.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -28,6 +29,10 @@ nlohmann::json to_json(const Facts& facts) {
   if (facts.bytes > 0.0) json["bytes"] = facts.bytes;
   if (facts.solution_error > 0.0) json["solution_error"] = facts.solution_error;
   return json;
+}
+
+nlohmann::json to_json(const ClockReading& clocks) {
+  return {{"sm_mhz", clocks.sm_mhz}, {"memory_mhz", clocks.memory_mhz}, {"throttled", clocks.throttled}};
 }
 
 std::vector<Case> matching_cases(const std::regex& filter, bool quick) {
@@ -58,14 +63,18 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
               1e3 * shortest_sample);
   std::vector<nlohmann::json> lines;
   bool passed = true;
-  for (const Record& record : measure(cases, warm_up_rounds, run_rounds)) {
+  const GpuClocks clocks(device_address());
+  for (const Record& record : measure(cases, warm_up_rounds, run_rounds, &clocks)) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
     lines.back()["instrument"] = {{"overhead", overhead}, {"works", record.repeats}, {"units", record.units}};
+    const ClockReading seen = record.clocks.empty() ? ClockReading{} : summarize(record.clocks);
+    if (!record.clocks.empty()) lines.back()["clocks"] = to_json(seen);
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);
     std::printf("%-32s %12.3f us per %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
                 1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
                 verdict(record));
+    for (const std::string& reason : seen.throttled) std::printf("  throttled: %s\n", reason.c_str());
   }
   write_records(options.out, lines);
   return passed ? ExitCode::ok : ExitCode::verification_failed;

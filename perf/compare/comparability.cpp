@@ -37,8 +37,6 @@ std::optional<std::string> difference(const char* words, const char* key, const 
 bool is_on_gpu(const MeasuredCase& record) { return entry(record.facts, "backend") == "cuda"; }
 
 std::optional<std::string> clock_difference(const MeasuredCase& before, const MeasuredCase& after) {
-  if (auto found = difference("reasons of throttling", "throttled", before.clocks, after.clocks))
-    return found;
   const nlohmann::json a = entry(before.clocks, "sm_mhz"), b = entry(after.clocks, "sm_mhz");
   if (!a.is_number() || !b.is_number()) return std::nullopt;
   const double old_clock = a.get<double>(), new_clock = b.get<double>();

@@ -49,11 +49,14 @@ double timer_overhead() {
   return run::median(seconds);
 }
 
-std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds) {
+std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds,
+                            const GpuClocks* clocks) {
   std::vector<Record> records;
   std::vector<Sample> samples;
   for (const Case& c : cases) {
-    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.tolerance, {}, {}});
+    Record& record = records.emplace_back();
+    record.name = c.name, record.unit_of_work = c.unit_of_work, record.bound = c.bound;
+    record.tolerance = c.tolerance;
     samples.push_back(c.prepare());
   }
   std::vector<long> repeats(cases.size(), 1);
@@ -67,6 +70,8 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
         repeats[i] = repeats_for(taken.seconds / static_cast<double>(repeats[i]));
         continue;
       }
+      if (clocks != nullptr && cases[i].on_device)
+        if (auto reading = clocks->read()) records[i].clocks.push_back(std::move(*reading));
       const auto units = static_cast<double>(taken.units);
       for (const auto& [name, part] : taken.parts) records[i].parts[name].push_back(part / units);
       records[i].samples.push_back(taken.seconds / units);
