@@ -36,13 +36,18 @@ bool is_near(std::string_view word, std::string_view name) {
 
 }  // namespace
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& valid) {
-  if (valid.empty()) return "no name is valid here";
+std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& valid) {
+  if (valid.empty()) return std::nullopt;
   word = word.substr(0, 100);  // a fuzzed key may be as long as the file
   const auto distance = [word](const std::string& name) { return edit_distance(word, name); };
-  const auto nearest = std::min_element(
+  const auto found = std::min_element(
       valid.begin(), valid.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  if (is_near(word, *nearest)) return "did you mean \"" + *nearest + "\"?";
+  return is_near(word, *found) ? std::optional(*found) : std::nullopt;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& valid) {
+  if (valid.empty()) return "no name is valid here";
+  if (const auto found = nearest(word, valid)) return "did you mean \"" + *found + "\"?";
   std::string all;
   for (const std::string& name : valid) all += (all.empty() ? "" : ", ") + name;
   return (valid.size() == 1 ? "the only valid name is " : "valid names are ") + all;

@@ -1,31 +1,19 @@
 #include "common/study/study.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 
+#include "common/program/plot_program.hpp"
 #include "common/run/files/atomic_file.hpp"
 #include "common/study/tables.hpp"
 
 namespace drogue::study {
 namespace {
 
-/// Starts `drogue-plot`, which lies beside this program.
 void draw(const run::RunDirectory& directory, const std::string& program_name) {
-  std::error_code error;
-  const std::filesystem::path plot =
-      std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "drogue-plot";
-  std::string program = plot.string(), folder = directory.path().string();
-  char* arguments[] = {program.data(), folder.data(), nullptr};
-  pid_t child = 0;
-  int status = 1;
-  if (std::filesystem::exists(plot, error) &&
-      posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0)
-    waitpid(child, &status, 0);
-  if (status != 0) std::cerr << program_name << ": no picture was made; run drogue-plot " << folder << '\n';
+  const std::string folder = directory.path().string();
+  if (run_drogue_plot({folder}) != 0)
+    std::cerr << program_name << ": no picture was made; run drogue-plot " << folder << '\n';
 }
 
 }  // namespace

@@ -21,6 +21,9 @@ Command list_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command table_command(CLI::App& program);
 Command work_precision_command(CLI::App& program);
+Command compare_command(CLI::App& program);
+Command bisect_command(CLI::App& program);
+Command report_command(CLI::App& program);
 
 /// Throws Failure(no_backend) with the reason if `backend` cannot run here. Call it before Kokkos is
 /// initialised.

@@ -6,10 +6,12 @@
 
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
+#include "common/scene/nearest.hpp"
 #include "perf/cases/cases.hpp"
 #include "perf/command/command.hpp"
 #include "perf/command/filter.hpp"
 #include "perf/measure/record.hpp"
+#include "perf/memory/device_memory.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -29,6 +31,10 @@ nlohmann::json to_json(const Facts& facts) {
   return json;
 }
 
+nlohmann::json to_json(const ClockReading& clocks) {
+  return {{"sm_mhz", clocks.sm_mhz}, {"memory_mhz", clocks.memory_mhz}, {"throttled", clocks.throttled}};
+}
+
 std::vector<Case> matching_cases(const std::regex& filter, bool quick) {
   std::vector<Case> cases = all_cases(quick);
   std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.name, filter); });
@@ -38,6 +44,10 @@ std::vector<Case> matching_cases(const std::regex& filter, bool quick) {
 Failure no_case(const RunOptions& options, const std::regex& filter) {
   const std::string list = options.quick ? "drogue-perf list --quick" : "drogue-perf list";
   const auto left_out = options.quick ? matching_cases(filter, false).size() : 0;
+  std::vector<std::string> names;
+  for (const Case& c : all_cases(options.quick)) names.push_back(c.name);
+  if (const auto nearest = scene::nearest(options.filter, names); nearest && left_out == 0)
+    return {ExitCode::usage, "no case matches '" + options.filter + "'; did you mean \"" + *nearest + "\"?"};
   return {ExitCode::usage,
           "no case matches '" + options.filter + "'" +
               (left_out > 0 ? " but " + std::to_string(left_out) + " that --quick leaves out" : "") +
@@ -48,15 +58,23 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
   const std::vector<Case> cases = matching_cases(filter, options.quick);
   if (cases.empty()) throw no_case(options, filter);
   const nlohmann::json here = provenance(device::device_facts());
+  const double overhead = timer_overhead();
+  std::printf("timer: %.3f us per work; a sample repeats works of less than %.0f ms\n", 1e6 * overhead,
+              1e3 * shortest_sample);
   std::vector<nlohmann::json> lines;
   bool passed = true;
-  for (const Record& record : measure(cases, warm_up_rounds, kept_rounds(options.quick))) {
+  const GpuClocks clocks(device_address());
+  for (const Record& record : measure(cases, warm_up_rounds, run_rounds, &clocks)) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
+    lines.back()["instrument"] = {{"overhead", overhead}, {"works", record.repeats}, {"units", record.units}};
+    const ClockReading seen = record.clocks.empty() ? ClockReading{} : summarize(record.clocks);
+    if (!record.clocks.empty()) lines.back()["clocks"] = to_json(seen);
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);
     std::printf("%-32s %12.3f us per %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
                 1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
                 verdict(record));
+    for (const std::string& reason : seen.throttled) std::printf("  throttled: %s\n", reason.c_str());
   }
   write_records(options.out, lines);
   return passed ? ExitCode::ok : ExitCode::verification_failed;
@@ -79,7 +97,7 @@ Command run_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand("run", "Measure, in interleaved rounds after a warm-up");
   app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
   app->add_option("--out", options->out, "File for the records, one JSON line a case");
-  app->add_flag("--quick", options->quick, "Small cases and few samples");
+  app->add_flag("--quick", options->quick, "Small cases");
   return {app, [options](const std::vector<std::string>& kokkos) {
             const std::regex filter = filter_of(options->filter);
             run::require_writable(options->out);

@@ -1,41 +1,82 @@
 #include "perf/measure/measurement.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
+#include "common/run/statistics.hpp"
 #include "perf/measure/warm_up.hpp"
 
 namespace drogue::perf {
 
-std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds) {
+namespace {
+
+/// Time of successive samples of one case as one sample.
+struct TimedSample {
+  double seconds = 0.0;
+  long units = 0;
+  std::map<std::string, double> parts;  ///< s
+};
+
+/// Resets and works `repeats` times. If the sample has parts, their sum is its time.
+TimedSample take(const Sample& sample, long repeats) {
+  TimedSample taken;
+  for (long repeat = 0; repeat < repeats; ++repeat) {
+    sample.reset();
+    const auto begin = std::chrono::steady_clock::now();
+    taken.units += sample.work();
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (!sample.parts) {
+      taken.seconds += wall;
+      continue;
+    }
+    for (const auto& [name, part] : sample.parts()) taken.parts[name] += part, taken.seconds += part;
+  }
+  return taken;
+}
+
+/// Works of a sample that fill `shortest_sample`, from the time of one.
+long repeats_for(double seconds) {
+  return static_cast<long>(std::clamp(std::ceil(shortest_sample / std::max(seconds, 1e-9)), 1.0, 200.0));
+}
+
+}  // namespace
+
+double timer_overhead() {
+  const Sample empty{[] {}, [] { return 1L; }};
+  std::vector<double> seconds;
+  for (int i = 0; i < 200; ++i) seconds.push_back(take(empty, 100).seconds / 100.0);
+  return run::median(seconds);
+}
+
+std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds,
+                            const GpuClocks* clocks) {
   std::vector<Record> records;
   std::vector<Sample> samples;
   for (const Case& c : cases) {
-    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.tolerance, {}, {}});
+    Record& record = records.emplace_back();
+    record.name = c.name, record.unit_of_work = c.unit_of_work, record.bound = c.bound;
+    record.tolerance = c.tolerance;
     samples.push_back(c.prepare());
   }
-  const auto since = [](std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
+  std::vector<long> repeats(cases.size(), 1);
   WarmUp warmth;
   for (int round = -warm_up; round < rounds; ++round) {
     if (round == 0 && warm_up > 0 && !warmth.has_reached(warm_up_seconds)) round = -1;
     for (std::size_t i = 0; i < cases.size(); ++i) {
-      samples[i].reset();
-      const auto begin = std::chrono::steady_clock::now();
-      const long units = samples[i].work();
-      double seconds = since(begin);
+      const TimedSample taken = take(samples[i], repeats[i]);
       if (round < 0) {
-        warmth.add(cases[i].on_device, seconds);
+        warmth.add(cases[i].on_device, taken.seconds);
+        repeats[i] = repeats_for(taken.seconds / static_cast<double>(repeats[i]));
         continue;
       }
-      if (samples[i].parts) {
-        seconds = 0.0;
-        for (const auto& [name, part] : samples[i].parts()) {
-          records[i].parts[name].push_back(part / static_cast<double>(units));
-          seconds += part;
-        }
-      }
-      records[i].samples.push_back(seconds / static_cast<double>(units));
+      if (clocks != nullptr && cases[i].on_device)
+        if (auto reading = clocks->read()) records[i].clocks.push_back(std::move(*reading));
+      const auto units = static_cast<double>(taken.units);
+      for (const auto& [name, part] : taken.parts) records[i].parts[name].push_back(part / units);
+      records[i].samples.push_back(taken.seconds / units);
+      records[i].repeats = repeats[i];
+      records[i].units = taken.units;
     }
   }
   for (std::size_t i = 0; i < cases.size(); ++i) {

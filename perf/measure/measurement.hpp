@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "perf/clocks/gpu_clocks.hpp"
+
 namespace drogue::perf {
 
 /// One timed sample: preparation and work.
@@ -48,6 +50,9 @@ struct Record {
   double tolerance = 0.0;
   std::map<std::string, std::vector<double>> parts;  ///< of `samples`, for cases with named parts
   Facts facts;
+  std::vector<ClockReading> clocks;  ///< of the GPU after each sample; empty for cases on a host
+  long repeats = 1;                  ///< works of a sample
+  long units = 0;                    ///< of work in a sample
 
   /// True if the error is within the tolerance. Does not throw.
   [[nodiscard]] bool passed() const { return error <= tolerance; }
@@ -58,10 +63,22 @@ struct Record {
 inline constexpr int warm_up_rounds = 3;
 inline constexpr double warm_up_seconds = 1.0;
 constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
+/// Recorded rounds of `run`, whose records a verdict compares: as many as find a change of a tenth at 3 %
+/// noise.
+inline constexpr int run_rounds = 30;
+/// Shorter works are repeated within a sample, s: a sample that a switch to another process can double is
+/// useless.
+inline constexpr double shortest_sample = 5e-3;
+
+/// Time that a sample of no work takes, s: median of 200 means.
+double timer_overhead();
 
 /// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
 /// Discards the first `warm_up` rounds, and more until cases on a device and those on a host have each worked
-/// for `warm_up_seconds`, unless `warm_up` is 0. Blocking; passes on exceptions of the cases.
-std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds);
+/// for `warm_up_seconds`, unless `warm_up` is 0. The warm-up also determines how often a sample repeats its
+/// work, to last for `shortest_sample`; each work starts from the initial state. Reads `clocks`, if
+/// given, after each sample of a case on a device. Blocking; passes on exceptions of the cases.
+std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds,
+                            const GpuClocks* clocks = nullptr);
 
 }  // namespace drogue::perf

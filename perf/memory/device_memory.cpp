@@ -16,4 +16,15 @@ std::int64_t used_device_memory() {
 #endif
 }
 
+std::string device_address() {
+#if defined(KOKKOS_ENABLE_CUDA)
+  int device = 0;
+  char address[32] = "";
+  if (cudaGetDevice(&device) == cudaSuccess &&
+      cudaDeviceGetPCIBusId(address, static_cast<int>(sizeof address), device) == cudaSuccess)
+    return address;
+#endif
+  return "";
+}
+
 }  // namespace drogue::perf

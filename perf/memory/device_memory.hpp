@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace drogue::perf {
 
@@ -8,5 +9,9 @@ namespace drogue::perf {
 /// areas of libraries, and in its units of 2 MiB. 0 in builds without CUDA. Requires an initialised runtime.
 /// Throws std::runtime_error if the driver fails.
 [[nodiscard]] std::int64_t used_device_memory();
+
+/// PCI address of the GPU of this process, such as "0000:19:00.0"; empty in builds without CUDA, or if the
+/// driver does not state it. Requires an initialised runtime. Does not throw.
+[[nodiscard]] std::string device_address();
 
 }  // namespace drogue::perf

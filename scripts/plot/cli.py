@@ -69,6 +69,9 @@ def arguments(words: list[str]) -> argparse.Namespace:
         "--slice", metavar="AXIS[=PLACE]", default="", help="plane of a flow, such as y=0.5 (default: z, its middle)"
     )
     parser.add_argument("--norm", help="error column of a study (default: the first that meshes make small)")
+    parser.add_argument(
+        "--report", action="store_true", help="write one page, report.html, of all records of DIR, and nothing else"
+    )
     parser.add_argument("--quiet", action="store_true", help="do not print the names of the pictures")
     parser.add_argument("--version", action="store_true", help="print the versions and stop")
     options = parser.parse_args(words)
@@ -182,14 +185,29 @@ def _flow_pictures(run, options, out, save):
         yield save(figure, "spectrum")
 
 
-def _evidence_pages(options, evidence, out):
+def _require_templates():
     if importlib.util.find_spec("jinja2") is None:
         raise Failure(
             USAGE, "a page of records needs the Python package jinja2: run scripts/setup.sh, or install it."
         )
+
+
+def _evidence_pages(options, evidence, out):
+    _require_templates()
     from .evidence import page
 
     yield from page.write(evidence, out, options.format, options.dpi)
+
+
+def _report(options):
+    _require_templates()
+    from .evidence import report
+    from .evidence.records import read_records
+
+    evidence = read_records(options.directory)
+    if evidence is None:
+        raise Failure(USAGE, f"{options.directory} holds no records (*.jsonl).")
+    yield report.write(evidence, (options.out or options.directory) / "report.html", options.dpi)
 
 
 def draw(options: argparse.Namespace):
@@ -208,6 +226,9 @@ def draw(options: argparse.Namespace):
     from .springs.history_figure import springs_history_figure
     from .study_figure import check_norm, study_figure
 
+    if options.report:
+        yield from _report(options)
+        return
     run = read_run(options.directory)
     # Validation precedes the first figure, so that a mistyped option leaves no files behind.
     if options.norm is not None:

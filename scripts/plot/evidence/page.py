@@ -105,27 +105,47 @@ def write(evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
         yield from _write_app(app, evidence.for_app(app), out, form, dpi)
 
 
+def machine_sections(app: str, evidence: Evidence) -> list[tuple[Machine, list[Section]]]:
+    """Sections of a mini-app, whose records `evidence` holds, by machine."""
+    return [(machine, _SECTIONS[app](evidence, machine)) for machine in evidence.machines]
+
+
+class Pictures:
+    """Pictures of the sections of a page, saved as PNG in a folder, and the filters of templates that show them."""
+
+    def __init__(self, folder: Path, dpi: int):
+        self._folder, self._dpi = folder, dpi
+        self._files: dict[int, Path] = {}
+        self._names: dict[str, int] = {}
+
+    def save(self, picture, more: str = "") -> Iterator[Path]:
+        """Draws a picture, also in the format `more`; yields the files."""
+        # Two machines may have the same GPU name.
+        self._names[picture.name] = self._names.get(picture.name, 0) + 1
+        count = self._names[picture.name]
+        name = picture.name if count == 1 else f"{picture.name}-{count}"
+        figure = picture.draw()
+        self._files[id(picture)] = style.save_figure(figure, self._folder / f"{name}.png", self._dpi)
+        yield self._files[id(picture)]
+        if more:
+            yield style.save_figure(figure, self._folder / f"{name}.{more}", self._dpi)
+
+    @property
+    def filters(self) -> dict:
+        return {
+            "cell": _cell,
+            "file_of": lambda picture: self._files[id(picture)],
+            "width": lambda file: _width(file, self._dpi),
+        }
+
+
 def _write_app(app: str, evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
-    machines = [(machine, _SECTIONS[app](evidence, machine)) for machine in evidence.machines]
-    files: dict[int, Path] = {}
-    names: dict[str, int] = {}
+    machines, pictures = machine_sections(app, evidence), Pictures(out, dpi)
     for _, found in machines:
         for section in found:
             for picture in section.pictures:
-                # Two machines may have the same GPU name.
-                names[picture.name] = names.get(picture.name, 0) + 1
-                name = picture.name if names[picture.name] == 1 else f"{picture.name}-{names[picture.name]}"
-                figure = picture.draw()
-                files[id(picture)] = style.save_figure(figure, out / f"{name}.png", dpi)
-                yield files[id(picture)]
-                if form != "png":
-                    yield style.save_figure(figure, out / f"{name}.{form}", dpi)
-    filters = {
-        "cell": _cell,
-        "file_of": lambda picture: files[id(picture)],
-        "width": lambda file: _width(file, dpi),
-    }
+                yield from pictures.save(picture, "" if form == "png" else form)
     yield html_page.write(
-        out / f"{app}.html", "evidence/page.html.j2", filters, app=app, machines=machines, notes=notes(evidence),
+        out / f"{app}.html", "evidence/page.html.j2", pictures.filters, app=app, machines=machines, notes=notes(evidence),
         count=len(evidence.records),
     )  # fmt: skip

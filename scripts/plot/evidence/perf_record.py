@@ -101,6 +101,7 @@ class Record:
     error: float | None
     facts: dict
     provenance: dict
+    samples: tuple[float, ...] = ()  # s per unit of work
 
     @property
     def kind(self) -> str:
@@ -202,4 +203,7 @@ def parse(line: str, place: str) -> Record:
             if kind.endswith("-solution") and not _has_type(error, float):
                 raise Failure(IO_ERROR, f"{place}: the error of {case} is no number.")
     unit, error = str(document.get("unit", "")), error if _has_type(error, float) else None
-    return Record(case, unit, check, median, interval, error, facts, provenance)
+    samples = document.get("samples", [])
+    if not isinstance(samples, list) or not all(_has_type(sample, float) and sample > 0 for sample in samples):
+        raise Failure(IO_ERROR, f"{place}: the samples of {case} are no times.")
+    return Record(case, unit, check, median, interval, error, facts, provenance, tuple(samples))

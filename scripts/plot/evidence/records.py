@@ -20,6 +20,7 @@ class Evidence:
     unknown_kinds: Counter = field(default_factory=Counter)
     superseded: list[Record] = field(default_factory=list)
     ceilings: list[Record] = field(default_factory=list)  # valid ones, which concern all mini-apps
+    everything: list[Record] = field(default_factory=list)  # in the order of the files, also of unknown kinds
 
     @property
     def apps(self) -> list[str]:
@@ -82,6 +83,7 @@ def read_records(folder: Path) -> Evidence | None:
             if not line.strip():
                 continue
             record = parse(line, f"{file}:{number}")
+            evidence.everything.append(record)
             if record.kind in KINDS:
                 known.append(record)
             else:

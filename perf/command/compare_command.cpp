@@ -1,0 +1,108 @@
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <regex>
+
+#include "perf/command/command.hpp"
+#include "perf/command/filter.hpp"
+#include "perf/compare/annotation.hpp"
+#include "perf/compare/baseline.hpp"
+#include "perf/compare/comparison.hpp"
+
+namespace drogue::perf {
+namespace {
+
+struct CompareOptions {
+  std::string before, after, filter;
+  std::vector<std::string> fail_on;
+  bool github = false;
+
+  [[nodiscard]] bool fails(Verdict verdict) const {
+    const auto named = [&](const char* name) { return std::ranges::find(fail_on, name) != fail_on.end(); };
+    return (verdict == Verdict::slower && named("slower")) ||
+           (verdict == Verdict::error_changed && named("error"));
+  }
+};
+
+/// Measured change in words, or the reason of a verdict without one.
+std::string details(const ComparedCase& row) {
+  if (!row.speed) return row.reason;
+  const SpeedChange& speed = *row.speed;
+  char text[128];
+  if (std::isfinite(speed.high))
+    std::snprintf(text, sizeof text, "%.3f times as long  [%.3f .. %.3f]", speed.ratio, speed.low,
+                  speed.high);
+  else
+    std::snprintf(text, sizeof text, "%.3f times as long  (too few samples for an interval)", speed.ratio);
+  return text;
+}
+
+void print(const std::vector<ComparedCase>& rows) {
+  std::size_t width = 0;
+  for (const ComparedCase& row : rows) width = std::max(width, row.name.size());
+  for (const ComparedCase& row : rows)
+    std::printf("%-*s  %-14s  %s\n", static_cast<int>(width), row.name.c_str(), word(row.verdict),
+                details(row).c_str());
+}
+
+/// Sentence on the cases whose verdict `--fail-on` names.
+Failure failure(const std::vector<ComparedCase>& failed) {
+  std::string sentence;
+  for (const ComparedCase& row : failed)
+    sentence += (sentence.empty() ? "" : "; ") + row.name + ": " +
+                (row.speed ? describe_change(*row.speed) + ", where " + percent(smallest_effect) +
+                                 " count as a change"
+                           : row.reason);
+  return {ExitCode::verification_failed, sentence};
+}
+
+void keep_matching(std::vector<MeasuredCase>& records, const std::regex& filter,
+                   const CompareOptions& options) {
+  std::erase_if(records, [&](const MeasuredCase& record) { return !std::regex_search(record.name, filter); });
+  if (records.empty())
+    throw Failure(ExitCode::usage, "no case of the records matches '" + options.filter + "'");
+}
+
+ExitCode compare_files(const CompareOptions& options, const std::regex& filter) {
+  std::vector<MeasuredCase> after = read_records(options.after);
+  std::vector<MeasuredCase> before = read_records(find_baseline(options.before, after.front()));
+  keep_matching(after, filter, options);
+  keep_matching(before, filter, options);
+  std::printf("old: %s\nnew: %s%s\n", describe_origin(before.back()).c_str(),
+              describe_origin(after.back()).c_str(), describe_age(before.back(), after.back()).c_str());
+  const std::vector<ComparedCase> rows = compare_records(before, after);
+  print(rows);
+  std::vector<ComparedCase> failed;
+  std::ranges::copy_if(rows, std::back_inserter(failed),
+                       [&](const ComparedCase& row) { return options.fails(row.verdict); });
+  if (options.github)
+    for (const ComparedCase& row : rows)
+      std::fputs(annotation(row, options.fails(row.verdict)).c_str(), stdout);
+  if (!failed.empty()) throw failure(failed);
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+Command compare_command(CLI::App& program) {
+  const auto options = std::make_shared<CompareOptions>();
+  CLI::App* app = program.add_subcommand("compare", "Print a verdict per case of two files of records");
+  app->add_option("OLD", options->before,
+                  "Records before a change, or a folder of baselines, one file a machine")
+      ->required();
+  app->add_option("NEW", options->after, "Records after the change")->required();
+  app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
+  app->add_option("--fail-on", options->fail_on,
+                  "Verdicts that give exit code 5: slower, error, or both by a comma")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"slower", "error"}));
+  app->add_flag("--github", options->github, "Print annotations for GitHub workflows too");
+  return {app, [options](const std::vector<std::string>&) {
+            return compare_files(*options, filter_of(options->filter));
+          }};
+}
+
+}  // namespace drogue::perf

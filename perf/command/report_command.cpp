@@ -1,0 +1,66 @@
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "common/program/plot_program.hpp"
+#include "common/run/files/atomic_file.hpp"
+#include "perf/command/command.hpp"
+#include "perf/compare/record_file.hpp"
+#include "perf/report/exports.hpp"
+
+namespace drogue::perf {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Records of all files *.jsonl of a folder, in the order of the names of the files.
+std::vector<MeasuredCase> read_folder(const fs::path& folder) {
+  if (!fs::is_directory(folder))
+    throw Failure(ExitCode::usage, "there is no folder '" + folder.string() + "'");
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".jsonl") files.push_back(entry.path());
+  if (files.empty()) throw Failure(ExitCode::usage, "'" + folder.string() + "' holds no records (*.jsonl)");
+  std::ranges::sort(files);
+  std::vector<MeasuredCase> all;
+  for (const fs::path& file : files) std::ranges::move(read_records(file.string()), std::back_inserter(all));
+  return all;
+}
+
+void write(const fs::path& file, const std::string& text) {
+  run::write_file_atomically(file, text);
+  std::printf("%s\n", file.c_str());
+}
+
+ExitCode write_report(const std::string& folder, const std::string& out) {
+  const std::vector<MeasuredCase> records = read_folder(folder);
+  std::error_code error;
+  if (fs::create_directories(out, error); error)
+    throw Failure(ExitCode::io_error, "the folder '" + out + "' cannot be made: " + error.message());
+  write(fs::path(out) / "records.csv", to_csv(records));
+  write(fs::path(out) / "reframe.json", to_reframe(records));
+  std::fflush(stdout);
+  const auto code = static_cast<ExitCode>(run_drogue_plot({folder, "--report", "--out", out}));
+  // drogue-plot states the reasons of these codes itself.
+  if (code == ExitCode::ok || code == ExitCode::usage || code == ExitCode::io_error) return code;
+  throw Failure(ExitCode::io_error, "no page was made: drogue-plot is not beside this program, or failed");
+}
+
+}  // namespace
+
+Command report_command(CLI::App& program) {
+  const auto folder = std::make_shared<std::string>(), out = std::make_shared<std::string>();
+  CLI::App* app = program.add_subcommand(
+      "report",
+      "Write all records of a folder as a page (by drogue-plot), a CSV file and a report of ReFrame");
+  app->add_option("DIR", *folder, "Folder of records, *.jsonl")->required();
+  app->add_option("--out", *out, "Folder for report.html, records.csv and reframe.json (default: DIR)");
+  return {app, [folder, out](const std::vector<std::string>&) {
+            return write_report(*folder, out->empty() ? *folder : *out);
+          }};
+}
+
+}  // namespace drogue::perf

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "perf/compare/record_file.hpp"
+#include "perf/compare/speed.hpp"
+
+namespace drogue::perf {
+
+/// Verdict on one case of two files of records.
+enum class Verdict { same, faster, slower, ambiguous, not_comparable, error_changed };
+
+/// Word for a verdict, as `compare` prints it: SAME, FASTER and so on. Does not throw.
+const char* word(Verdict verdict);
+
+/// Case of two files of records.
+struct ComparedCase {
+  std::string name;
+  Verdict verdict = Verdict::not_comparable;
+  std::string reason;                ///< of `not_comparable` and `error_changed`
+  std::optional<SpeedChange> speed;  ///< of the others
+};
+
+/// Verdicts of all cases: those of `after` in its order, then those of `before` alone. Several records of a
+/// case in a file are runs of one build, whose differences are noise. Throws Failure(invalid_scene) if such
+/// records cannot be compared with each other.
+std::vector<ComparedCase> compare_records(const std::vector<MeasuredCase>& before,
+                                          const std::vector<MeasuredCase>& after);
+
+}  // namespace drogue::perf

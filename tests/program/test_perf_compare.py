@@ -1,0 +1,125 @@
+"""drogue-perf compare: verdict words, exit codes, annotations and refusals, on records made here."""
+
+import json
+import os
+import re
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import perf_program
+
+WORDS = {"SAME", "FASTER", "SLOWER", "AMBIGUOUS", "NOT-COMPARABLE", "ERROR-CHANGED"}
+CASES = ["gas-step/serial/1024", "gas-step/serial/8192", "options/serial/16/64x16"]
+
+
+def record(case, scale=1.0, **changes):
+    """Record with 30 samples that spread by two per cent, and a median that is wrong on purpose."""
+    samples = [scale * 1e-4 * (1.0 + 0.01 * (7 * i % 3)) for i in range(30)]
+    provenance = {"cpu": "A", "gpu": "", "threads": 2, "flags": "-O3", "git": "1", "date": "2026-11-20T12:00:00Z"}
+    made = {"schema": "drogue.perf/1", "case": case, "unit": "s per step", "bound": "", "samples": samples,
+            "median": 1.0, "interval": [1.0, 1.0], "error": 1e-3, "check": "passed",
+            "facts": {"backend": "serial", "cells": 1024}, "provenance": provenance}
+    return made | changes
+
+
+class Compare(perf_program.PerfTest):
+    def write(self, name, records):
+        (self.folder / name).write_text("".join(json.dumps(line) + "\n" for line in records), encoding="utf-8")
+
+    def verdicts(self, text):
+        """Verdicts by case; asserts that each line holds at most one verdict word."""
+        found = {}
+        for line in text.splitlines():
+            words = [word for word in re.findall(r"[A-Z][A-Z-]+", line) if word in WORDS]
+            self.assertLessEqual(len(words), 1, line)
+            if words:
+                found[line.split()[0]] = words[0]
+        return found
+
+    def compare(self, code, new, *words):
+        self.write("old.jsonl", [record(case) for case in CASES])
+        self.write("new.jsonl", new)
+        return self.expect(code, "compare", "old.jsonl", "new.jsonl", *words)
+
+    def test_prints_a_verdict_per_case(self):
+        new = [record(CASES[0], 1.3), record(CASES[1], error=2e-3), record(CASES[2], 0.7), record("new")]
+        text = self.compare(0, new).stdout
+        self.assertEqual(dict(zip([*CASES, "new"], ["SLOWER", "ERROR-CHANGED", "FASTER", "NOT-COMPARABLE"])),
+                         self.verdicts(text))
+        self.assertRegex(text, r"(?m)^gas-step/serial/1024 +SLOWER +1\.300 times as long  \[1\.\d+ \.\. 1\.\d+\]$")
+
+    def test_files_of_one_build_have_no_changes(self):
+        self.assertEqual({"SAME"}, set(self.verdicts(self.compare(0, [record(case) for case in CASES],
+                                                                  "--fail-on", "slower,error").stdout).values()))
+
+    def test_exit_code_is_5_for_a_named_verdict_alone(self):
+        slow, wrong = [record(CASES[0], 1.3)], [record(CASES[0], error=2e-3)]
+        for code, new, words in ((0, slow, []), (5, slow, ["--fail-on", "slower"]), (0, slow, ["--fail-on", "error"]),
+                                 (5, wrong, ["--fail-on", "error"]), (0, wrong, ["--fail-on", "slower"]),
+                                 (5, slow, ["--fail-on", "slower", "--fail-on", "error"]),
+                                 (0, [record(CASES[0], 0.7)], ["--fail-on", "slower,error"])):
+            with self.subTest(words=words, code=code):
+                process = self.compare(code, new, *words)
+                self.assertEqual(code == 5, CASES[0] in process.stderr)
+                self.assertFalse(WORDS & set(re.findall(r"[A-Z-]+", process.stderr)))
+
+    def test_annotates_changes_on_github(self):
+        text = self.compare(5, [record(CASES[0], 1.3), record(CASES[1], 0.7), record(CASES[2], error=1.0)],
+                            "--github", "--fail-on", "slower").stdout
+        self.verdicts(text)
+        lines = [line for line in text.splitlines() if line.startswith("::")]
+        self.assertEqual([("error", CASES[0]), ("notice", CASES[1]), ("warning", CASES[2])],
+                         [re.match(r"::(\w+) title=([^:]+)::", line).groups() for line in lines])
+
+    def test_baseline_of_the_machine_is_taken_from_a_folder(self):
+        (self.folder / "baselines").mkdir()
+        other = record(CASES[0])
+        other["provenance"] = other["provenance"] | {"cpu": "B"}
+        self.write("baselines/b.jsonl", [other])
+        new = record(CASES[0], 1.3)
+        new["provenance"] = new["provenance"] | {"date": "2026-11-25T12:00:00Z", "git": "2"}
+        self.write("new.jsonl", [new])
+        message = self.expect(2, "compare", "baselines", "new.jsonl").stderr
+        self.assertIn("'baselines' has no baseline of the machine 'A' with 2 threads", message)
+        self.write("baselines/a.jsonl", [record(CASES[0])])
+        text = self.expect(0, "compare", "baselines", "new.jsonl").stdout
+        self.assertIn("old: commit 1, date 2026-11-20T12:00:00Z\nnew: commit 2, date 2026-11-25T12:00:00Z; 5.0 days later\n",
+                      text)
+        self.assertEqual({CASES[0]: "SLOWER"}, self.verdicts(text))
+        self.write("baselines/c.jsonl", [record(CASES[0])])
+        self.assertIn("several baselines", self.expect(2, "compare", "baselines", "new.jsonl").stderr)
+
+    def test_filter_selects_cases(self):
+        new = [record(case, 1.3) for case in CASES]
+        self.assertEqual({CASES[2]: "SLOWER"}, self.verdicts(self.compare(0, new, "--filter", "^options").stdout))
+        self.assertIn("no case of the records matches 'nothing'", self.compare(2, new, "--filter", "nothing").stderr)
+
+    def test_refuses_what_is_no_file_of_records(self):
+        good = json.dumps(record(CASES[0]))
+        for code, content, hint in (
+            (3, good[:200], "new.jsonl:1: the line ends within a record"),
+            (3, good + "\n" + good.replace("perf/1", "perf/2"), 'new.jsonl:2: the schema is "drogue.perf/2"'),
+            (3, '{"time": 1}\n', "new.jsonl:1: no record of drogue-perf"),
+            (3, "", "new.jsonl: the file holds no records"),
+            (3, json.dumps(record(CASES[0], samples=[float("nan")])), "new.jsonl:1: NaN at column"),
+            (3, json.dumps(record(CASES[0], samples=[None])), f"new.jsonl:1: samples[0] of {CASES[0]} is no positive"),
+            (2, None, "there is no file 'new.jsonl'"),
+        ):
+            with self.subTest(hint):
+                self.write("old.jsonl", [record(CASES[0])])
+                (self.folder / "new.jsonl").unlink(missing_ok=True)
+                if content is not None:
+                    (self.folder / "new.jsonl").write_text(content, encoding="utf-8")
+                process = self.expect(code, "compare", "old.jsonl", "new.jsonl")
+                self.assertIn(hint, process.stderr)
+                self.assertEqual("", process.stdout)
+
+    def test_refuses_unknown_verdicts_and_missing_arguments(self):
+        self.assertIn("slower", self.compare(2, [record(CASES[0])], "--fail-on", "slow").stderr)
+        self.assertIn("NEW", self.expect(2, "compare", "old.jsonl").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

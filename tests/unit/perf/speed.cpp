@@ -1,0 +1,181 @@
+#include "perf/compare/speed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+
+// Generators with fixed seeds stand for machines: no test here reads a clock.
+namespace drogue::perf {
+namespace {
+
+using Random = std::mt19937_64;
+
+/// Samples of one run of `count` samples. Standard distributions differ among libraries; these do not.
+using Machine = std::function<std::vector<double>(Random&, int count)>;
+
+double uniform(Random& random) { return (static_cast<double>(random() >> 11) + 0.5) / 9007199254740992.0; }
+
+double normal(Random& random) {
+  return std::sqrt(-2.0 * std::log(uniform(random))) * std::cos(6.283185307179586 * uniform(random));
+}
+
+std::vector<double> quiet(Random& random, int count) {
+  std::vector<double> samples;
+  for (int i = 0; i < count; ++i) samples.push_back(1e-3 * (1.0 + 0.03 * normal(random)));
+  return samples;
+}
+
+/// A fifth of the samples is longer, by a Pareto distribution without a mean.
+std::vector<double> heavy_tails(Random& random, int count) {
+  std::vector<double> samples = quiet(random, count);
+  for (double& sample : samples)
+    if (uniform(random) < 0.2) sample *= std::pow(uniform(random), -1.0);
+  return samples;
+}
+
+/// Trend of up to a tenth in either direction over the run.
+std::vector<double> drift(Random& random, int count) {
+  std::vector<double> samples = quiet(random, count);
+  const double slope = 0.2 * (uniform(random) - 0.5) / count;
+  for (int i = 0; i < count; ++i) samples[static_cast<std::size_t>(i)] *= 1.0 + slope * i;
+  return samples;
+}
+
+/// Clock of two states a fifth apart, which last `dwell` samples on average.
+std::vector<double> two_states(Random& random, int count, double dwell) {
+  std::vector<double> samples = quiet(random, count);
+  bool is_slow = uniform(random) < 0.5;
+  for (double& sample : samples) {
+    if (uniform(random) < 1.0 / dwell) is_slow = !is_slow;
+    if (is_slow) sample *= 1.2;
+  }
+  return samples;
+}
+
+const std::map<std::string, Machine> machines = {
+    {"quiet", quiet},
+    {"heavy tails", heavy_tails},
+    {"drift", drift},
+    {"two states", [](Random& random, int count) { return two_states(random, count, 2.0); }},
+    {"two states that last", [](Random& random, int count) { return two_states(random, count, 8.0); }},
+    {"all of it", [](Random& random, int count) {
+       std::vector<double> samples = heavy_tails(random, count);
+       const std::vector<double> trend = drift(random, count), clock = two_states(random, count, 4.0);
+       for (std::size_t i = 0; i < samples.size(); ++i) samples[i] *= 1e6 * trend[i] * clock[i];
+       return samples;
+     }}};
+
+constexpr int pairs = 200;
+
+/// Verdicts on pairs of runs, each a comparison of its own, the second of them `factor` times as long.
+std::map<SpeedVerdict, int> verdicts(const Machine& machine, int count, double factor) {
+  Random random(2026);
+  std::map<SpeedVerdict, int> found;
+  for (int pair = 0; pair < pairs; ++pair) {
+    const std::vector<double> before = machine(random, count);
+    std::vector<double> after = machine(random, count);
+    for (double& sample : after) sample *= factor;
+    ++found[judge_speed({compare_speed({before}, {after})}).front()];
+  }
+  return found;
+}
+
+TEST(SpeedVerdict, IsWrongForAtMostATwentiethOfEqualRuns) {
+  for (const auto& [name, machine] : machines) {
+    std::map<SpeedVerdict, int> found = verdicts(machine, 30, 1.0);
+    EXPECT_LE(found[SpeedVerdict::slower] + found[SpeedVerdict::faster], pairs / 20) << name;
+    // Doubt is no error, but on a quiet machine it would be no help.
+    const bool is_clear = name == "quiet" || name == "heavy tails";
+    EXPECT_GE(found[SpeedVerdict::same], is_clear ? 9 * pairs / 10 : 0) << name;
+  }
+}
+
+TEST(SpeedVerdict, FindsATenthAtThreePercentNoise) {
+  EXPECT_GE(verdicts(quiet, 30, 1.10)[SpeedVerdict::slower], 19 * pairs / 20);
+  EXPECT_GE(verdicts(quiet, 30, 1.0 / 1.10)[SpeedVerdict::faster], 19 * pairs / 20);
+}
+
+TEST(SpeedVerdict, NeverCallsATenthTheSameAtThreePercentNoise) {
+  for (const int count : {7, 15, 30}) EXPECT_EQ(verdicts(quiet, count, 1.10)[SpeedVerdict::same], 0) << count;
+}
+
+TEST(SpeedVerdict, FindsOneSlowCaseAmongManyAndNoOther) {
+  Random random(7);
+  std::vector<SpeedChange> changes;
+  for (int i = 0; i < 60; ++i) {
+    std::vector<double> after = heavy_tails(random, 30);
+    if (i == 41)
+      for (double& sample : after) sample *= 1.3;
+    changes.push_back(compare_speed({heavy_tails(random, 30)}, {after}));
+  }
+  const std::vector<SpeedVerdict> found = judge_speed(changes);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_EQ(found[i] == SpeedVerdict::slower || found[i] == SpeedVerdict::faster, i == 41) << i;
+}
+
+TEST(SpeedVerdict, TrendThatGoesOnIsNoChange) {
+  std::vector<double> before, after;
+  Random random(5);
+  for (int i = 0; i < 30; ++i) before.push_back(1.0 + 0.004 * i + 0.005 * normal(random));
+  for (int i = 30; i < 60; ++i) after.push_back(1.0 + 0.004 * i + 0.005 * normal(random));
+  const SpeedChange change = compare_speed({before}, {after});
+  EXPECT_LT(change.probability, 1e-6);
+  EXPECT_EQ(judge_speed({change}).front(), SpeedVerdict::ambiguous);
+}
+
+TEST(SpeedVerdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
+  Random random(3);
+  const auto run = [&](double level) {
+    std::vector<double> samples = quiet(random, 15);
+    for (double& sample : samples) sample *= level;
+    return samples;
+  };
+  // Runs of one build that differ by 15 %: to be as fast as one of them is no change, 30 % beyond both is
+  // one.
+  const Runs before = {run(1.0), run(1.15)};
+  EXPECT_EQ(judge_speed({compare_speed({before[1]}, {run(1.0)})}).front(), SpeedVerdict::faster);
+  EXPECT_NE(judge_speed({compare_speed(before, {run(1.0)})}).front(), SpeedVerdict::faster);
+  EXPECT_EQ(judge_speed({compare_speed(before, {run(1.5), run(1.5)})}).front(), SpeedVerdict::slower);
+}
+
+TEST(SpeedVerdict, MoreRunsFindSmallerChanges) {
+  const auto found = [](int runs) {
+    Random random(29);
+    int slower = 0;
+    for (int pair = 0; pair < 50; ++pair) {
+      Runs before, after;
+      for (int run = 0; run < runs; ++run) {
+        before.push_back(quiet(random, 30));
+        after.push_back(quiet(random, 30));
+        for (double& sample : after.back()) sample *= 1.06;
+      }
+      if (judge_speed({compare_speed(before, after)}).front() == SpeedVerdict::slower) ++slower;
+    }
+    return slower;
+  };
+  const int of_one = found(1), of_three = found(3);
+  EXPECT_LT(of_one, of_three);
+  EXPECT_GE(of_three, 45);
+}
+
+TEST(SpeedVerdict, SmallChangesAreNone) {
+  Random random(11);
+  std::vector<double> before, after;
+  for (int i = 0; i < 30; ++i)
+    before.push_back(1.0 + 0.001 * normal(random)), after.push_back(1.02 + 0.001 * normal(random));
+  const SpeedChange change = compare_speed({before}, {after});
+  EXPECT_LT(change.probability, 1e-9);
+  EXPECT_EQ(judge_speed({change}).front(), SpeedVerdict::same);
+}
+
+TEST(SpeedVerdict, NeedsSamples) {
+  EXPECT_EQ(judge_speed({compare_speed({{1.0}}, {{2.0}})}).front(), SpeedVerdict::ambiguous);
+  EXPECT_EQ(judge_speed({compare_speed({{1.0}}, {{1.0}})}).front(), SpeedVerdict::same);
+}
+
+}  // namespace
+}  // namespace drogue::perf
