@@ -21,6 +21,7 @@ Command list_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command table_command(CLI::App& program);
 Command work_precision_command(CLI::App& program);
+Command ladder_command(CLI::App& program);
 
 /// Throws Failure(no_backend) with the reason if `backend` cannot run here. Call it before Kokkos is
 /// initialised.

@@ -1,0 +1,24 @@
+#include <algorithm>
+#include <stdexcept>
+
+#include "perf/ladders/ladder.hpp"
+
+namespace drogue::perf::ladder {
+
+// Defined in the headers NAME/ladder.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+Ladder make_weno(bool small);
+
+const std::vector<std::string>& names() {
+  static const std::vector<std::string> all = {"weno"};
+  return all;
+}
+
+Ladder create_ladder(const std::string& name, device::Backend backend, bool small) {
+  return device::dispatch(backend, [&]<class ExecutionSpace>() {
+    if (name == "weno") return make_weno<ExecutionSpace>(small);
+    throw std::invalid_argument("there is no ladder '" + name + "'");
+  });
+}
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "perf/ladders/weno/one_division.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 6. Use the registers. On a GPU launch bounds cap the registers of a thread (128 threads, four teams
+/// per multiprocessor: 128 registers), so that more warps hide each other's latency. A core of a host has one
+/// thread: there the wide registers hold a pack of cells, one per lane.
+///
+/// Prediction: on a host divided by the lanes of a pack. The model of a GPU has no registers: no change.
+template <class ExecutionSpace>
+class RegistersRung final : public WenoRung<ExecutionSpace> {
+  using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+
+ public:
+  static constexpr RungText text{
+      "registers", "Launch bounds on a GPU, packs of cells on a host.",
+      "A pack of cells gains about its number of lanes, and stays as far above the bound of "
+      "arithmetic as one cell did: results still wait for one another."};
+
+  static Work work(const WenoProblem& problem) {
+    Work work = OneDivisionRung<ExecutionSpace>::work(problem);
+    work.packed = true;
+    return work;
+  }
+
+  using WenoRung<ExecutionSpace>::WenoRung;
+
+ protected:
+  void step() override {
+    launch_stages<OneDivisionFlux, R, Kokkos::LaunchBounds<tile_threads, 4>>(
+        *this, "drogue::perf::ladder::registers");
+  }
+};
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "perf/ladders/ladder.hpp"
+#include "tests/support/backend.hpp"
+
+// Every rung of every ladder against the reference of its ladder, without timing.
+
+namespace drogue::perf::ladder {
+namespace {
+
+class Ladders : public ::testing::TestWithParam<std::string> {
+ protected:
+  Ladder ladder = create_ladder(GetParam(), testing::tested_backend, true);
+};
+
+TEST_P(Ladders, RungsEqualReference) {
+  for (const Rung& rung : ladder.rungs) {
+    if (!rung.available) continue;
+    const auto run = rung.make();
+    for (int round = 0; round < 2; ++round) {
+      run->reset();
+      EXPECT_GT(run->error(), rung.tolerance) << rung.text.name << " before round " << round;
+      run->run();
+      EXPECT_LE(run->error(), rung.tolerance) << rung.text.name << " after round " << round;
+    }
+  }
+}
+
+TEST_P(Ladders, PredictionsArePositiveAndFinite) {
+  const Ceilings machine{1e-6, 1e-5, 1e9, 2e9, 1e10, 1e10, 1e9, 4};
+  for (const Rung& rung : ladder.rungs) {
+    const Prediction predicted = predict(rung.work, machine);
+    EXPECT_GT(predicted.seconds, 0.0) << rung.text.name;
+    EXPECT_TRUE(std::isfinite(predicted.seconds)) << rung.text.name;
+    EXPECT_STRNE(predicted.bound, "") << rung.text.name;
+  }
+}
+
+TEST_P(Ladders, RungsHaveDistinctNamesAndTexts) {
+  std::set<std::string> names, hindsights;
+  for (const Rung& rung : ladder.rungs) {
+    names.insert(rung.text.name);
+    hindsights.insert(rung.text.hindsight);
+    EXPECT_STRNE(rung.text.idea, "") << rung.text.name;
+    EXPECT_STRNE(rung.text.hindsight, "") << rung.text.name;
+  }
+  EXPECT_EQ(names.size(), ladder.rungs.size());
+  EXPECT_EQ(hindsights.size(), ladder.rungs.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Ladders, ::testing::ValuesIn(names()),
+                         [](const auto& tested) { return tested.param; });
+
+TEST(MeasuredCeilings, ArePositive) {
+  const Ceilings c = measure_ceilings(testing::tested_backend);
+  for (const double rate : {c.launch, c.copy, c.pageable, c.pinned, c.bandwidth, c.flops, c.divisions})
+    EXPECT_GT(rate, 0.0);
+}
+
+}  // namespace
+}  // namespace drogue::perf::ladder
