@@ -25,7 +25,7 @@ struct EmptyFunctor {
 template <class ExecutionSpace>
 struct DivisionFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
-  static constexpr int lanes = device::Access<R>::lanes, chains = 8, steps = 1 << 12;
+  static constexpr int lanes = device::Access<R>::lanes, chains = 8, steps = 1 << 14;
 
   Kokkos::View<double*, typename ExecutionSpace::memory_space> sum;  ///< `lanes` values per item
   double b = 0.5;

@@ -22,20 +22,21 @@ Ladder make_weno(bool small) {
   const auto problem = std::make_shared<const WenoProblem>(make_weno_problem(cells, steps));
   // Rounding of some thousand operations per value.
   constexpr double tolerance = 1e-12;
-  Ladder ladder{"weno", "step", "Sod's shock tube by WENO5-JS and SSP-RK3 with steps of one size",
-                cells,  steps,  {}};
-  const auto add = [&]<class Type>() { ladder.rungs.push_back(make_rung<Type>(problem, tolerance)); };
-  add.template operator()<PortRung<ExecutionSpace>>();
-  add.template operator()<OnDeviceRung<ExecutionSpace>>();
-  add.template operator()<FusedStagesRung<ExecutionSpace>>();
-  add.template operator()<DifferencesRung<ExecutionSpace>>();
-  add.template operator()<OneDivisionRung<ExecutionSpace>>();
-  add.template operator()<RegistersRung<ExecutionSpace>>();
-  add.template operator()<FusedStepRung<ExecutionSpace>>();
-  add.template operator()<GraphRung<ExecutionSpace>>();
-  add.template operator()<PersistentRung<ExecutionSpace>>();
-  add.template operator()<SplitPrecisionRung<ExecutionSpace>>();
-  return ladder;
+  return {"weno",
+          "step",
+          "Sod's shock tube by WENO5-JS and SSP-RK3 with steps of one size",
+          cells,
+          steps,
+          {make_rung<PortRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<OnDeviceRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<FusedStagesRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<DifferencesRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<OneDivisionRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<RegistersRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<FusedStepRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<GraphRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<PersistentRung<ExecutionSpace>>(problem, tolerance),
+           make_rung<SplitPrecisionRung<ExecutionSpace>>(problem, tolerance)}};
 }
 
 }  // namespace drogue::perf::ladder

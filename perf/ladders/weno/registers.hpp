@@ -4,8 +4,8 @@
 
 namespace drogue::perf::ladder {
 
-/// Rung 6. Use the registers. On a GPU launch bounds cap the registers of a thread (128 threads, four teams
-/// per multiprocessor: 128 registers), so that more warps hide each other's latency. A core of a host has one
+/// Rung 6. Use the registers. On a GPU launch bounds cap the registers of a thread (128 threads, five teams
+/// per multiprocessor: 96 registers), so that more warps hide each other's latency. A core of a host has one
 /// thread: there the wide registers hold a pack of cells, one per lane.
 ///
 /// Prediction: on a host divided by the lanes of a pack. The model of a GPU has no registers: no change.
@@ -29,7 +29,7 @@ class RegistersRung final : public WenoRung<ExecutionSpace> {
 
  protected:
   void step() override {
-    launch_stages<OneDivisionFlux, R, Kokkos::LaunchBounds<tile_threads, 4>>(
+    launch_stages<OneDivisionFlux, R, Kokkos::LaunchBounds<tile_threads, 5>>(
         *this, "drogue::perf::ladder::registers");
   }
 };

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "perf/ladders/options/one_team.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Sums of jumps to several nodes at once: each value is loaded once and multiplied by as many weights, whose
+/// sums stay in registers. On a host the sums of a block fill vector registers.
+template <int size>
+struct BlockedJumps {
+  static constexpr int block = size;
+
+  template <class Weights, class V>
+  KOKKOS_FUNCTION static void sum(const Weights& weights, const V& v, int i, double (&jumped)[block]) {
+    double sums[block] = {};  // the last node first: neighbouring sums take neighbouring weights
+    for (int j = 0; j < option_nodes; ++j) {
+      const double value = v(j);
+      const int first = j - (i + block - 1) + option_nodes - 1;
+      for (int b = 0; b < block; ++b) sums[b] += weights(first + b) * value;
+    }
+    for (int b = 0; b < block; ++b) jumped[b] = sums[block - 1 - b];
+  }
+};
+
+/// Rung 5. A warp per option with four nodes per thread in registers; 32 nodes per block on a host.
+///
+/// Prediction: on a host divided by the lanes of a pack, since the sums of a block are independent. On a GPU
+/// none: the model has no loads from shared memory.
+template <class ExecutionSpace>
+class OptionRegistersRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight> {
+  static constexpr int block = device::is_host<ExecutionSpace> ? 32 : option_nodes / 32;
+
+ public:
+  static constexpr RungText text{
+      "registers", "Sums of several nodes in registers: a load serves them all.",
+
+      "The gain is about that of the prediction, but for another reason than registers alone: "
+      "independent sums end the chains of additions, and the compiler may use packs. The solve, "
+      "one chain per option, is now most of the time."};
+
+  static Work work(const OptionsProblem& problem) {
+    Work work = ScratchRung<ExecutionSpace>::work(problem);
+    work.packed = true;
+    return work;
+  }
+
+  using OptionsRung<ExecutionSpace, Kokkos::LayoutRight>::OptionsRung;
+
+ protected:
+  void solve() override {
+    launch_option_teams<ExecutionSpace, BlockedJumps<block>, true>(
+        this->space(), "drogue::perf::ladder::registers", this->arrays(), this->problem().options(), 32);
+  }
+};
+
+}  // namespace drogue::perf::ladder
