@@ -7,6 +7,7 @@
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/command/command.hpp"
+#include "perf/ladders/exercises/exercises.hpp"
 #include "perf/ladders/ladder.hpp"
 #include "perf/measure/record.hpp"
 
@@ -106,13 +107,35 @@ ExitCode climb(const LadderOptions& options, device::Backend backend) {
   return passed ? ExitCode::ok : ExitCode::verification_failed;
 }
 
+/// Runs the exercises. Throws Failure(verification_failed) unless all are mended.
+ExitCode check_exercises(device::Backend backend) {
+  std::printf("%-12s %-40s %9s %9s\n", "exercise", "file", "error", "tolerance");
+  const std::vector<ladder::Exercise> exercises =
+      ladder::create_exercises(backend, ladder::ExerciseCode::own);
+  std::size_t broken = 0;
+  for (const ladder::Exercise& exercise : exercises) {
+    const double error = ladder::error_of(exercise);
+    const bool mended = error <= exercise.rung.tolerance;
+    broken += mended ? 0 : 1;
+    std::printf("%-12s %-40s %9.2g %9.2g  %s\n", exercise.name, exercise.file, error, exercise.rung.tolerance,
+                mended ? "mended" : ("broken: " + std::string(exercise.task)).c_str());
+  }
+  std::fflush(stdout);
+  if (broken > 0)
+    throw Failure(ExitCode::verification_failed,
+                  std::to_string(broken) + " of " + std::to_string(exercises.size()) +
+                      " exercises are broken: edit their files, build drogue-perf and check again");
+  return ExitCode::ok;
+}
+
 }  // namespace
 
 Command ladder_command(CLI::App& program) {
   const auto options = std::make_shared<LadderOptions>();
   CLI::App* app = program.add_subcommand(
       "ladder", "Climb a ladder of versions of one kernel: predicted and measured times, errors");
-  app->add_option("LADDER", options->ladder, "weno, springs, options or transfers")->required();
+  app->add_option("LADDER", options->ladder, "weno, springs, options or transfers; check: the exercises")
+      ->required();
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
       ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
@@ -120,12 +143,14 @@ Command ladder_command(CLI::App& program) {
   app->add_flag("--quick", options->quick, "Small problem and few samples");
   app->add_flag("--explain", options->explain, "Print the idea of each rung and what its prediction missed");
   return {app, [options](const std::vector<std::string>& kokkos) {
-            require_name("ladder", options->ladder, ladder::names());
+            std::vector<std::string> valid = ladder::names();
+            valid.push_back("check");
+            require_name("ladder", options->ladder, valid);
             run::require_writable(options->out);
             const device::Backend backend = device::wanted_backend(options->backend);
             require(backend);
             const device::Runtime runtime(kokkos);
-            return climb(*options, backend);
+            return options->ladder == "check" ? check_exercises(backend) : climb(*options, backend);
           }};
 }
 

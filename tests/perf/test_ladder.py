@@ -25,6 +25,11 @@ class Ladder(perf_program.PerfTest):
     def test_names_the_nearest_ladder(self):
         self.assertIn('did you mean "weno"', self.expect(2, "ladder", "wenno").stderr)
 
+    def test_check_finds_the_shipped_exercises_broken(self):
+        process = self.expect(5, "ladder", "check", "--backend", "serial")
+        self.assertEqual(4, process.stdout.count("broken: "))
+        self.assertIn("4 of 4 exercises are broken", process.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -26,10 +26,9 @@ struct BlockedJumps {
 ///
 /// Prediction: on a host divided by the lanes of a pack, since the sums of a block are independent. On a GPU
 /// none: the model has no loads from shared memory.
-template <class ExecutionSpace>
+template <class ExecutionSpace,
+          class Jumps = BlockedJumps<device::is_host<ExecutionSpace> ? 32 : option_nodes / 32>>
 class OptionRegistersRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight> {
-  static constexpr int block = device::is_host<ExecutionSpace> ? 32 : option_nodes / 32;
-
  public:
   static constexpr RungText text{
       "registers", "Sums of several nodes in registers: a load serves them all.",
@@ -48,8 +47,8 @@ class OptionRegistersRung final : public OptionsRung<ExecutionSpace, Kokkos::Lay
 
  protected:
   void solve() override {
-    launch_option_teams<ExecutionSpace, BlockedJumps<block>, true>(
-        this->space(), "drogue::perf::ladder::registers", this->arrays(), this->problem().options(), 32);
+    launch_option_teams<ExecutionSpace, Jumps, true>(this->space(), "drogue::perf::ladder::registers",
+                                                     this->arrays(), this->problem().options(), 32);
   }
 };
 

@@ -14,19 +14,18 @@ Ladder make_springs(bool small) {
   const int vertices = small ? 400 : host ? 20'000 : 30'000;
   const long steps = small ? 8 : host ? 4 : 20;
   const auto problem = std::make_shared<const SpringProblem>(make_spring_problem(vertices, steps));
-  constexpr double tolerance = 1e-10;  // rounding of positions, over displacements of a thousandth of them
   return {"springs",
           "step",
           "a stretched sheet of biquadratic springs by Runge-Kutta steps",
           static_cast<std::int64_t>(problem->renumbered.vertices()),
           steps,
-          {make_rung<StructsRung<ExecutionSpace>>(problem, tolerance),
-           make_rung<ArraysRung<ExecutionSpace>>(problem, tolerance),
-           make_rung<RecomputedRung<ExecutionSpace>>(problem, tolerance),
-           make_rung<RenumberedRung<ExecutionSpace>>(problem, tolerance),
-           make_rung<RingsRung<ExecutionSpace>>(problem, tolerance),
-           make_rung<SpringGraphRung<ExecutionSpace>>(problem, tolerance),
-           make_rung<PacketsRung<ExecutionSpace>>(problem, tolerance)}};
+          {make_rung<StructsRung<ExecutionSpace>>(problem, spring_tolerance),
+           make_rung<ArraysRung<ExecutionSpace>>(problem, spring_tolerance),
+           make_rung<RecomputedRung<ExecutionSpace>>(problem, spring_tolerance),
+           make_rung<RenumberedRung<ExecutionSpace>>(problem, spring_tolerance),
+           make_rung<RingsRung<ExecutionSpace>>(problem, spring_tolerance),
+           make_rung<SpringGraphRung<ExecutionSpace>>(problem, spring_tolerance),
+           make_rung<PacketsRung<ExecutionSpace>>(problem, spring_tolerance)}};
 }
 
 }  // namespace drogue::perf::ladder

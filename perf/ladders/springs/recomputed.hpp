@@ -22,9 +22,8 @@ using RecomputedSheet = SheetOfArrays<ExecutionSpace, RecomputedSprings<Tension>
 /// Rung 3. Arithmetic is cheaper than memory: four stored numbers per triangle instead of eight.
 ///
 /// Prediction: two thirds of the bytes, a third more operations.
-template <class ExecutionSpace>
-class RecomputedRung final
-    : public SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, RecomputedTension>> {
+template <class ExecutionSpace, class Tension = RecomputedTension>
+class RecomputedRung final : public SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, Tension>> {
  public:
   static constexpr RungText text{
       "recomputed", "Stiffnesses are recomputed from lengths and area at rest.",
@@ -36,8 +35,7 @@ class RecomputedRung final
   static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 4, 66); }
 
   explicit RecomputedRung(const SpringProblem& problem)
-      : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, RecomputedTension>>(problem,
-                                                                                       problem.scattered) {}
+      : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, Tension>>(problem, problem.scattered) {}
 };
 
 /// Rung 4. Vertices in the order of Cuthill and McKee: those of neighbours lie beside one another, so that a

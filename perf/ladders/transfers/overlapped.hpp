@@ -6,19 +6,22 @@
 
 namespace drogue::perf::ladder {
 
-/// Calls `enqueue(chunk, first, count)` for `chunks` contiguous parts of `values` values.
-template <class Enqueue>
-void for_chunks(std::size_t values, std::size_t chunks, const Enqueue& enqueue) {
-  const std::size_t most = (values + chunks - 1) / chunks;
-  for (std::size_t chunk = 0; chunk * most < values; ++chunk)
-    enqueue(chunk, chunk * most, std::min(most, values - chunk * most));
-}
+/// Division of values into contiguous chunks of nearly equal length.
+struct Chunks {
+  /// Calls `enqueue(chunk, first, count)` for at most `chunks` parts of `values` values.
+  template <class Enqueue>
+  static void for_each(std::size_t values, std::size_t chunks, const Enqueue& enqueue) {
+    const std::size_t most = (values + chunks - 1) / chunks;
+    for (std::size_t chunk = 0; chunk * most < values; ++chunk)
+      enqueue(chunk, chunk * most, std::min(most, values - chunk * most));
+  }
+};
 
 /// Rung 3. Chunks on two streams in turn: while one is computed, another is copied, in both directions at
 /// once.
 ///
 /// Prediction: the longer one of copies and kernels. The copies of a step still move all values twice.
-template <class ExecutionSpace, int chunks = 8>
+template <class ExecutionSpace, int chunks = 8, class Division = Chunks>
 class OverlappedRung : public PinnedRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
@@ -39,9 +42,10 @@ class OverlappedRung : public PinnedRung<ExecutionSpace> {
  protected:
   void step() override {
     const ExecutionSpace* const streams[] = {&this->_instance.space(), &_second.space()};
-    for_chunks(this->_host.size(), chunks, [&](std::size_t chunk, std::size_t first, std::size_t count) {
-      this->enqueue(*streams[chunk % 2], first, count);
-    });
+    Division::for_each(this->_host.size(), chunks,
+                       [&](std::size_t chunk, std::size_t first, std::size_t count) {
+                         this->enqueue(*streams[chunk % 2], first, count);
+                       });
     for (const ExecutionSpace* stream : streams)
       stream->fence("drogue::perf::ladder: chunks are on the host");
   }

@@ -6,6 +6,9 @@
 
 namespace drogue::perf::ladder {
 
+/// Largest error of a rung. The step is a contraction: rounding errors do not add up.
+inline constexpr double transfer_tolerance = 1e-14;
+
 /// Problem of the transfer ladder: steps x <- 1 / (1 + x) of many values that the host owns.
 struct TransferProblem {
   std::vector<double> start;     ///< in [0, 1]

@@ -36,16 +36,11 @@ KOKKOS_FUNCTION gas::WaveSpeeds<R> largest_speeds(const CellState<R> (&cells)[6]
   return largest;
 }
 
-/// Flux in difference form: a linear flux of fourth order, less nonlinear corrections of the differences of
-/// neighbours. Constants cancel, so that 5 differences replace 6 values, and eigenvectors need no full
-/// matrix.
-struct DifferenceFlux : DirectFlux {
-  /// Operations per face, counted by tests/kernels/ladders/.
-  static constexpr gas::Arithmetic arithmetic{266, 260, 32, 1, 0};
-
+/// Nonlinear part of the flux of a characteristic field from one side.
+struct JiangShuCorrection {
   /// w_0/3 (a - 2b + c) + (w_2 - 1/2)/6 (b - 2c + d) with the weights of Jiang and Shu.
   template <class R>
-  KOKKOS_FUNCTION static R correction(const R (&d)[4]) {
+  KOKKOS_FUNCTION static R of(const R (&d)[4]) {
     const R second[3] = {d[1] - d[0], d[2] - d[1], d[3] - d[2]};
     const R first[3] = {3.0 * d[1] - d[0], d[1] + d[2], d[3] - 3.0 * d[2]};
     constexpr double linear[3] = {0.1, 0.6, 0.3};
@@ -58,6 +53,15 @@ struct DifferenceFlux : DirectFlux {
     return weight[0] / sum * ((1.0 / 3.0) * (second[1] - second[0])) +
            (weight[2] / sum - 0.5) * ((1.0 / 6.0) * (second[2] - second[1]));
   }
+};
+
+/// Flux in difference form: a linear flux of fourth order, less nonlinear corrections of the differences of
+/// neighbours. Constants cancel, so that 5 differences replace 6 values, and eigenvectors need no full
+/// matrix.
+template <class Correction>
+struct DifferenceFluxWith : DirectFlux {
+  /// Operations per face, counted by tests/kernels/ladders/.
+  static constexpr gas::Arithmetic arithmetic{266, 260, 32, 1, 0};
 
   template <class R>
   KOKKOS_FUNCTION static ConservedVector<R> face(double gamma, const CellState<R> (&cells)[6]) {
@@ -81,17 +85,20 @@ struct DifferenceFlux : DirectFlux {
       }
     }
     R k[3];
-    for (int field = 0; field < 3; ++field) k[field] = correction(right[field]) - correction(left[field]);
+    for (int field = 0; field < 3; ++field)
+      k[field] = Correction::of(right[field]) - Correction::of(left[field]);
     const ConservedVector<R> central = s.central();
     return {central.rho - (k[0] + k[1] + k[2]), central.m - (u * (k[0] + k[1] + k[2]) + c * (k[2] - k[0])),
             central.energy - (h * (k[0] + k[2]) + kinetic * k[1] + u * c * (k[2] - k[0]))};
   }
 };
 
+using DifferenceFlux = DifferenceFluxWith<JiangShuCorrection>;
+
 /// Rung 4. The same flux from differences of neighbours (docs/gas.md, section 2).
 ///
 /// Prediction: a third fewer operations per face, the same divisions.
-template <class ExecutionSpace>
+template <class ExecutionSpace, class Flux = DifferenceFlux>
 class DifferencesRung final : public WenoRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
@@ -99,14 +106,12 @@ class DifferencesRung final : public WenoRung<ExecutionSpace> {
       "The gain is about that of the prediction: counting operations predicts the ratio of two "
       "similar kernels better than the time of either."};
 
-  static Work work(const WenoProblem& problem) {
-    return stage_work(problem, 1, 9, DifferenceFlux::arithmetic);
-  }
+  static Work work(const WenoProblem& problem) { return stage_work(problem, 1, 9, Flux::arithmetic); }
 
   using WenoRung<ExecutionSpace>::WenoRung;
 
  protected:
-  void step() override { launch_stages<DifferenceFlux>(*this, "drogue::perf::ladder::differences"); }
+  void step() override { launch_stages<Flux>(*this, "drogue::perf::ladder::differences"); }
 };
 
 }  // namespace drogue::perf::ladder

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "perf/ladders/exercises/exercises.hpp"
 #include "perf/ladders/ladder.hpp"
 #include "perf/ladders/options/problem.hpp"
 #include "tests/support/backend.hpp"
@@ -63,6 +64,16 @@ TEST(OptionsLadder, ReferenceApproximatesMertonSeries) {
     const double value = problem.expected[static_cast<std::size_t>(k * option_nodes + option_nodes / 2)];
     EXPECT_NEAR(value, merton_put(k), 1.5e-3) << "option " << k;
   }
+}
+
+TEST(LadderExercises, ShippedCodeIsBroken) {
+  for (const Exercise& exercise : create_exercises(testing::tested_backend, ExerciseCode::own))
+    EXPECT_GT(error_of(exercise), exercise.rung.tolerance) << exercise.name;
+}
+
+TEST(LadderExercises, SolutionsAreAccepted) {
+  for (const Exercise& exercise : create_exercises(testing::tested_backend, ExerciseCode::solution))
+    EXPECT_LE(error_of(exercise), exercise.rung.tolerance) << exercise.name;
 }
 
 TEST(MeasuredCeilings, ArePositive) {
