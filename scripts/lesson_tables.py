@@ -18,6 +18,12 @@ measured ceilings before the rung is timed; "faster" compares with the first run
 """
 
 
+def microseconds(seconds):
+    """Four digits without an exponent."""
+    value = 1e6 * seconds
+    return f"{value:.0f}" if value >= 1000 else f"{value:.4g}"
+
+
 def table(file):
     """Heading and table of a file of records."""
     records = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
@@ -30,9 +36,9 @@ def table(file):
     first = records[0]["median"]
     for record in records:
         low, high = record["interval"]
-        lines.append(f"| `{record['facts']['rung']}` | {1e6 * record['facts']['predicted_s']:.4g} | "
-                     f"{record['facts']['predicted_bound']} | {1e6 * record['median']:.4g} | "
-                     f"[{1e6 * low:.4g} .. {1e6 * high:.4g}] | {first / record['median']:.2f} | {record['error']:.2g} |")
+        lines.append(f"| `{record['facts']['rung']}` | {microseconds(record['facts']['predicted_s'])} | "
+                     f"{record['facts']['predicted_bound']} | {microseconds(record['median'])} | "
+                     f"[{microseconds(low)} .. {microseconds(high)}] | {first / record['median']:.2f} | {record['error']:.2g} |")
     return "\n".join(lines) + "\n"
 
 

@@ -36,9 +36,9 @@ class OneThreadRung : public OptionsRung<ExecutionSpace, Layout> {
  public:
   static constexpr RungText text{
       "one-thread", "One thread per option, its nodes side by side.",
-      "Several times the prediction: a sum of 128 products is one chain of dependent additions, "
-      "so that a core waits for each, and the compiler may not reorder it. The record of this "
-      "ladder on a GPU is still to be made."};
+      "More than twice the prediction: a sum of 128 products is one chain of dependent "
+      "additions, so that a core waits for each, and the compiler may not reorder it. The "
+      "record of this ladder on a GPU is still to be made."};
 
   static Work work(const OptionsProblem& problem) { return options_work(problem, 1, 40); }
 

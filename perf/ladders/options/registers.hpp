@@ -32,10 +32,9 @@ class OptionRegistersRung final : public OptionsRung<ExecutionSpace, Kokkos::Lay
  public:
   static constexpr RungText text{
       "registers", "Sums of several nodes in registers: a load serves them all.",
-
-      "The gain is about that of the prediction, but for another reason than registers alone: "
-      "independent sums end the chains of additions, and the compiler may use packs. The solve, "
-      "one chain per option, is now most of the time."};
+      "On a host half of the predicted gain: independent sums end the chains of additions and "
+      "fill packs, but the solve, one chain of divisions per option, stays and is now a large "
+      "part of the time. The record of this ladder on a GPU is still to be made."};
 
   static Work work(const OptionsProblem& problem) {
     Work work = ScratchRung<ExecutionSpace>::work(problem);

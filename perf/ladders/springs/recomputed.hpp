@@ -27,10 +27,9 @@ class RecomputedRung final : public SpringRung<ExecutionSpace, RecomputedSheet<E
  public:
   static constexpr RungText text{
       "recomputed", "Stiffnesses are recomputed from lengths and area at rest.",
-
-      "The gain is smaller than predicted, since the time is that of waiting for loads and not "
-      "of bytes. At a million vertices on a GPU, where bytes are the bound, fewer stored "
-      "numbers decide (docs/springs-notebook.md)."};
+      "The model weighs bytes against operations, but neither is the bound: the time is that of "
+      "waiting for loads, of which there are fewer. At a million vertices on a GPU bytes are "
+      "the bound, and fewer stored numbers decide (docs/springs-notebook.md)."};
 
   static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 4, 66); }
 

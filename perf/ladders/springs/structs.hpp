@@ -96,9 +96,8 @@ class StructsRung final : public SpringRung<ExecutionSpace, SheetOfStructs<Execu
  public:
   static constexpr RungText text{
       "structs", "An array of structures with stored neighbours and stiffnesses.",
-
-      "Several times the prediction: a core waits for each load of a scattered neighbour, which "
-      "the model takes for free. The record of this ladder on a GPU is still to be made."};
+      "Twice the prediction: a core waits for each load of a scattered neighbour, which the "
+      "model takes for free. The record of this ladder on a GPU is still to be made."};
 
   static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, 50); }
 

@@ -26,10 +26,9 @@ class OverlappedRung : public PinnedRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "overlapped", "Eight chunks on two streams: copies beside kernels.",
-
       "On a host nothing overlaps: a chunk is copied, computed and copied back by the same "
-      "core. What is gained comes from caches, which hold a chunk but not all values. The "
-      "record of this ladder on a GPU is still to be made."};
+      "core. The little that is gained comes from caches, which hold a chunk but not all "
+      "values. The record of this ladder on a GPU is still to be made."};
 
   static Work work(const TransferProblem& problem) {
     Work work = transfer_work(problem, chunks, 2 * chunks, 2);
@@ -63,9 +62,9 @@ class CrumbsRung final : public OverlappedRung<ExecutionSpace, 512> {
  public:
   static constexpr RungText text{
       "crumbs", "512 chunks: the latency of copies.",
-      "This rung loses on a host as well: hundreds of launches and fences of the library around "
-      "small copies cost more than the copies. The model, which has only the latency of copies "
-      "and launches, sees a part of it."};
+      "This rung loses on a host as well: hundreds of launches and small copies cost more than "
+      "the bytes. The model has their latency and predicts the loss. The record of this ladder "
+      "on a GPU is still to be made."};
 
   using OverlappedRung<ExecutionSpace, 512>::OverlappedRung;
 };

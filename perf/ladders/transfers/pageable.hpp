@@ -13,10 +13,9 @@ class PageableRung final : public TransferRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "pageable", "Values on the host in ordinary memory: up, compute, down, at every step.",
-      "On a host the copies are memcpy; caches still hold what the last step left, so that less "
-      "is read from memory than predicted, but one core does not reach the bandwidth of the "
-      "model with each pass. On a GPU pageable memory costs a third of the time of the WENO "
-      "port at 8192 cells (docs/gas-notebook.md, transfers)."};
+      "On a host the copies are memcpy; all takes somewhat longer than predicted, since the loop "
+      "over values is not limited by memory alone. On a GPU pageable memory costs a third of "
+      "the time of the WENO port at 8192 cells (docs/gas-notebook.md, transfers)."};
 
   static Work work(const TransferProblem& problem) { return transfer_work(problem, 1, 2, 2); }
 

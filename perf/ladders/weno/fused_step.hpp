@@ -15,9 +15,9 @@ class FusedStepRung final : public LibraryRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "fused-step", "All stages of a step in one kernel; ghosts are recomputed.",
-      "On a host the solver gains a few per cent although it does more than the rungs before "
-      "(it tests every state and reduces wave speeds): it computes roots and divisions of many "
-      "faces first, so that they overlap."};
+      "On a host the solver gains a quarter although it does more than the rungs before (it "
+      "tests every state and reduces wave speeds): it computes roots and divisions of many "
+      "faces first, so that they overlap, and differences once for all faces that share them."};
 
   static Work work(const WenoProblem& problem) { return library_work(problem, 2); }
 

@@ -33,7 +33,7 @@ class OneDivisionRung final : public WenoRung<ExecutionSpace> {
   static constexpr RungText text{
       "one-division", "Weights over a common denominator: one division of five.",
       "The gain is smaller than predicted: the processor overlaps a division with other work, "
-      "so a division that goes saves less than its own time."};
+      "so that a division that goes saves less than its own time."};
 
   static Work work(const WenoProblem& problem) {
     return stage_work(problem, 1, 9, OneDivisionFlux::arithmetic);

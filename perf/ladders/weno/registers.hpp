@@ -16,8 +16,9 @@ class RegistersRung final : public WenoRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "registers", "Launch bounds on a GPU, packs of cells on a host.",
-      "A pack of cells gains about its number of lanes, and stays as far above the bound of "
-      "arithmetic as one cell did: results still wait for one another."};
+      "On a host the gain is half of the number of lanes: six packs of seven numbers overlap "
+      "for every face and are loaded again for the next, and what is left of the divisions and "
+      "roots takes longer in a pack."};
 
   static Work work(const WenoProblem& problem) {
     Work work = OneDivisionRung<ExecutionSpace>::work(problem);
