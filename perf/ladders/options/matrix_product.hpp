@@ -33,7 +33,6 @@ class MatrixProductRung final : public OptionsRung<ExecutionSpace, Kokkos::Layou
  public:
   static constexpr RungText text{
       "matrix-product", "The jumps of all options as one product of matrices.",
-
       "On a host this rung loses to registers: the plain product of the library streams all "
       "values through the caches for each node. The tiles of a real matrix product are the "
       "blocks of rung 5. On a GPU columns must share a distribution of jumps, which a batch of "

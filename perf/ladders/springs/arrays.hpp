@@ -137,7 +137,7 @@ class ArraysRung final : public SpringRung<ExecutionSpace, SheetOfArrays<Executi
       "read neighbouring numbers at once, on a GPU or in packs. The record of this ladder on a "
       "GPU is still to be made."};
 
-  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, 50); }
+  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, 49); }
 
   explicit ArraysRung(const SpringProblem& problem)
       : SpringRung<ExecutionSpace, SheetOfArrays<ExecutionSpace, StoredSprings>>(problem, problem.scattered) {

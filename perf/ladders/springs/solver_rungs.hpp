@@ -90,7 +90,6 @@ class PacketsRung final : public FabricRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "packets", "One launch for all steps; patches exchange tagged messages.",
-
       "Left over is the latency of messages between patches, which the model omits "
       "(docs/springs-notebook.md). The record of this ladder on a GPU is still to be made."};
   static constexpr bool available = !device::is_host<ExecutionSpace>;

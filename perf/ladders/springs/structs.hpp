@@ -99,7 +99,7 @@ class StructsRung final : public SpringRung<ExecutionSpace, SheetOfStructs<Execu
       "Twice the prediction: a core waits for each load of a scattered neighbour, which the "
       "model takes for free. The record of this ladder on a GPU is still to be made."};
 
-  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, 50); }
+  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, 49); }
 
   explicit StructsRung(const SpringProblem& problem)
       : SpringRung<ExecutionSpace, SheetOfStructs<ExecutionSpace>>(problem, problem.scattered) {}
