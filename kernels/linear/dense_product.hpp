@@ -44,6 +44,7 @@ class DenseProduct {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
+  /// Products on `space`, with numbers of any unit. Does not throw.
   explicit DenseProduct(const ExecutionSpace& space) : _space(space) {}
 
   /// to = M^T from (`transposed`) or M from along `axis`, with the n x n matrix M, column after column.
@@ -69,6 +70,7 @@ class DenseProduct<Kokkos::Cuda> {
  public:
   using List = Kokkos::View<double*, Kokkos::CudaSpace>;
 
+  /// Products on `space`, with numbers of any unit. Throws std::runtime_error for an error of cuBLAS.
   explicit DenseProduct(const Kokkos::Cuda& space)
       : _workspace(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::cublas_workspace"),
                    workspace_bytes) {
@@ -80,6 +82,7 @@ class DenseProduct<Kokkos::Cuda> {
     check(cublasSetWorkspace(handle, _workspace.data(), workspace_bytes));
   }
 
+  /// As for other spaces. Asynchronous. Throws std::runtime_error for an error of cuBLAS.
   void along_axis(const std::array<int, 3>& cells, std::size_t axis, const List& matrix, bool transposed,
                   const List& from, const List& to) const {
     const int nx = cells[0], ny = cells[1], nz = cells[2];

@@ -24,6 +24,7 @@ Command work_precision_command(CLI::App& program);
 Command compare_command(CLI::App& program);
 Command bisect_command(CLI::App& program);
 Command report_command(CLI::App& program);
+Command ladder_command(CLI::App& program);
 
 /// Throws Failure(no_backend) with the reason if `backend` cannot run here. Call it before Kokkos is
 /// initialised.

@@ -58,7 +58,8 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(FaceAverage average, S ga
                            (wl * left.enthalpy + wr * right.enthalpy) * inverse);
 }
 
-/// Projection L d of a difference d = (drho, dm, dE) of U or F, in the scale of the eigenvectors.
+/// Projection L d of a difference d = (drho, dm, dE) of U or F, SI units, in the scale of the eigenvectors:
+/// acoustic fields in units of 2 `unit`. Does not throw.
 template <class R>
 KOKKOS_INLINE_FUNCTION Characteristic<R> project(const Eigensystem<R>& e, R d_rho, R d_m, R d_energy) {
   const R s = e.kinetic * d_rho + (d_energy - e.u * d_m);

@@ -17,6 +17,7 @@ KOKKOS_INLINE_FUNCTION R pressure(S gamma, R m, R energy, R u) {
   return (gamma - S(1)) * (energy - S(0.5) * (m * u));
 }
 
+/// State from density, kg/m^3, momentum density, kg/(m^2 s), and energy density, J/m^3. Does not throw.
 template <class R, class S>
 KOKKOS_INLINE_FUNCTION CellState<R> cell_state(S gamma, R rho, R m, R energy) {
   const R inverse = device::reciprocal(rho);
@@ -31,6 +32,7 @@ struct WaveSpeeds {
   R slow, entropy, fast;
 };
 
+/// Wave speeds from velocity and sound speed, m/s. Does not throw.
 template <class R>
 KOKKOS_INLINE_FUNCTION WaveSpeeds<R> wave_speeds(R u, R c) {
   return {device::absolute(u - c), device::absolute(u), device::absolute(u + c)};

@@ -12,7 +12,7 @@ struct ConservedVector {
 };
 
 /// Linear fourth-order flux (-f[-1] + 7 f[0] + 7 f[1] - f[2]) / 12, from f[0] + f[1] and the differences on
-/// either side.
+/// either side; in the units of f. Does not throw.
 template <class R>
 KOKKOS_INLINE_FUNCTION R central_flux(R sum, R before, R after) {
   using S = typename device::Access<R>::Element;
@@ -29,6 +29,7 @@ struct Stencil {
   R d_flux_m[5], d_flux_energy[5];
   ConservedVector<R> flux_sum;
 
+  /// Linear flux at the face, SI units. Does not throw.
   [[nodiscard]] KOKKOS_FUNCTION ConservedVector<R> central() const {
     return {central_flux(flux_sum.rho, d_state[1].m, d_state[3].m),
             central_flux(flux_sum.m, d_flux_m[1], d_flux_m[3]),
@@ -42,6 +43,8 @@ template <class R>
 struct SplitDifferences {
   R right[4], left[4];
 
+  /// Sets the parts of difference k from that of the flux, `df`, of the state, `du`, and the wave speed
+  /// `alpha`, m/s. Does not throw.
   KOKKOS_FUNCTION void set(int k, R df, R du, R alpha) {
     if (k < 4) right[k] = df + alpha * du;
     if (k > 0) left[4 - k] = df - alpha * du;

@@ -1,0 +1,160 @@
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "common/program/command_line.hpp"
+#include "common/run/files/atomic_file.hpp"
+#include "common/run/statistics.hpp"
+#include "perf/command/command.hpp"
+#include "perf/ladders/exercises/exercises.hpp"
+#include "perf/ladders/ladder.hpp"
+#include "perf/measure/record.hpp"
+
+namespace drogue::perf {
+namespace {
+
+struct LadderOptions {
+  std::string ladder, out;
+  std::string backend = "auto";
+  bool quick = false, explain = false;
+};
+
+std::string text(device::Backend backend) { return std::string(device::name(backend)); }
+
+/// Case of a rung; a sample is a run from the initial state.
+Case case_of(const ladder::Ladder& ladder, const ladder::Rung& rung, device::Backend backend) {
+  const auto run = std::make_shared<std::unique_ptr<ladder::RungRun>>();
+  return {"ladder/" + ladder.name + "/" + text(backend) + "/" + std::to_string(ladder.size) + "/" +
+              rung.text.name,
+          device::needs_device(backend),
+          ladder.unit,
+          rung.text.idea,
+          [=] {
+            *run = rung.make();
+            return Sample{[=] { (*run)->reset(); },
+                          [=, units = ladder.units] {
+                            (*run)->run();
+                            return units;
+                          }};
+          },
+          [=] { return (*run)->error(); },
+          rung.tolerance};
+}
+
+nlohmann::json facts_of(const ladder::Ladder& ladder, const ladder::Rung& rung,
+                        const ladder::Prediction& predicted, device::Backend backend) {
+  return {{"backend", device::name(backend)},
+          {"cells", ladder.size},
+          {"ladder", ladder.name},
+          {"rung", rung.text.name},
+          {"predicted_s", predicted.seconds},
+          {"predicted_bound", predicted.bound},
+          {"flops", rung.work.flops},
+          {"bytes", rung.work.bytes}};
+}
+
+void print_ceilings(const ladder::Ceilings& c) {
+  std::printf(
+      "measured: launch %.3g us; copy %.3g us and %.3g GB/s pageable, %.3g pinned; memory %.3g GB/s; "
+      "%.3g GFLOP/s and %.3g G divisions/s, on %d lane%s\n\n",
+      1e6 * c.launch, 1e6 * c.copy, 1e-9 * c.pageable, 1e-9 * c.pinned, 1e-9 * c.bandwidth, 1e-9 * c.flops,
+      1e-9 * c.divisions, c.lanes, c.lanes == 1 ? "" : "s");
+}
+
+/// Predictions precede the measurement: they come from the work of a rung and the ceilings alone.
+ExitCode climb(const LadderOptions& options, device::Backend backend) {
+  const nlohmann::json here = provenance(device::device_facts());
+  const ladder::Ladder ladder = ladder::create_ladder(options.ladder, backend, options.quick);
+  std::printf("%s, %s: %lld, %ld %s%s a run, on %s\n", ladder.name.c_str(), ladder.problem.c_str(),
+              static_cast<long long>(ladder.size), ladder.units, ladder.unit.c_str(),
+              ladder.units == 1 ? "" : "s", text(backend).c_str());
+  const ladder::Ceilings ceilings = ladder::measure_ceilings(backend);
+  print_ceilings(ceilings);
+  std::vector<Case> cases;
+  for (const ladder::Rung& rung : ladder.rungs)
+    if (rung.available) cases.push_back(case_of(ladder, rung, backend));
+  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(options.quick));
+
+  std::printf("%-18s %12s  %-10s %12s  %-22s %9s %9s  %9s\n", "rung", "predicted", "by", "measured",
+              ("us per " + ladder.unit + ", 95 %").c_str(), "to first", "to last", "error");
+  std::vector<nlohmann::json> lines;
+  bool passed = true;
+  double first = 0.0, last = 0.0;
+  auto record = records.begin();
+  for (const ladder::Rung& rung : ladder.rungs) {
+    const ladder::Prediction predicted = ladder::predict(rung.work, ceilings);
+    std::printf("%-18s %12.2f  %-10s ", rung.text.name, 1e6 * predicted.seconds, predicted.bound);
+    if (!rung.available) {
+      std::printf("%12s\n", "GPU only");
+      continue;
+    }
+    const run::MedianInterval time = run::median_interval(record->samples);
+    if (first == 0.0) first = last = time.median;
+    char interval[64];
+    std::snprintf(interval, sizeof interval, "[%.2f .. %.2f]", 1e6 * time.low, 1e6 * time.high);
+    std::printf("%12.2f  %-22s %8.2fx %8.2fx  %9.2g  %s\n", 1e6 * time.median, interval, first / time.median,
+                last / time.median, record->error, verdict(*record));
+    last = time.median;
+    passed = passed && record->passed();
+    lines.push_back(to_json(*record, here, facts_of(ladder, rung, predicted, backend)));
+    ++record;
+  }
+  if (options.explain) {
+    std::printf(
+        "\nHindsights on hosts are those of one core of an AMD EPYC with AVX-512: docs/lessons/tables.md\n");
+    for (const ladder::Rung& rung : ladder.rungs)
+      std::printf("\n%s: %s\n  %s\n", rung.text.name, rung.text.idea, rung.text.hindsight);
+  }
+  write_records(options.out, lines);
+  return passed ? ExitCode::ok : ExitCode::verification_failed;
+}
+
+/// Runs the exercises. Throws Failure(verification_failed) unless all are mended.
+ExitCode check_exercises(device::Backend backend) {
+  std::printf("%-12s %-40s %9s %9s\n", "exercise", "file", "error", "tolerance");
+  const std::vector<ladder::Exercise> exercises =
+      ladder::create_exercises(backend, ladder::ExerciseCode::own);
+  std::size_t broken = 0;
+  for (const ladder::Exercise& exercise : exercises) {
+    const double error = ladder::error_of(exercise);
+    const bool mended = error <= exercise.rung.tolerance;
+    broken += mended ? 0 : 1;
+    std::printf("%-12s %-40s %9.2g %9.2g  %s\n", exercise.name, exercise.file, error, exercise.rung.tolerance,
+                mended ? "mended" : ("broken: " + std::string(exercise.task)).c_str());
+  }
+  std::fflush(stdout);
+  if (broken > 0)
+    throw Failure(ExitCode::verification_failed,
+                  std::to_string(broken) + " of " + std::to_string(exercises.size()) +
+                      " exercises are broken: edit their files, build drogue-perf and check again");
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+Command ladder_command(CLI::App& program) {
+  const auto options = std::make_shared<LadderOptions>();
+  CLI::App* app = program.add_subcommand(
+      "ladder", "Climb a ladder of versions of one kernel: predicted and measured times, errors");
+  app->add_option("LADDER", options->ladder, "weno, springs, options or transfers; check: the exercises")
+      ->required();
+  app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
+      ->check(CLI::IsMember(backend_choices()))
+      ->capture_default_str();
+  app->add_option("--out", options->out, "File for the records, one JSON line a rung");
+  app->add_flag("--quick", options->quick, "Small problem and few samples");
+  app->add_flag("--explain", options->explain, "Print the idea of each rung and what its prediction missed");
+  return {app, [options](const std::vector<std::string>& kokkos) {
+            std::vector<std::string> valid = ladder::names();
+            valid.push_back("check");
+            require_name("ladder", options->ladder, valid);
+            run::require_writable(options->out);
+            const device::Backend backend = device::wanted_backend(options->backend);
+            require(backend);
+            const device::Runtime runtime(kokkos);
+            return options->ladder == "check" ? check_exercises(backend) : climb(*options, backend);
+          }};
+}
+
+}  // namespace drogue::perf

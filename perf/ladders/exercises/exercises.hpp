@@ -1,0 +1,25 @@
+#pragma once
+
+#include "perf/ladders/ladder.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung with a fault or a gap to mend.
+struct Exercise {
+  const char* name;
+  const char* file;  ///< to edit
+  const char* task;  ///< a sentence
+  Rung rung;
+};
+
+/// Code of the exercises: as in their files, or that of the ladder which they were made from.
+enum class ExerciseCode { own, solution };
+
+/// Exercises on small problems. Throws std::invalid_argument for a backend that is not compiled in.
+[[nodiscard]] std::vector<Exercise> create_exercises(device::Backend backend, ExerciseCode code);
+
+/// Error of an exercise's rung, which is mended if its tolerance is met. Requires an initialised runtime.
+/// Blocking. Throws what a failed kernel throws.
+[[nodiscard]] double error_of(const Exercise& exercise);
+
+}  // namespace drogue::perf::ladder

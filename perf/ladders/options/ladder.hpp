@@ -1,0 +1,28 @@
+#pragma once
+
+#include "perf/ladders/make_rung.hpp"
+#include "perf/ladders/options/matrix_product.hpp"
+#include "perf/ladders/options/one_thread.hpp"
+#include "perf/ladders/options/registers.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rungs of the options ladder in order. Throws std::bad_alloc.
+template <class ExecutionSpace>
+Ladder make_options(bool small) {
+  const int options = small ? 5 : device::is_host<ExecutionSpace> ? 64 : 4096;
+  const auto problem = std::make_shared<const OptionsProblem>(make_options_problem(options));
+  return {"options",
+          "batch",
+          "European puts under jumps of normal logarithms, 128 nodes and 32 implicit steps",
+          options,
+          1,
+          {make_rung<OneThreadRung<ExecutionSpace>>(problem, options_tolerance),
+           make_rung<InterleavedRung<ExecutionSpace>>(problem, options_tolerance),
+           make_rung<OneTeamRung<ExecutionSpace>>(problem, options_tolerance),
+           make_rung<ScratchRung<ExecutionSpace>>(problem, options_tolerance),
+           make_rung<OptionRegistersRung<ExecutionSpace>>(problem, options_tolerance),
+           make_rung<MatrixProductRung<ExecutionSpace>>(problem, options_tolerance)}};
+}
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "perf/ladders/options/options_rung.hpp"
+
+namespace drogue::perf::ladder {
+
+/// All steps of option k.
+template <class Arrays>
+struct OptionFunctor {
+  Arrays arrays;
+
+  KOKKOS_FUNCTION void operator()(int k) const {
+    const OptionStep s = arrays.step(k);
+    const auto v = Kokkos::subview(arrays.v, k, Kokkos::ALL),
+               right = Kokkos::subview(arrays.right, k, Kokkos::ALL),
+               pivots = Kokkos::subview(arrays.pivots, k, Kokkos::ALL);
+    for (int step = 1; step <= option_steps; ++step) {
+      for (int i = 1; i < option_nodes - 1; ++i) {
+        double jumped = 0.0;
+        for (int j = 0; j < option_nodes; ++j) jumped += arrays.weights(j - i + option_nodes - 1) * v(j);
+        right(i) = v(i) + s.jumps * jumped;
+      }
+      solve_step(s, arrays.boundary(s, step), right, pivots, v);
+    }
+  }
+};
+
+/// Rung 1. One thread per option, the nodes of an option side by side, as a loop over options on a CPU keeps
+/// them.
+///
+/// Prediction: arithmetic of 128 multiply-adds per node and step; the values of an option stay in caches.
+template <class ExecutionSpace, class Layout = Kokkos::LayoutRight>
+class OneThreadRung : public OptionsRung<ExecutionSpace, Layout> {
+  using Base = OptionsRung<ExecutionSpace, Layout>;
+
+ public:
+  static constexpr RungText text{
+      "one-thread", "One thread per option, its nodes side by side.",
+      "More than twice the prediction: a sum of 128 products is one chain of dependent "
+      "additions, so that a core waits for each, and the compiler may not reorder it. The "
+      "record of this ladder on a GPU is still to be made."};
+
+  static Work work(const OptionsProblem& problem) { return options_work(problem, 1, 40); }
+
+  using Base::Base;
+
+ protected:
+  void solve() override {
+    device::launch_each(this->space(), "drogue::perf::ladder::one_thread", this->problem().options(),
+                        OptionFunctor<typename Base::Arrays>{this->arrays()});
+  }
+};
+
+/// Rung 2. The same with the options of a node side by side: neighbouring threads of a GPU read neighbouring
+/// numbers. A thread of a host now jumps through memory.
+///
+/// Prediction: none, since the model counts the bytes that are used, and these are the same.
+template <class ExecutionSpace>
+class InterleavedRung final : public OneThreadRung<ExecutionSpace, Kokkos::LayoutLeft> {
+ public:
+  static constexpr RungText text{
+      "interleaved", "The options of a node side by side, for neighbouring threads.",
+      "On a host this rung loses, since a thread fetches a line of memory per node and uses one "
+      "number of it. On a GPU it is the layout that neighbouring threads need. The record of "
+      "this ladder on a GPU is still to be made."};
+
+  using OneThreadRung<ExecutionSpace, Kokkos::LayoutLeft>::OneThreadRung;
+};
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "perf/ladders/options/one_team.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Sums of jumps to several nodes at once: each value is loaded once and multiplied by as many weights, whose
+/// sums stay in registers. On a host the sums of a block fill vector registers.
+template <int size>
+struct BlockedJumps {
+  static constexpr int block = size;
+
+  template <class Weights, class V>
+  KOKKOS_FUNCTION static void sum(const Weights& weights, const V& v, int i, double (&jumped)[block]) {
+    double sums[block] = {};  // the last node first: neighbouring sums take neighbouring weights
+    for (int j = 0; j < option_nodes; ++j) {
+      const double value = v(j);
+      const int first = j - (i + block - 1) + option_nodes - 1;
+      for (int b = 0; b < block; ++b) sums[b] += weights(first + b) * value;
+    }
+    for (int b = 0; b < block; ++b) jumped[b] = sums[block - 1 - b];
+  }
+};
+
+/// Rung 5. A warp per option with four nodes per thread in registers; 32 nodes per block on a host.
+///
+/// Prediction: on a host divided by the lanes of a pack, since the sums of a block are independent. On a GPU
+/// none: the model has no loads from shared memory.
+template <class ExecutionSpace,
+          class Jumps = BlockedJumps<device::is_host<ExecutionSpace> ? 32 : option_nodes / 32>>
+class OptionRegistersRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight> {
+ public:
+  static constexpr RungText text{
+      "registers", "Sums of several nodes in registers: a load serves them all.",
+      "On a host half of the predicted gain: independent sums end the chains of additions and "
+      "fill packs, but the solve, one chain of divisions per option, stays and is now a large "
+      "part of the time. The record of this ladder on a GPU is still to be made."};
+
+  static Work work(const OptionsProblem& problem) {
+    Work work = ScratchRung<ExecutionSpace>::work(problem);
+    work.packed = true;
+    return work;
+  }
+
+  using OptionsRung<ExecutionSpace, Kokkos::LayoutRight>::OptionsRung;
+
+ protected:
+  void solve() override {
+    launch_option_teams<ExecutionSpace, Jumps, true>(this->space(), "drogue::perf::ladder::registers",
+                                                     this->arrays(), this->problem().options(), 32);
+  }
+};
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "perf/ladders/springs/arrays.hpp"
+
+namespace drogue::perf::ladder {
+
+/// The inverse area alone is kept besides the lengths at rest; `Tension` computes tensions from them.
+template <class Tension>
+struct RecomputedSprings {
+  static constexpr int numbers = 1;
+
+  static void set(const SpringProblem&, const VertexTriangle& t, double* w) { *w = inverse_area(t); }
+  KOKKOS_FUNCTION static Tensions tensions(const EdgeChanges& change, const double* rest, const double* w,
+                                           double two_lambda_mu, double mu) {
+    return Tension::tensions(change, rest, *w, two_lambda_mu, mu);
+  }
+};
+
+template <class ExecutionSpace, class Tension>
+using RecomputedSheet = SheetOfArrays<ExecutionSpace, RecomputedSprings<Tension>>;
+
+/// Rung 3. Arithmetic is cheaper than memory: four stored numbers per triangle instead of eight.
+///
+/// Prediction: two thirds of the bytes, two fifths more operations.
+template <class ExecutionSpace, class Tension = RecomputedTension>
+class RecomputedRung final : public SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, Tension>> {
+ public:
+  static constexpr RungText text{
+      "recomputed", "Stiffnesses are recomputed from lengths and area at rest.",
+      "The model weighs bytes against operations, but neither is the bound: the time is that of "
+      "waiting for loads, of which there are fewer. At a million vertices on a GPU bytes are "
+      "the bound, and fewer stored numbers decide (docs/springs-notebook.md)."};
+
+  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 4, 70); }
+
+  explicit RecomputedRung(const SpringProblem& problem)
+      : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, Tension>>(problem, problem.scattered) {}
+};
+
+/// Rung 4. Vertices in the order of Cuthill and McKee: those of neighbours lie beside one another, so that a
+/// line of memory that one thread fetched serves the next.
+///
+/// Prediction: none, since the model takes loads of neighbours for free.
+template <class ExecutionSpace>
+class RenumberedRung final
+    : public SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, RecomputedTension>> {
+ public:
+  static constexpr RungText text{
+      "renumbered", "Neighbours lie beside one another in memory.",
+      "A gain that the model does not predict: neighbours share lines of memory, so that fewer "
+      "loads wait. The larger the mesh, the more it is."};
+
+  static Work work(const SpringProblem& problem) { return RecomputedRung<ExecutionSpace>::work(problem); }
+
+  explicit RenumberedRung(const SpringProblem& problem)
+      : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, RecomputedTension>>(problem,
+                                                                                       problem.renumbered) {}
+};
+
+}  // namespace drogue::perf::ladder

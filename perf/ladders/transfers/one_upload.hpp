@@ -1,0 +1,39 @@
+#pragma once
+
+#include "perf/ladders/transfers/pinned.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 5. The device owns the values: one copy up before the first step, one down after the last.
+///
+/// Prediction: a launch and the kernel per step, and the copies of the second rung divided by the steps.
+template <class ExecutionSpace>
+class OneUploadRung final : public PinnedRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "one-upload", "The device owns the values between the first step and the last.",
+      "The largest gain of the ladder comes from work that is left out, not from work that is "
+      "done faster; on a host as on a GPU. The record of this ladder on a GPU is still to be "
+      "made."};
+
+  static Work work(const TransferProblem& problem) {
+    const auto steps = static_cast<double>(problem.steps);
+    Work work = transfer_work(problem, 1, 2 / steps, 2 / steps);
+    work.pinned = true;
+    return work;
+  }
+
+  using PinnedRung<ExecutionSpace>::PinnedRung;
+
+  void run() override {
+    const ExecutionSpace& space = this->_instance.space();
+    device::copy_in(space, this->_device, this->_host.data(), this->_host.size());
+    for (long step = 0; step < this->_problem.steps; ++step)
+      device::launch_each(space, "drogue::perf::ladder::fractions", static_cast<int>(this->_host.size()),
+                          FractionFunctor<ExecutionSpace>{this->_device});
+    device::copy_out(space, this->_host.data(), this->_device, this->_host.size());
+    space.fence("drogue::perf::ladder: values are on the host");
+  }
+};
+
+}  // namespace drogue::perf::ladder

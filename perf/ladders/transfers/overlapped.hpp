@@ -1,0 +1,72 @@
+#pragma once
+
+#include <algorithm>
+
+#include "perf/ladders/transfers/pinned.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Division of values into contiguous chunks of nearly equal length.
+struct Chunks {
+  /// Calls `enqueue(chunk, first, count)` for at most `chunks` parts of `values` values.
+  template <class Enqueue>
+  static void for_each(std::size_t values, std::size_t chunks, const Enqueue& enqueue) {
+    const std::size_t most = (values + chunks - 1) / chunks;
+    for (std::size_t chunk = 0; chunk * most < values; ++chunk)
+      enqueue(chunk, chunk * most, std::min(most, values - chunk * most));
+  }
+};
+
+/// Rung 3. Chunks on two streams in turn: while one is computed, another is copied, in both directions at
+/// once.
+///
+/// Prediction: the longer one of copies and kernels. The copies of a step still move all values twice.
+template <class ExecutionSpace, int chunks = 8, class Division = Chunks>
+class OverlappedRung : public PinnedRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "overlapped", "Eight chunks on two streams: copies beside kernels.",
+      "On a host nothing overlaps: a chunk is copied, computed and copied back by the same "
+      "core. The little that is gained comes from caches, which hold a chunk but not all "
+      "values. The record of this ladder on a GPU is still to be made."};
+
+  static Work work(const TransferProblem& problem) {
+    Work work = transfer_work(problem, chunks, 2 * chunks, 2);
+    work.pinned = work.overlapped = true;
+    return work;
+  }
+
+  using PinnedRung<ExecutionSpace>::PinnedRung;
+
+ protected:
+  void step() override {
+    const ExecutionSpace* const streams[] = {&this->_instance.space(), &_second.space()};
+    Division::for_each(this->_host.size(), chunks,
+                       [&](std::size_t chunk, std::size_t first, std::size_t count) {
+                         this->enqueue(*streams[chunk % 2], first, count);
+                       });
+    for (const ExecutionSpace* stream : streams)
+      stream->fence("drogue::perf::ladder: chunks are on the host");
+  }
+
+ private:
+  device::Instance<ExecutionSpace> _second{std::numeric_limits<int>::max()};
+};
+
+/// Rung 4, which loses on a GPU: more overlap by 512 chunks. Each copy has a latency that its bytes must
+/// outlast.
+///
+/// Prediction: 1024 copies per step, each at the latency of a copy of a few bytes.
+template <class ExecutionSpace>
+class CrumbsRung final : public OverlappedRung<ExecutionSpace, 512> {
+ public:
+  static constexpr RungText text{
+      "crumbs", "512 chunks: the latency of copies.",
+      "This rung loses on a host as well: hundreds of launches and small copies cost more than "
+      "the bytes. The model has their latency and predicts the loss. The record of this ladder "
+      "on a GPU is still to be made."};
+
+  using OverlappedRung<ExecutionSpace, 512>::OverlappedRung;
+};
+
+}  // namespace drogue::perf::ladder

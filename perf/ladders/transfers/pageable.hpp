@@ -1,0 +1,25 @@
+#pragma once
+
+#include "perf/ladders/transfers/transfer_rung.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 1. The host owns the values in ordinary memory: each step copies them to the device, computes, and
+/// copies them back. The driver stages ordinary memory, whose pages may move, through a buffer of its own.
+///
+/// Prediction: two copies of all values at the bandwidth of ordinary memory, then the kernel.
+template <class ExecutionSpace>
+class PageableRung final : public TransferRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "pageable", "Values on the host in ordinary memory: up, compute, down, at every step.",
+      "On a host the copies are memcpy; all takes somewhat longer than predicted, since the loop "
+      "over values is not limited by memory alone. On a GPU pageable memory costs a third of "
+      "the time of the WENO port at 8192 cells (docs/gas-notebook.md, transfers)."};
+
+  static Work work(const TransferProblem& problem) { return transfer_work(problem, 1, 2, 2); }
+
+  explicit PageableRung(const TransferProblem& problem) : TransferRung<ExecutionSpace>(problem) {}
+};
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "perf/ladders/weno/direct_flux.hpp"
+#include "perf/ladders/weno/stage_kernel.hpp"
+#include "perf/ladders/weno/weno_rung.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 3. Fluxes and update of a stage in one kernel. A team keeps the fluxes of its tile in scratch memory;
+/// two tiles compute their common face twice.
+///
+/// Prediction: three launches per step instead of six, and 9 numbers per cell and stage instead of 18: state
+/// and U^n in, state out. One face in 128 is computed twice.
+template <class ExecutionSpace>
+class FusedStagesRung final : public WenoRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "fused-stages", "Fluxes stay in scratch memory: one kernel per stage.",
+      "As predicted, less traffic wins little where arithmetic is the bound. On a GPU half of "
+      "the launches go, which decides below 100 000 cells."};
+
+  static Work work(const WenoProblem& problem) { return stage_work(problem, 1, 9, DirectFlux::arithmetic); }
+
+  using WenoRung<ExecutionSpace>::WenoRung;
+
+ protected:
+  void step() override { launch_stages<DirectFlux>(*this, "drogue::perf::ladder::fused_stages"); }
+};
+
+}  // namespace drogue::perf::ladder

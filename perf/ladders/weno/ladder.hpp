@@ -1,0 +1,40 @@
+#pragma once
+
+#include "perf/ladders/make_rung.hpp"
+#include "perf/ladders/weno/fused_stages.hpp"
+#include "perf/ladders/weno/fused_step.hpp"
+#include "perf/ladders/weno/graph.hpp"
+#include "perf/ladders/weno/on_device.hpp"
+#include "perf/ladders/weno/one_division.hpp"
+#include "perf/ladders/weno/persistent.hpp"
+#include "perf/ladders/weno/port.hpp"
+#include "perf/ladders/weno/registers.hpp"
+#include "perf/ladders/weno/split_precision.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rungs of the WENO ladder in order. Throws std::bad_alloc.
+template <class ExecutionSpace>
+Ladder make_weno(bool small) {
+  const bool host = device::is_host<ExecutionSpace>;
+  const std::int64_t cells = small ? 512 : host ? 4096 : 8192;
+  const long steps = small ? 6 : host ? 10 : 50;
+  const auto problem = std::make_shared<const WenoProblem>(make_weno_problem(cells, steps));
+  return {"weno",
+          "step",
+          "Sod's shock tube by WENO5-JS and SSP-RK3 with steps of one size",
+          cells,
+          steps,
+          {make_rung<PortRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<OnDeviceRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<FusedStagesRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<DifferencesRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<OneDivisionRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<RegistersRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<FusedStepRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<GraphRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<PersistentRung<ExecutionSpace>>(problem, weno_tolerance),
+           make_rung<SplitPrecisionRung<ExecutionSpace>>(problem, weno_tolerance)}};
+}
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "perf/ladders/weno/differences.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Flux by the point functions of the library: weights over a common denominator, one division per side and
+/// field; roots and reciprocals from the approximations of the hardware on a GPU.
+struct OneDivisionFlux {
+  /// Operations per face, counted by tests/kernels/ladders/.
+  static constexpr gas::Arithmetic arithmetic{254, 247, 7, 1, 0};
+
+  template <class R>
+  KOKKOS_FUNCTION static CellState<R> cell(double gamma, const ConservedVector<R>& u) {
+    return gas::cell_state<R>(gamma, u.rho, u.m, u.energy);
+  }
+
+  template <class R>
+  KOKKOS_FUNCTION static ConservedVector<R> face(double gamma, const CellState<R> (&cells)[6]) {
+    const gas::Eigensystem<R> e = gas::eigensystem<R, R>(gamma, 0.5 * (cells[2].u + cells[3].u),
+                                                         0.5 * (cells[2].enthalpy + cells[3].enthalpy));
+    return gas::weno5_face<gas::Reconstruction::js, R>(difference_stencil(cells), e, largest_speeds(cells));
+  }
+};
+
+/// Rung 5. Weights are ratios: multiplied by their common denominator they need one division instead of five
+/// per side and field.
+///
+/// Prediction: of a face's divisions a fifth is left, for some more multiplications.
+template <class ExecutionSpace>
+class OneDivisionRung final : public WenoRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "one-division", "Weights over a common denominator: one division of five.",
+      "The gain is smaller than predicted: the processor overlaps a division with other work, "
+      "so that a division that goes saves less than its own time."};
+
+  static Work work(const WenoProblem& problem) {
+    return stage_work(problem, 1, 9, OneDivisionFlux::arithmetic);
+  }
+
+  using WenoRung<ExecutionSpace>::WenoRung;
+
+ protected:
+  void step() override { launch_stages<OneDivisionFlux>(*this, "drogue::perf::ladder::one_division"); }
+};
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "perf/ladders/weno/library_rung.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 9, GPU only: one launch takes all steps. The state stays in shared memory; tiles exchange halos by
+/// messages that carry their step (kernels/gas/stepping/persistent_step.hpp).
+///
+/// Prediction: one launch for all steps, and no memory traffic to speak of; arithmetic remains.
+template <class ExecutionSpace>
+class PersistentRung final : public LibraryRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "persistent", "One launch for all steps; the state stays in shared memory.",
+      "The model omits waiting: on an H200 two of five microseconds per step pass until the "
+      "fastest signal of all teams has arrived (docs/gas-notebook.md). The record of this "
+      "ladder on a GPU is still to be made."};
+  static constexpr bool available = !device::is_host<ExecutionSpace>;
+
+  static Work work(const WenoProblem& problem) {
+    return library_work(problem, 1.0 / static_cast<double>(problem.steps));
+  }
+
+  explicit PersistentRung(const WenoProblem& problem)
+      : LibraryRung<ExecutionSpace>(problem, gas::Driver::persistent) {}
+};
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "perf/ladders/weno/one_division.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 6. Use the registers. On a GPU launch bounds cap the registers of a thread (128 threads, five teams
+/// per multiprocessor: 96 registers), so that more warps hide each other's latency. A core of a host has one
+/// thread: there the wide registers hold a pack of cells, one per lane.
+///
+/// Prediction: on a host divided by the lanes of a pack. The model of a GPU has no registers: no change.
+template <class ExecutionSpace>
+class RegistersRung final : public WenoRung<ExecutionSpace> {
+  using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+
+ public:
+  static constexpr RungText text{
+      "registers", "Launch bounds on a GPU, packs of cells on a host.",
+      "On a host the gain is half of the number of lanes: six packs of seven numbers overlap "
+      "for every face and are loaded again for the next, and what is left of the divisions and "
+      "roots takes longer in a pack."};
+
+  static Work work(const WenoProblem& problem) {
+    Work work = OneDivisionRung<ExecutionSpace>::work(problem);
+    work.packed = true;
+    return work;
+  }
+
+  using WenoRung<ExecutionSpace>::WenoRung;
+
+ protected:
+  void step() override {
+    launch_stages<OneDivisionFlux, R, Kokkos::LaunchBounds<tile_threads, 5>>(
+        *this, "drogue::perf::ladder::registers");
+  }
+};
+
+}  // namespace drogue::perf::ladder

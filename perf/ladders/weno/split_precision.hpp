@@ -1,0 +1,32 @@
+#pragma once
+
+#include "perf/ladders/weno/library_rung.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 10. Nonlinear weights in single precision, differences, linear flux and update in double. The
+/// corrections are small where the flow is smooth, and so is their error.
+///
+/// Prediction: nine tenths of the operations in single precision, at half the cost: 0.55 of the arithmetic.
+template <class ExecutionSpace>
+class SplitPrecisionRung final : public LibraryRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "split-precision", "Nonlinear terms in single precision.",
+      "On a host this rung loses: conversions and the scaling that keeps products of weights "
+      "within the range of a float cost more than narrow operations save. On an H200 it wins "
+      "from a million cells on (docs/gas-notebook.md)."};
+  static constexpr double tolerance = 1e-5;
+
+  static Work work(const WenoProblem& problem) {
+    const bool host = device::is_host<ExecutionSpace>;
+    Work work = library_work(problem, host ? 2.0 : 1.0 / static_cast<double>(problem.steps));
+    work.flops *= 0.55, work.divisions *= 0.55;
+    return work;
+  }
+
+  explicit SplitPrecisionRung(const WenoProblem& problem)
+      : LibraryRung<ExecutionSpace>(problem, gas::Driver::automatic, gas::Precision::split) {}
+};
+
+}  // namespace drogue::perf::ladder
