@@ -6,8 +6,10 @@
 
 OLD and NEW are folders of programs, such as build/exact/bin. Without --speed, both builds run every shipped scene and
 batch, and datasets, histories and prices are compared byte for byte; needs h5py and builds of the preset `exact`, since
-the compiler chooses fused operations differently. With --speed, both builds alternately run `drogue-perf run --filter
-FILTER`, and `drogue-perf compare` gives the verdicts. The exit code is 1 if a result differs or a case takes longer.
+the compiler chooses fused operations differently. A scene that fails, or writes neither fields nor history, counts as
+different: its bits are unknown. With --speed, both builds alternately run `drogue-perf run --filter FILTER`, and
+the exit code is that of `drogue-perf compare --fail-on slower`. Otherwise it is 1 if a result differs, 2 if nothing was
+compared.
 """
 
 import argparse
@@ -17,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 
-from recording import differing_results, list_scenes, run
+from recording import differing_datasets, list_scenes, run
 
 BATCHES = {
     "example": ["price", "example", "--greeks"],
@@ -30,20 +32,31 @@ BATCHES = {
 }
 
 
+SCENE_PROGRAMS = ("drogue-gas", "drogue-springs", "drogue-parachute")
+
+
 def scene_difference(programs, scene, backend, work):
     """Names of the datasets that differ between the runs of one scene, or the reason why they cannot be compared."""
     folders = [work / f"{scene}-{side}" for side in ("old", "new")]
-    results = [
-        run(program, scene, backend, folder) for program, folder in zip(programs, folders, strict=True)
-    ]
-    codes = [result["exit_code"] for result in results]
-    if codes[0] != codes[1]:
-        return [f"exit codes {codes}: {results[1]['message']}"]
-    different = differing_results(*folders) if (folders[0] / "fields.h5").exists() else []
-    histories = [
-        (folder / "history.csv").read_bytes() for folder in folders if (folder / "history.csv").exists()
-    ]
-    return different + (["history.csv"] if len(set(histories)) > 1 else [])
+    for program, folder in zip(programs, folders, strict=True):
+        result = run(program, scene, backend, folder)
+        if result["exit_code"] != 0:
+            return [f"exit code {result['exit_code']} of {program}: {result['message']}"]
+    different, compared = [], False
+    for file, difference in (("fields.h5", differing_datasets), ("history.csv", differing_bytes)):
+        files = [folder / file for folder in folders]
+        present = [path.exists() for path in files]
+        if all(present):
+            different += difference(*files)
+            compared = True
+        elif any(present):
+            different.append(f"{file} of one build alone")
+    return different if compared or different else ["neither fields nor history"]
+
+
+def differing_bytes(first, second):
+    """The name of two files, if they differ."""
+    return [] if first.read_bytes() == second.read_bytes() else [first.name]
 
 
 def batch_difference(programs, words, backend, work):
@@ -59,30 +72,30 @@ def batch_difference(programs, words, backend, work):
     return [] if prices[0] is not None and prices[0] == prices[1] else ["prices"]
 
 
+def cases_of(program):
+    """Comparison and its argument of each scene or batch of a program, by name."""
+    if program.name == "drogue-options":
+        return {batch: (batch_difference, words) for batch, words in BATCHES.items()}
+    # NAME-full repeats the scene NAME on a fine mesh for GPUs and is skipped.
+    return {s: (scene_difference, s) for s in list_scenes(program) if not s.endswith("-full")}
+
+
 def compare_bits(old, new, backend, only):
-    """Prints a line per scene and batch; returns the number of those that differ."""
-    count = 0
+    """Prints a line per scene and batch; returns their number and that of those that differ."""
+    compared = count = 0
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        for name in ("drogue-gas", "drogue-springs", "drogue-options"):
+        for name in (*SCENE_PROGRAMS, "drogue-options"):
             programs = [old / name, new / name]
-            if name == "drogue-options":
-                cases = {batch: (batch_difference, words) for batch, words in BATCHES.items()}
-            else:
-                # NAME-full repeats the scene NAME on a fine mesh for GPUs and is skipped.
-                cases = {
-                    s: (scene_difference, s) for s in list_scenes(programs[1]) if not s.endswith("-full")
-                }
-            for case, (difference, argument) in cases.items():
+            for case, (difference, argument) in cases_of(programs[1]).items():
                 if not re.search(only, f"{name}/{case}"):
                     continue
                 different = difference(programs, argument, backend, work)
-                print(
-                    f"{name} {case}: {'different: ' + ', '.join(different[:5]) if different else 'the same bits'}",
-                    flush=True,
-                )
+                words = f"different: {', '.join(different[:5])}" if different else "the same bits"
+                print(f"{name} {case}: {words}", flush=True)
+                compared += 1
                 count += bool(different)
-    return count
+    return compared, count
 
 
 def compare_speed(old, new, pattern, rounds):
@@ -119,8 +132,12 @@ def main():
     arguments = parser.parse_args()
     old, new = arguments.old.resolve(), arguments.new.resolve()
     if arguments.speed is not None:
-        return 1 if compare_speed(old, new, arguments.speed, arguments.rounds) else 0
-    return 1 if compare_bits(old, new, arguments.backend, arguments.only) else 0
+        return compare_speed(old, new, arguments.speed, arguments.rounds)
+    compared, different = compare_bits(old, new, arguments.backend, arguments.only)
+    if compared == 0:
+        print("nothing was compared: no case has such a name", file=sys.stderr)
+        return 2
+    return 1 if different else 0
 
 
 if __name__ == "__main__":

@@ -43,18 +43,20 @@ def differing_datasets(first, second):
     """Names of the datasets of two fields.h5 that are not bitwise equal; `no dataset` if there are none."""
     import h5py
 
-    different = []
-    with h5py.File(first) as a, h5py.File(second) as b:
-        names = []
-        a["steps"].visititems(
-            lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None
-        )
-        for name in names:
-            if a["steps"][name][...].tobytes() != b["steps"][name][...].tobytes():
-                different.append(name)
-        if not names:
-            different.append("no dataset")
-    return different
+    def bits_of(file):
+        """Bytes of each dataset of the steps, by name."""
+        found = {}
+        with h5py.File(file) as fields:
+            fields["steps"].visititems(
+                lambda name, item: found.update({name: item[...].tobytes()})
+                if isinstance(item, h5py.Dataset)
+                else None
+            )
+        return found
+
+    bits = [bits_of(file) for file in (first, second)]
+    names = sorted(bits[0].keys() | bits[1].keys())
+    return [name for name in names if bits[0].get(name) != bits[1].get(name)] if names else ["no dataset"]
 
 
 def differing_results(first, second):

@@ -30,7 +30,7 @@ class Failure : public std::runtime_error {
 
 /// Returns `make()`. Converts std::invalid_argument to a `Failure` (usage).
 template <class Make>
-auto made_as_asked(const Make& make) {
+auto with_usage_error(const Make& make) {
   try {
     return make();
   } catch (const std::invalid_argument& refused) {

@@ -106,11 +106,6 @@ void Metrics::set(const std::string& group, const std::string& name, Value value
     found->second = std::move(value);
 }
 
-void set_no_limiter(Metrics& metrics) {
-  for (const char* count : {"touches", "cells", "redone_steps"})
-    metrics.set("limiter", count, std::int64_t{0});
-}
-
 std::int64_t Metrics::integer(const std::string& group, const std::string& name) const {
   for (const Group& each : _groups)
     if (each.name == group)

@@ -48,9 +48,6 @@ class Metrics {
   std::vector<Group> _groups;
 };
 
-/// Sets the counts of a flux limiter to zero, for a program without one: result.json has them by its schema.
-void set_no_limiter(Metrics& metrics);
-
 /// Content of result.json, schema `drogue.result/1`. Non-finite numbers are written as null.
 struct ResultDocument {
   std::string program, version, git, scene, backend, device;
@@ -79,19 +76,6 @@ struct ResultDocument {
   struct Provenance {
     std::string compiler, flags, kokkos, cpu, gpu, driver, date;
   } provenance;
-
-  /// Fills in backend, device, threads and driver. `Facts` is device::DeviceFacts, which this layer does not
-  /// include.
-  template <class Facts>
-  void describe_device(const std::string& name_of_backend, const Facts& facts) {
-    backend = name_of_backend;
-    threads = backend == "openmp" ? facts.threads : 1;
-    const bool on_host = backend == "serial" || backend == "openmp";
-    device = on_host ? provenance.cpu : facts.gpu;
-    provenance.kokkos = facts.kokkos_version;
-    provenance.gpu = facts.gpu;
-    provenance.driver = facts.driver;
-  }
 
   /// Fills in the profiling counters. `Counters` is device::ProfilingCounters, which this layer does not
   /// include.

@@ -60,9 +60,9 @@ std::string read_reals(const Node& node, const Limits& limits, bool increasing, 
 }  // namespace
 
 bool Limits::allow(double value) const {
-  const bool low_held = low_excluded ? value > low : value >= low;
-  const bool high_held = high_excluded ? value < high : value <= high;
-  return low_held && high_held;
+  const bool low_holds = low_excluded ? value > low : value >= low;
+  const bool high_holds = high_excluded ? value < high : value <= high;
+  return low_holds && high_holds;
 }
 
 std::string Limits::text() const {

@@ -89,6 +89,14 @@ Codec integer_codec(T& value) {
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
+/// Name of a value in scenes; empty for a value without one.
+template <class T>
+std::string choice_name(const Choices<T>& choices, T value) {
+  for (const auto& [name, meaning] : choices)
+    if (meaning == value) return name;
+  return {};
+}
+
 /// One of several names, each standing for a value. `Place` is T or std::optional<T>.
 template <class T, class Place>
 Codec choice_codec(Place& value, const Choices<T>& choices) {

@@ -344,7 +344,7 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
   copy_to_points(space, p.mesh.rest, _x);
   device::copy(space, _saved_x, _x);
   reset_monitor();
-  if (p.contact.asked_for())
+  if (p.contact.is_enabled())
     _contact =
         make_contact<ExecutionSpace>(p, {_instance, _fabric.inverse_mass, _fabric.fixed_dofs, _monitor});
   make_drivers();

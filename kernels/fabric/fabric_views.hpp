@@ -289,14 +289,15 @@ KOKKOS_INLINE_FUNCTION StatePair<Vector3<R>> elastic_forces(const Fabric& fabric
                                                             const Second& second, int i) {
   StatePair<Vector3<R>> sum{{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}};
   if constexpr (whole_triangles<model>) {
-    using Spokes = StatePair<EdgeVector<R>>;
+    using EdgeVectors = StatePair<EdgeVector<R>>;
     const StatePair<Vector3<R>> own{load_points<R>(first, i), load_points<R>(second, i)};
     each_side_by_side<R>(
         fabric, i,
         [&](typename device::Access<R>::Index neighbour) {
-          return Spokes{edge_to<R>(first, own.first, neighbour), edge_to<R>(second, own.second, neighbour)};
+          return EdgeVectors{edge_to<R>(first, own.first, neighbour),
+                             edge_to<R>(second, own.second, neighbour)};
         },
-        [&](const Spokes& j, const Spokes& k, const RestTriangle<R>& rest) {
+        [&](const EdgeVectors& j, const EdgeVectors& k, const RestTriangle<R>& rest) {
           sum.first = sum.first + triangle_pull<model>(fabric.moduli, j.first, k.first, rest);
           sum.second = sum.second + triangle_pull<model>(fabric.moduli, j.second, k.second, rest);
         });

@@ -102,7 +102,7 @@ struct Contact {
   int interval = 1;
 
   /// True if there is contact with bodies or itself. Does not throw.
-  [[nodiscard]] bool asked_for() const { return self || !bodies.empty(); }
+  [[nodiscard]] bool is_enabled() const { return self || !bodies.empty(); }
 };
 
 /// Parameters of a fabric solver, without the initial state.

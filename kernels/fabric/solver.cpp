@@ -19,7 +19,7 @@ namespace {
 template <class Require>
 void check_contact(const Parameters& p, const Require& require) {
   const Contact& contact = p.contact;
-  if (!contact.asked_for()) return;
+  if (!contact.is_enabled()) return;
   const auto not_negative = [](double x) { return x >= 0.0 && std::isfinite(x); };
   require(contact.thickness > 0.0 && std::isfinite(contact.thickness), "contact needs a positive thickness");
   require(!contact.self || contact.thickness < shortest_altitude(p.mesh),

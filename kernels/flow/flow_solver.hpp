@@ -170,7 +170,7 @@ class FlowSolver {
   void solve_present_pressure();
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   void make_poisson();
-  Stop advance_together(const stepping::AdvanceRequest& request, const Poll& poll);
+  Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
   void finish_ghosts(const ExecutionSpace& space, const Values& velocity) const;
   void enqueue_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) const;
@@ -640,7 +640,7 @@ void FlowSolver<ExecutionSpace>::limit_first_step(double target) {
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
   limit_first_step(target);
-  const Stop stop = _halo ? advance_together({target, pause_step}, poll)
+  const Stop stop = _halo ? advance_collectively({target, pause_step}, poll)
                           : _loop.advance({target, pause_step}, Steps{*this}, poll);
   if (stop == Stop::failed && _boundary.changes()) {
     _boundary.enqueue_evaluation(space(), _control, {0.0, true});
@@ -740,22 +740,23 @@ void FlowSolver<ExecutionSpace>::forget_long_step() {
 
 /// Step loop of several ranks: step by step, so that all take the same steps.
 template <class ExecutionSpace>
-Stop FlowSolver<ExecutionSpace>::advance_together(const stepping::AdvanceRequest& request, const Poll& poll) {
+Stop FlowSolver<ExecutionSpace>::advance_collectively(const stepping::AdvanceRequest& request,
+                                                      const Poll& poll) {
   const auto goes_on = [&] { return _halo->group().all(!poll || poll(_loop.status())); };
   if (!goes_on()) return Stop::interrupted;
   Steps steps{*this};
   steps.begin(request, -1);
   _loop.count_launch();
-  space().fence("drogue::flow::advance_together: begun");
+  space().fence("drogue::flow::advance_collectively: begun");
   bool interrupted = false;
   while (_loop.status().stop == Stop::running && !interrupted) {
     steps.enqueue(0, 1);
     _loop.count_launch();
-    space().fence("drogue::flow::advance_together: stepped");
+    space().fence("drogue::flow::advance_collectively: stepped");
     interrupted = _loop.status().stop == Stop::running && !goes_on();
   }
   finish_ghosts(space(), _velocity);
-  space().fence("drogue::flow::advance_together: stopped");
+  space().fence("drogue::flow::advance_collectively: stopped");
   return interrupted ? Stop::interrupted : _loop.status().stop;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -7,7 +8,6 @@
 #include "kernels/device/backend.hpp"
 #include "kernels/gas/parameters.hpp"
 #include "kernels/gas/status.hpp"
-#include "kernels/gas/step_work.hpp"
 
 namespace drogue::gas {
 
@@ -17,6 +17,13 @@ struct ConservedFields {
 };
 struct ConstConservedFields {
   std::span<const double> rho, momentum, energy;
+};
+
+/// Decomposition of the mesh into tiles.
+struct Tiling {
+  std::int64_t cells = 0;  ///< cells that a tile updates
+  int halo = 0;            ///< cells that a tile reads beyond them on either side
+  bool fused = false;      ///< one kernel for all stages, otherwise one kernel per stage
 };
 
 /// Wall times of transfers and computation, s (columns of [Shi], table 5.5). Only the baseline solver

@@ -19,7 +19,7 @@
 // A new solver with a variable dt:
 //
 //   struct Steps {                                     // adaptor that StepLoop::advance calls
-//     FlowSolver& s;
+//     MySolver& s;
 //     void begin(const AdvanceRequest& r, std::int64_t output_step) {      // kernel of one thread:
 //       s.launch_one_thread(BeginFunctor{s._control, s._loop.status_view(), r, output_step});
 //     }                                                // begin_advance, set_dt, publish_status
@@ -30,7 +30,7 @@
 //     }                                                // last kernel: advance_time, continues, set_dt,
 //   };                                                 // publish_status
 //
-//   Stop FlowSolver::advance(double target, const Poll& poll) {
+//   Stop MySolver::advance(double target, const Poll& poll) {
 //     return _loop.advance({target}, Steps{*this}, poll);
 //   }
 //
@@ -41,7 +41,7 @@
 // A new solver with a constant dt, which takes no decisions on the device:
 //
 //   struct Steps {                                     // adaptor that StepLoop::enqueue_steps calls
-//     FlowSolver& s;
+//     MySolver& s;
 //     void enqueue(std::int64_t count) {                                   // asynchronous
 //       if (s._launcher.is_persistent()) return s.launch_persistent(count);
 //       // The kernels of a step count it in StepMonitor::steps.
@@ -54,10 +54,10 @@
 //     }
 //   };
 //
-//   bool FlowSolver::enqueue_steps(std::int64_t count) {                   // false after a failure
+//   bool MySolver::enqueue_steps(std::int64_t count) {                   // false after a failure
 //     return _loop.enqueue_steps(_time.step, count, checkpoint_interval, Steps{*this});
 //   }
-//   void FlowSolver::synchronize() {                                       // blocks
+//   void MySolver::synchronize() {                                       // blocks
 //     const auto failure = _checkpoint.roll_back_after_failure(space(), _monitor, [&] { copy(_u, _saved); });
 //     if (failure) _time.step = failure->checkpoint_step;
 //   }

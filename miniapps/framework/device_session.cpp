@@ -13,12 +13,18 @@ device::Backend choose_backend(const std::string& option) {
 
 DeviceSession::DeviceSession(device::Backend backend, const std::vector<std::string>& kokkos_arguments)
     : _backend(backend),
-      _runtime(made_as_asked([&] { return std::make_unique<device::Runtime>(kokkos_arguments); })) {
+      _runtime(with_usage_error([&] { return std::make_unique<device::Runtime>(kokkos_arguments); })) {
   device::start_profiling();
 }
 
 void DeviceSession::describe(run::ResultDocument& result) const {
-  result.describe_device(std::string(device::name(_backend)), device::device_facts());
+  const device::DeviceFacts facts = device::device_facts();
+  result.backend = device::name(_backend);
+  result.threads = _backend == device::Backend::openmp ? facts.threads : 1;
+  result.device = device::needs_device(_backend) ? facts.gpu : result.provenance.cpu;
+  result.provenance.kokkos = facts.kokkos_version;
+  result.provenance.gpu = facts.gpu;
+  result.provenance.driver = facts.driver;
 }
 
 }  // namespace drogue::framework

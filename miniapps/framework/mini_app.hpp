@@ -22,20 +22,20 @@ struct MiniApp {
   /// `Failure`: usage, invalid_scene.
   std::function<std::unique_ptr<Scene>(const std::filesystem::path& file,
                                        const std::vector<std::string>& assignments, bool baseline)>
-      read;
+      read = {};
 
   /// Runs `--study` on a scene file; empty: the program has no studies.
-  std::function<ExitCode(const MiniAppOptions& options, const std::filesystem::path& file)> study;
+  std::function<ExitCode(const MiniAppOptions& options, const std::filesystem::path& file)> study = {};
 
   /// Work of the ranks other than 0, until they receive the empty message that rank 0 broadcasts at its end;
   /// empty: the program runs on one rank. Rank 0 runs scenes with `SimulationSettings::communicator`.
-  std::function<void(Communicator& communicator, const MiniAppOptions& options)> serve;
+  std::function<void(Communicator& communicator, const MiniAppOptions& options)> serve = {};
 
   /// Groups of result.json that exist however the run ends.
-  run::Metrics metrics;
+  run::Metrics metrics = {};
 
   /// Text behind the printed line on the steps; may be empty.
-  std::function<std::string(const run::ResultDocument&)> summary;
+  std::function<std::string(const run::ResultDocument&)> summary = {};
 
   [[nodiscard]] std::string program() const { return "drogue-" + name; }
 };

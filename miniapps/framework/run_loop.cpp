@@ -46,10 +46,10 @@ class RunLoop {
   void open_files() {
     if (_request.files.directory != nullptr) _output.emplace(_simulation, _request.files);
     if (_output && _output->lacks_row(_now.time)) _output->write_row(_simulation.row());
-    if (_request.files.restart.empty() && is_output_time(_wanted, _now.time)) reach_output();
+    if (_request.files.restart.empty() && is_output_time(_wanted, _now.time)) write_output_now();
   }
 
-  void reach_output() {
+  void write_output_now() {
     if (_output) _output->write_fields();
     if (_request.at_output) _request.at_output();
   }
@@ -76,7 +76,7 @@ class RunLoop {
     if (!_warm) device::end_warmup();
     _warm = true;
     _now = _simulation.now();
-    if (_now.time == limits.target_time && is_output_time(_wanted, _now.time)) reach_output();
+    if (_now.time == limits.target_time && is_output_time(_wanted, _now.time)) write_output_now();
     const bool can_continue = _stop != Stop::target || _simulation.plan_next_interval();
     if (_output && _wanted.restart_every > 0 && _now.step % _wanted.restart_every == 0 && !ended())
       _output->write_restart();

@@ -1,9 +1,11 @@
 #include "miniapps/framework/run_output.hpp"
 
 #include <fstream>
+#include <memory>
 #include <utility>
 
 #include "common/program/stopwatch.hpp"
+#include "common/run/fields/fields_writer.hpp"
 #include "common/run/files/io_error.hpp"
 
 namespace drogue::framework {
@@ -47,7 +49,8 @@ RunOutput::RunOutput(Simulation& simulation, const RunFiles& files)
     if (_history->continues()) _last_row_time = *resume_time;
   }
   if (simulation.output().fields.empty()) return;
-  _fields.emplace(files.directory->path(), files.title, simulation.field_specs(), resume_time);
+  _fields = std::make_unique<run::FieldsWriter>(files.directory->path(), files.title,
+                                                simulation.field_specs(), resume_time);
   simulation.write_mesh(*_fields);
 }
 

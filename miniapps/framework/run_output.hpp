@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -53,7 +54,7 @@ class RunOutput {
   std::filesystem::path _restart_file;
   std::string _fingerprint;
   std::optional<run::HistoryWriter> _history;
-  std::optional<run::FieldsWriter> _fields;
+  std::unique_ptr<run::FieldSink> _fields;
   double _last_row_time = -1.0;
   double _waited = 0.0;
   run::BackgroundWriter _writer;  // last: its thread uses the others until it ends

@@ -9,7 +9,7 @@
 #include "common/program/communicator.hpp"
 #include "common/program/failure.hpp"
 #include "common/run/fields/dataset_spec.hpp"
-#include "common/run/fields/fields_writer.hpp"
+#include "common/run/fields/field_sink.hpp"
 #include "common/run/history_writer.hpp"
 #include "common/run/restart/restart_file.hpp"
 #include "common/run/result_document.hpp"
@@ -55,7 +55,7 @@ using Poll = std::function<bool(const TimeState&)>;
 
 /// Writes the fields of one output between `begin_step` and `end_step` of the writer. It runs on the writer's
 /// thread while the simulation takes further steps, unless `Simulation::writes_on_calling_thread`.
-using FieldsTask = std::function<void(run::FieldsWriter&)>;
+using FieldsTask = std::function<void(run::FieldSink&)>;
 
 /// One run of a scene, from its start or a restart file to its end. Every function blocks until its result is
 /// on the host. Every function may throw `Failure`.
@@ -101,7 +101,7 @@ class Simulation {
   [[nodiscard]] virtual std::vector<run::DatasetSpec> field_specs() const { return {}; }
 
   /// Adds the datasets of `/mesh`.
-  virtual void write_mesh(run::FieldsWriter&) const {}
+  virtual void write_mesh(run::FieldSink&) const {}
 
   /// Number of snapshots that may exist at once.
   [[nodiscard]] virtual std::size_t snapshot_buffers() const { return 2; }
@@ -111,7 +111,7 @@ class Simulation {
 
   /// Copies the fields of the current state, and returns the task that writes the copy.
   [[nodiscard]] virtual FieldsTask snapshot() {
-    return [](run::FieldsWriter&) {};
+    return [](run::FieldSink&) {};
   }
 
   /// One sentence on the failure. `restart_written`: restart.h5 holds the last good state.

@@ -10,6 +10,7 @@
 #include "common/run/files/output_path.hpp"
 #include "common/run/result_document.hpp"
 #include "miniapps/framework/device_session.hpp"
+#include "miniapps/framework/metrics.hpp"
 #include "miniapps/options/input/shipped_batches.hpp"
 #include "miniapps/options/output/summary.hpp"
 #include "miniapps/options/parallel/rank_pricing.hpp"
@@ -52,7 +53,7 @@ std::unique_ptr<options::Pricer> create_rank_pricer(device::Backend backend, opt
                                                     const Communicator& communicator) {
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   settings.host_threads = std::max(1, cores / communicator.ranks_on_host());
-  return made_as_asked([&] { return options::create_pricer(backend, settings); });
+  return with_usage_error([&] { return options::create_pricer(backend, settings); });
 }
 
 /// One batch and its result document.
@@ -64,7 +65,7 @@ class BatchRun {
         _input(input),
         _result(run::new_result("drogue-options", input.stem().string())) {
     _result.metrics.add_group("counts");
-    run::set_no_limiter(_result.metrics);
+    framework::set_no_limiter(_result.metrics);
     _result.ranks = communicator.size();
   }
 

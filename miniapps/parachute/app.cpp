@@ -1,5 +1,6 @@
 #include "miniapps/parachute/app.hpp"
 
+#include "miniapps/framework/metrics.hpp"
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/parachute/parallel/serve.hpp"
 #include "miniapps/parachute/scene/scene_keys.hpp"
@@ -41,7 +42,7 @@ framework::MiniApp mini_app() {
   app.read = read;
   app.study = run_study;
   app.serve = serve;
-  run::set_no_limiter(app.metrics);
+  framework::set_no_limiter(app.metrics);
   return app;
 }
 

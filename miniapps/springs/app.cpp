@@ -1,6 +1,7 @@
 #include "miniapps/springs/app.hpp"
 
 #include "kernels/mesh/quality.hpp"
+#include "miniapps/framework/metrics.hpp"
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/springs/scene/scene_keys.hpp"
 #include "miniapps/springs/simulation/simulation.hpp"
@@ -28,7 +29,7 @@ framework::MiniApp mini_app() {
   };
   app.study = run_study;
   app.metrics.add_group("energy");
-  run::set_no_limiter(app.metrics);
+  framework::set_no_limiter(app.metrics);
   return app;
 }
 

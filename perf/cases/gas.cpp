@@ -4,6 +4,7 @@
 #include "kernels/gas/solver.hpp"
 #include "kernels/reference/gas/dense_step.hpp"
 #include "perf/cases/cases.hpp"
+#include "perf/models/gas_step.hpp"
 #include "perf/problems/sod.hpp"
 
 namespace drogue::perf {
@@ -85,7 +86,7 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
           [=] { return sod::l1_error(p, **solver); },
           sod::tolerance(p),
           [=] {
-            const gas::StepWork work = gas::step_work(p, (*solver)->tiling());
+            const StepWork work = step_work(p, (*solver)->tiling());
             return Facts{name, cells, variant.name, static_cast<double>(work.arithmetic.flops()),
                          static_cast<double>(work.bytes)};
           }};

@@ -56,8 +56,8 @@ Case case_of(device::Backend backend, Form form, int cells, int block) {
                            std::to_string(block) + "/" + std::to_string(cells);
   if (form == Form::fused) return fused_case(name, backend, p);
   return baseline_case(name, "launch latency, and blocks that wait for room", backend, p,
-                       [](const gas::PhaseTimes& spent) {
-                         return std::map<std::string, double>{{"compute", spent.compute}};
+                       [](const gas::PhaseTimes& times) {
+                         return std::map<std::string, double>{{"compute", times.compute}};
                        });
 }
 

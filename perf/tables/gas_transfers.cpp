@@ -35,9 +35,9 @@ Case case_of(device::Backend backend, const GasTransfer& row) {
                            std::to_string(p.cells),
                        backend == device::Backend::cuda ? "latency of copies between host and device"
                                                         : "memory and FP64 issue of the cores",
-                       backend, p, [](const gas::PhaseTimes& spent) {
+                       backend, p, [](const gas::PhaseTimes& times) {
                          return std::map<std::string, double>{
-                             {"h2d", spent.h2d}, {"compute", spent.compute}, {"d2h", spent.d2h}};
+                             {"h2d", times.h2d}, {"compute", times.compute}, {"d2h", times.d2h}};
                        });
 }
 

@@ -21,13 +21,13 @@ class Fault(gas_program.GasTest):
         self.assertTrue(found, run.stderr)
         self.assertEqual(tolerance, float(found[2]))
         self.assertGreater(float(found[1]), tolerance)
-        told = self.result("run")
-        self.assertEqual(("verification-failed", 5), (told["status"], told["exit_code"]))
-        self.assertIn(told["message"], run.stderr)
-        check = next(check for check in told["checks"] if check["name"] == name)
+        reported = self.result("run")
+        self.assertEqual(("verification-failed", 5), (reported["status"], reported["exit_code"]))
+        self.assertIn(reported["message"], run.stderr)
+        check = next(check for check in reported["checks"] if check["name"] == name)
         self.assertEqual((False, tolerance), (check["passed"], check["tolerance"]))
         self.assertAlmostEqual(check["value"], float(found[1]), delta=1e-5 * check["value"])
-        others = [other for other in told["checks"] if other is not check]
+        others = [other for other in reported["checks"] if other is not check]
         self.assertTrue(all(other["passed"] for other in others), others)
         for file in ("scene.toml", "history.csv", "fields.h5", "fields.xdmf"):
             self.assertTrue((self.folder / "run" / file).exists(), file)

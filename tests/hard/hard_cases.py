@@ -32,7 +32,7 @@ def label(row):
     return " ".join(row.get(key, "") for key in ("case", "scheme", "N", "splitting", "reference")).strip()
 
 
-def bar_sets(row):
+def tolerance_sets(row):
     """`row_sets` and the tolerance: 5 % above the error, or 2 % around the largest density."""
     tolerance = float(row["tolerance"])
     if row["quantity"] == "max_density":

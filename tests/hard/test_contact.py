@@ -18,8 +18,8 @@ class StationaryContact(gas_program.GasTest):
     def assert_kept(self, backend, *sets):
         self.expect(0, "contact-stationary", "--quiet", "--overwrite", "--out", "run", "--backend", backend,
                     sets=[*sets, *BARS, "output.times=[0.0, 2.0]"])
-        told = self.result("run")
-        self.assertTrue(told["steps"] > 100 and all(value == 0.0 for value in told["errors"].values()))
+        reported = self.result("run")
+        self.assertTrue(reported["steps"] > 100 and all(value == 0.0 for value in reported["errors"].values()))
         file = gas_program.fields(self.folder / "run")
         first, last = file.children("/steps")
         for field in ("rho", "u", "p"):

@@ -26,22 +26,22 @@ class Failures(gas_program.GasTest):
         found = MESSAGE.search(message)
         self.assertTrue(found, message)
         self.assertIn('scheme.positivity = "auto"', message)
-        told = self.result("run")
-        self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
-        self.assertIn(told["message"], message)
-        self.assertEqual(told["steps"] + 1, int(found["step"]))
-        self.assertAlmostEqual(told["time"], float(found["time"]), delta=1e-8 * told["time"])
+        reported = self.result("run")
+        self.assertEqual(("numerical-failure", 4), (reported["status"], reported["exit_code"]))
+        self.assertIn(reported["message"], message)
+        self.assertEqual(reported["steps"] + 1, int(found["step"]))
+        self.assertAlmostEqual(reported["time"], float(found["time"]), delta=1e-8 * reported["time"])
         cells, cell = int(row["N"]), int(found["cell"])
         self.assertLess(cell, cells)
         self.assertAlmostEqual(x_min + (cell + 0.5) * (x_max - x_min) / cells, float(found["x"]), places=7)
-        self.assert_good_state(cells, told)
+        self.assert_good_state(cells, reported)
 
-    def assert_good_state(self, cells, told):
+    def assert_good_state(self, cells, reported):
         """restart.h5 holds a physical state at the time in result.json."""
         file = gas_program.fields(self.folder / "run", "restart.h5")
         rho, momentum, energy = (file.values(f"/{name}") for name in ("rho", "momentum", "energy"))
         self.assertEqual(cells, len(rho))
-        self.assertEqual((told["steps"], told["time"]), (file.attributes["/"]["step"], file.attributes["/"]["time"]))
+        self.assertEqual((reported["steps"], reported["time"]), (file.attributes["/"]["step"], file.attributes["/"]["time"]))
         for density, flow, total in zip(rho, momentum, energy):
             self.assertGreater(density, 0.0)
             self.assertGreater(total - 0.5 * flow * flow / density, 0.0)
@@ -79,11 +79,11 @@ class Failures(gas_program.GasTest):
                 words = ["--quiet", "--overwrite", "--out", "run", "--backend", "serial"]
                 run = self.start(hard_cases.unverified(self, row["case"]), *words, sets=sets)
                 self.assertEqual(0, run.returncode, run.stderr)
-                told = self.result("run")
-                self.assertGreater(told["limiter"]["redone_steps"], 0)
-                self.assertGreater(told["limiter"]["touches"], 0)
-                self.assertGreater(told["limiter"]["cells"], 0)
-                self.assertEqual(["conservation"], [check["name"] for check in told["checks"]])
+                reported = self.result("run")
+                self.assertGreater(reported["limiter"]["redone_steps"], 0)
+                self.assertGreater(reported["limiter"]["touches"], 0)
+                self.assertGreater(reported["limiter"]["cells"], 0)
+                self.assertEqual(["conservation"], [check["name"] for check in reported["checks"]])
 
 
 if __name__ == "__main__":

@@ -30,9 +30,9 @@ class Shipped(parachute_program.FlowTest):
         for scene in scenes:
             with self.subTest(scene):
                 self.expect(0, scene, "--backend", backend)
-                told = self.result(f"out/{scene}")
-                self.assertEqual(("ok", backend, scene), (told["status"], told["backend"], told["scene"]))
-                self.assertGreaterEqual(len(told["checks"]), 1)
+                reported = self.result(f"out/{scene}")
+                self.assertEqual(("ok", backend, scene), (reported["status"], reported["backend"], reported["scene"]))
+                self.assertGreaterEqual(len(reported["checks"]), 1)
 
     def test_serial_meets_the_tolerances(self):
         left_out = MINUTES_SERIALLY | OTHER_PARACHUTES
@@ -77,10 +77,10 @@ class HardCases(parachute_program.FlowTest):
         self.expect(0, self.write(text), "--quiet", "--backend", "serial", "--out", "out", "--overwrite", sets=sets)
         return self.result("out")
 
-    def test_cells_of_aspect_ratio_ten(self):
+    def test_converges_on_cells_of_aspect_ratio_ten(self):
         self.run_box([40, 4, 40], (1, 1, 1), sets=[SOUND])
 
-    def test_courant_number_one(self):
+    def test_is_stable_at_courant_number_one(self):
         self.run_box([24, 24, 24], cfl=1.0, sets=["flow.time=rk3", SOUND])
 
     def test_reynolds_number_of_a_million_on_a_coarse_grid(self):
@@ -104,9 +104,9 @@ class HardCases(parachute_program.FlowTest):
 
     def test_many_steps_keep_the_mean_velocity(self):
         """1e5 steps of vortices in a stream."""
-        told = self.run_box([8, 8, 1], velocity='["1+0.5*sin(2*pi*y)", "0.5*sin(2*pi*x)", 0]', viscosity=0.0, end=1e9,
+        reported = self.run_box([8, 8, 1], velocity='["1+0.5*sin(2*pi*y)", "0.5*sin(2*pi*x)", 0]', viscosity=0.0, end=1e9,
                             sets=["run.end_time=100", "run.dt=0.001", "flow.advection=weno5", "verify={momentum=1e-12}"])
-        self.assertGreaterEqual(told["steps"], 100_000)
+        self.assertGreaterEqual(reported["steps"], 100_000)
 
     def test_backflow_at_an_outflow_stays_bounded(self):
         """A strong vortex crosses the outflow, which draws fluid in over half of its height."""

@@ -28,11 +28,11 @@ class HardCases(options_program.OptionsTest):
         self.expect(0, "price", "hard_cases", "--backend", "serial", "--quiet")
         self.priced = {row["id"]: row for row in self.prices()}
 
-    def test_table(self):
+    def test_every_contract_has_a_price(self):
         self.assertEqual(list(EXPECTED), list(CONTRACTS))
         self.assertGreaterEqual(len(EXPECTED), 40)
 
-    def test_tolerances(self):
+    def test_prices_meet_their_tolerances(self):
         for name, expected in EXPECTED.items():
             if expected["price"]:
                 with self.subTest(name):

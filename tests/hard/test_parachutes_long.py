@@ -18,9 +18,9 @@ class ShippedParachutes(parachute_program.FlowTest):
         for scene in parachute_program.CANOPIES:
             with self.subTest(scene):
                 self.expect(0, scene, "--backend", "openmp")
-                told = self.result(f"out/{scene}")
-                self.assertEqual(("ok", scene), (told["status"], told["scene"]))
-                self.assertGreaterEqual(len(told["checks"]), 3)
+                reported = self.result(f"out/{scene}")
+                self.assertEqual(("ok", scene), (reported["status"], reported["scene"]))
+                self.assertGreaterEqual(len(reported["checks"]), 3)
 
     def inflated(self, law):
         """Mean drag, relative deviation of the area and mean lateral force over the mean drag of porous-c9, with a law."""

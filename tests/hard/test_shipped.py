@@ -15,11 +15,11 @@ class Shipped(gas_program.GasTest):
         for scene in gas_program.SCENES:
             with self.subTest(scene):
                 self.expect(0, scene, "--backend", backend)
-                told = self.result(f"out/{scene}")
-                self.assertEqual(("ok", backend, scene), (told["status"], told["backend"], told["scene"]))
-                self.assertIn("conservation", [check["name"] for check in told["checks"]])
-                self.assertGreaterEqual(len(told["checks"]), 2)
-                self.assertTrue(all(check["passed"] and check["value"] <= check["tolerance"] for check in told["checks"]))
+                reported = self.result(f"out/{scene}")
+                self.assertEqual(("ok", backend, scene), (reported["status"], reported["backend"], reported["scene"]))
+                self.assertIn("conservation", [check["name"] for check in reported["checks"]])
+                self.assertGreaterEqual(len(reported["checks"]), 2)
+                self.assertTrue(all(check["passed"] and check["value"] <= check["tolerance"] for check in reported["checks"]))
                 outputs = gas_program.fields(self.folder / "out" / scene).children("/steps")
                 self.assertGreaterEqual(len(outputs), 2)
 

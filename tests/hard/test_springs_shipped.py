@@ -22,10 +22,10 @@ class Shipped(springs_program.SpringsTest):
         for scene in scenes:
             with self.subTest(scene):
                 self.expect(0, scene, "--backend", backend)
-                told = self.result(f"out/{scene}")
-                self.assertEqual(("ok", backend, scene), (told["status"], told["backend"], told["scene"]))
-                self.assertGreaterEqual(len(told["checks"]), 1)
-                self.assertTrue(all(check["passed"] and check["value"] <= check["tolerance"] for check in told["checks"]))
+                reported = self.result(f"out/{scene}")
+                self.assertEqual(("ok", backend, scene), (reported["status"], reported["backend"], reported["scene"]))
+                self.assertGreaterEqual(len(reported["checks"]), 1)
+                self.assertTrue(all(check["passed"] and check["value"] <= check["tolerance"] for check in reported["checks"]))
 
     def test_serial_meets_the_tolerances(self):
         self.assert_all_pass("serial", springs_program.SCENES)

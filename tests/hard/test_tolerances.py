@@ -14,7 +14,7 @@ ROWS = [row for row in hard_cases.rows("tolerances.csv") if row["reference"] in 
 
 class Tolerances(gas_program.GasTest):
     def assert_meets(self, row, backend):
-        quiet = hard_cases.bar_sets(row) + [gas_program.NO_FIELDS, "output.history_every=0"]
+        quiet = hard_cases.tolerance_sets(row) + [gas_program.NO_FIELDS, "output.history_every=0"]
         run = self.start(row["case"], "--quiet", "--overwrite", "--out", "run", "--backend", backend, sets=quiet)
         self.assertEqual(0, run.returncode, run.stderr)
         checks = {check["name"]: check for check in self.result("run")["checks"]}

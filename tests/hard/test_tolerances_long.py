@@ -18,7 +18,7 @@ class FineTolerances(gas_program.GasTest):
         self.assertGreaterEqual(len(ROWS), 40)
         for row in ROWS:
             with self.subTest(hard_cases.label(row)):
-                sets = hard_cases.bar_sets(row) + [gas_program.NO_FIELDS, "output.history_every=0"]
+                sets = hard_cases.tolerance_sets(row) + [gas_program.NO_FIELDS, "output.history_every=0"]
                 run = self.start(row["case"], "--quiet", "--overwrite", "--out", "run", "--backend", "serial", sets=sets)
                 self.assertEqual(0, run.returncode, run.stderr)
 

@@ -91,7 +91,7 @@ class Bundle(unittest.TestCase):
         self.run_there("/drogue/bin/drogue-options", "price", "example", "--out", "prices.csv", "--result", "prices.json")
         self.assertTrue((self.root / "tmp/prices.csv").is_file())
 
-    def test_measures(self):
+    def test_measures_a_case(self):
         self.assertIn("gas", self.run_there("/drogue/bin/drogue-perf", "list"))
 
     def test_name_of_no_program(self):

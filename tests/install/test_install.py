@@ -56,7 +56,7 @@ class Install(unittest.TestCase):
             self.skipTest("built and linked; a CUDA build of Kokkos starts on no machine without a GPU")
         return folder
 
-    def test_consumer(self):
+    def test_consumer_builds_and_runs(self):
         self.assertEqual("steps 20 mass 2.000000000000\n", self.run_command(self.build("consumer") / "consumer"))
 
     def test_mini_app_of_120_lines(self):
@@ -80,9 +80,9 @@ class Install(unittest.TestCase):
         folder = self.work / "heat"
         self.assertEqual({"fields.h5", "fields.xdmf", "history.csv", "result.json", "scene.toml"},
                          {path.name for path in folder.iterdir()})
-        told = json.loads((folder / "result.json").read_text(encoding="utf-8"))
-        self.assertEqual(("drogue-heat", "ok", 0.02), (told["program"], told["status"], told["time"]))
-        self.assertLess(told["errors"]["linf"], 1e-3)
+        reported = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+        self.assertEqual(("drogue-heat", "ok", 0.02), (reported["program"], reported["status"], reported["time"]))
+        self.assertLess(reported["errors"]["linf"], 1e-3)
         self.assertEqual(3, (folder / "fields.xdmf").read_text(encoding="utf-8").count("<Time Value="))
         whole = (folder / "history.csv").read_text(encoding="utf-8")
         self.assertIn("holds a run", run(2, *common))

@@ -34,6 +34,22 @@ class Documents(unittest.TestCase):
                         self.assertRegex(code, rf"\b{part}\b", f"{document} has {function} in {name}")
         self.assertGreater(count, 80)
 
+    def test_tests_that_pages_name_exist(self):
+        suites = {}
+        for file in (SOURCE / "tests").rglob("*.cpp"):
+            for suite, name in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+), (\w+)\)", file.read_text(encoding="utf-8"), re.M):
+                suites.setdefault(suite, set()).add(name)
+        for file in (SOURCE / "tests").rglob("*.py"):
+            for suite, body in re.findall(r"^class (\w+)\(.*?\):\n(.*?)(?=^\S|\Z)", file.read_text(encoding="utf-8"), re.M | re.S):
+                suites.setdefault(suite, set()).update(re.findall(r"^    def (test_\w+)", body, re.M))
+        count = 0
+        for document, text in self.documents():
+            for suite, name in re.findall(r"`([A-Z]\w+)\.(\w+)`", text):
+                if suite in suites or name.startswith("test_"):
+                    count += 1
+                    self.assertIn(name, suites.get(suite, ()), f"{document} names {suite}.{name}")
+        self.assertGreater(count, 20)
+
     def test_table_of_flow_in_the_readme_holds_the_numbers_of_its_record(self):
         lines = (SOURCE / "docs/evidence/flow-h200.jsonl").read_text(encoding="utf-8").splitlines()
         records = {record["case"]: record for record in map(json.loads, lines)}

@@ -68,7 +68,7 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         self.assertEqual(1, len(found), found)
         self.assertIn(word, found[0])
 
-    def test_common(self):
+    def test_common_includes_neither_kokkos_nor_kernels(self):
         self.assert_caught("common/run/x.hpp", "<Kokkos_Core.hpp>", "does without")
         self.assert_caught("common/run/x.hpp", '"kernels/gas/parameters.hpp"', "may only use")
 
@@ -76,7 +76,7 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         self.assert_caught("kernels/reference/gas/x.hpp", "<Kokkos_Core.hpp>", "does without")
         self.assert_caught("kernels/reference/gas/x.hpp", '"kernels/gas/flux/weno.hpp"', "may only use")
 
-    def test_kernels(self):
+    def test_kernels_include_no_mini_app(self):
         for library in ("<toml++/toml.h>", "<CLI/App.hpp>", "<fstream>", "<hdf5.h>", "<mpi.h>"):
             self.assert_caught("kernels/gas/x.hpp", library, "does without")
         self.assert_caught("kernels/gas/x.hpp", '"common/program/failure.hpp"', "may only use")

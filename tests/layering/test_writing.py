@@ -41,6 +41,9 @@ class Repository(unittest.TestCase):
     def test_no_replaced_name_is_left(self):
         self.assertEqual([], self.breaches(writing.replaced_names))
 
+    def test_no_replaced_word_is_left(self):
+        self.assertEqual([], self.breaches(writing.replaced_words))
+
     def test_messages_are_clear(self):
         self.assertEqual([], self.breaches(writing.unclear_strings))
 
@@ -113,12 +116,20 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
     def test_suspect_openings_are_warnings(self):
         self.assertIn("warning", writing.suspect_openings("a.hpp", "/// Whether it is so.\n")[0])
 
-    def test_widths(self):
+    def test_finds_wide_prose(self):
         wide = "word " * 25
         self.assertEqual(1, len(writing.wide_lines("a.md", wide)))
         for allowed in ("| " + wide + "|", "```\n" + wide + "\n```", "![a picture](" + 130 * "x" + ")",
                         "[name]: https://" + 130 * "x", "word " * 24):
             self.assertEqual([], writing.wide_lines("a.md", allowed), allowed)
+
+    def test_refuses_replaced_words_within_names(self):
+        for text in ("bool is_held = false;", "struct TypedSpokes {};", "void advance_together();", "// calls `asked_for()`"):
+            self.assertEqual(1, len(writing.replaced_words("kernels/a.hpp", text)), text)
+        for path, text in (("tests/a.cpp", "TEST(Ranks, FailTogether)"),
+                           ("kernels/a.hpp", 'const char* name = "is_held";'), ("scripts/a.py", "is_held = 1"),
+                           ("kernels/a.hpp", "int tasks = shield + desktop_mode;")):
+            self.assertEqual([], writing.replaced_words(path, text), text)
 
     def test_replaced_names(self):
         for path, text in (
@@ -174,7 +185,7 @@ f("of this "
         ):
             self.assertEqual([], writing.unclear_strings(path, text), text)
 
-    def test_rates(self):
+    def test_refuses_rates_without_per(self):
         for path, text in (("perf/a.cpp", 'print("%f us a %s");\n'), ("scripts/a.py", 'unit = "\\u00b5s a step"\n'),
                            ("tests/a.py", 'f"ns a {unit}"\n')):
             self.assertEqual(1, len(writing.rates_with_an_article(path, text)), text)

@@ -250,7 +250,45 @@ NAMES = (
     (r"OneRun", "SceneRun", EVERYWHERE),
     (r"carry_out", "run_scene", EVERYWHERE),
 )
+# Words of the left column that no name of C++ may contain, such as CamelCaseSpokes or is_held.
+WORDS = (
+    (r"spokes?", "EdgeVector"),
+    (r"rendezvous", "GridSync"),
+    (r"outgr(?:ow|ew)\w*", "violates_cfl"),
+    (r"held", "fixed"),
+    (r"doubts?", "error estimate"),
+    (r"desks?", "WorkQueue"),
+    (r"smiles?", "StrikeGroup"),
+    (r"spent", "times"),
+    (r"tall(?:y|ies)", "counts"),
+    (r"together", "collectively"),
+    (r"judge\w*|judgements?", "check, TeamControl"),
+    (r"asked|asks?|told|tells?", "a word for the deed of code"),
+)
+WORD_PATTERNS = tuple((re.compile(words), term) for words, term in WORDS)
 PATTERNS = tuple((re.compile(rf"(?<![\w-])(?:{names})(?![\w-])"), term, where) for names, term, where in NAMES)
+
+
+def words_of(identifier):
+    """Lower-case words of a name in snake_case or CamelCase."""
+    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", identifier)]
+
+
+def replaced_words(path, text):
+    """Lines `path:line: ...` for names of C++ of several words, one of which the vocabulary replaces."""
+    if not path.endswith(CODE) or not path.startswith(CPP_ONLY):
+        return []
+    found = []
+    for number, line in identifiers_of_code(text):
+        for identifier in re.findall(r"[A-Za-z_]\w*", line):
+            words = words_of(identifier)
+            for word in words if len(words) > 1 else ():
+                # Ranks of a test may fail together.
+                if word == "together" and path.startswith("tests/"):
+                    continue
+                found += [f"{path}:{number}: {identifier}: '{word}' is {term} in the vocabulary"
+                          for pattern, term in WORD_PATTERNS if pattern.fullmatch(word)]
+    return found
 
 
 def without_strings(line):
@@ -620,7 +658,7 @@ OWN = ("tests/layering/writing.py", "tests/layering/test_writing.py")
 
 
 # Rules for one file each: its path and text -> lines `path:line: ...`.
-RULES = (refused_openings, personified, riddles, wide_lines, replaced_names, unclear_strings, rates_with_an_article)
+RULES = (refused_openings, personified, riddles, wide_lines, replaced_names, replaced_words, unclear_strings, rates_with_an_article)
 
 
 def main(arguments):

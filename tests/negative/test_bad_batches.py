@@ -27,12 +27,12 @@ class BadBatches(options_program.OptionsTest):
         self.assertEqual(len(lines), len(prices))
         for k, (line, words) in enumerate(cases):
             with self.subTest(line=line[:60]):
-                told = prices[2 * k + 1]
-                self.assertEqual(("invalid", ""), (told["status"], told["price"]))
+                reported = prices[2 * k + 1]
+                self.assertEqual(("invalid", ""), (reported["status"], reported["price"]))
                 for word in words:
-                    self.assertIn(word, told["message"])
-        for told in prices[::2]:
-            self.assertEqual(("ok", prices[0]["price"]), (told["status"], told["price"]))
+                    self.assertIn(word, reported["message"])
+        for reported in prices[::2]:
+            self.assertEqual(("ok", prices[0]["price"]), (reported["status"], reported["price"]))
 
     def test_unreadable_lines_report_their_id(self):
         """Each reports its own id if it has one, and no other row is rejected."""
@@ -48,10 +48,10 @@ class BadBatches(options_program.OptionsTest):
         prices = self.prices()
         for k, (line, identity) in enumerate(broken):
             with self.subTest(line=line[:40]):
-                told = prices.pop(2 * k + 1)
-                self.assertEqual((identity, "invalid"), (told["id"], told["status"]))
-                self.assertEqual(not identity, told["message"].startswith(f"line {3 * k + 3}: "), told["message"])
-        self.assertEqual([(str(k), "ok") for k in range(2 * len(broken))], [(told["id"], told["status"]) for told in prices])
+                reported = prices.pop(2 * k + 1)
+                self.assertEqual((identity, "invalid"), (reported["id"], reported["status"]))
+                self.assertEqual(not identity, reported["message"].startswith(f"line {3 * k + 3}: "), reported["message"])
+        self.assertEqual([(str(k), "ok") for k in range(2 * len(broken))], [(reported["id"], reported["status"]) for reported in prices])
 
     def test_unreadable_lines_without_ids_report_their_row(self):
         """Without ids a row is identified by its number."""
@@ -60,7 +60,7 @@ class BadBatches(options_program.OptionsTest):
         lines = [without(row("x")), "1,2", without(row("x")), '"', without(row("x"))]
         self.price(3, "\n".join([without(HEADER), *lines]), *FAST)
         self.assertEqual([("1", "ok"), ("2", "invalid"), ("3", "ok"), ("4", "invalid"), ("5", "ok")],
-                         [(told["id"], told["status"]) for told in self.prices()])
+                         [(reported["id"], reported["status"]) for reported in self.prices()])
 
     def test_finds_ids_in_a_later_column(self):
         names = HEADER.split(",")
@@ -71,7 +71,7 @@ class BadBatches(options_program.OptionsTest):
             return ",".join([*fields[1:3], fields[0], *fields[3:]])
         lines = [moved(row("a")), "european,put", moved(row("b")) + ",9", 'european,"put', 'european,put,c,"1', moved(row("d"))]
         self.price(3, "\n".join([head, *lines]), *FAST)
-        self.assertEqual(["a", "", "b", "", "c", "d"], [told["id"] for told in self.prices()])
+        self.assertEqual(["a", "", "b", "", "c", "d"], [reported["id"] for reported in self.prices()])
 
     def test_rejects_invalid_files(self):
         self.assertGreaterEqual(len(bad_batches.BAD_FILES), 20)
@@ -91,11 +91,11 @@ class BadBatches(options_program.OptionsTest):
         self.price(3, "\n".join(lines), *FAST, "--tolerance", "1e-2")
         prices = self.prices()
         self.assertEqual("ok", prices[0]["status"])
-        for told, (line, words) in zip(prices[1:], bad_batches.BAD_MODELS, strict=True):
+        for reported, (line, words) in zip(prices[1:], bad_batches.BAD_MODELS, strict=True):
             with self.subTest(line):
-                self.assertEqual("invalid", told["status"])
+                self.assertEqual("invalid", reported["status"])
                 for word in words:
-                    self.assertIn(word, told["message"])
+                    self.assertIn(word, reported["message"])
 
     def test_prices_extreme_numbers_without_false_results(self):
         """Finite extreme values are priced or reported; every price is finite and not negative."""
@@ -106,11 +106,11 @@ class BadBatches(options_program.OptionsTest):
             with self.subTest(method):
                 run = self.start("price", self.write(batch(lines)), "--backend", "serial", "--quiet", "--method", *method)
                 self.assertIn(run.returncode, (0, 3, 4), run.stderr)
-                for told in self.prices():
-                    self.assertIn(told["status"], ("ok", "coarse", "invalid", "failed"))
-                    if told["price"]:
-                        self.assertGreaterEqual(float(told["price"]), 0.0)
-                        self.assertLess(float(told["price"]), float("inf"))
+                for reported in self.prices():
+                    self.assertIn(reported["status"], ("ok", "coarse", "invalid", "failed"))
+                    if reported["price"]:
+                        self.assertGreaterEqual(float(reported["price"]), 0.0)
+                        self.assertLess(float(reported["price"]), float("inf"))
 
     def test_prices_scale_with_the_currency(self):
         """Price and Greeks are finite, and scale with the unit of money."""
@@ -119,10 +119,10 @@ class BadBatches(options_program.OptionsTest):
         for method in ((), FAST):
             self.expect(0, "price", self.write(batch(lines)), "--backend", "serial", "--quiet", "--greeks", *method)
             prices = self.prices()
-            for told, unit in zip(prices, (1e-99, 1.0, 1e99) * 2, strict=True):
-                one = prices[1 if int(told["id"]) < 3 else 4]
+            for reported, unit in zip(prices, (1e-99, 1.0, 1e99) * 2, strict=True):
+                one = prices[1 if int(reported["id"]) < 3 else 4]
                 for name, power in (("price", 1), ("error", 1), ("delta", 0), ("gamma", -1), ("theta", 1)):
-                    self.assertAlmostEqual(1, float(told[name]) / unit**power / float(one[name]), delta=1e-6, msg=name)
+                    self.assertAlmostEqual(1, float(reported[name]) / unit**power / float(one[name]), delta=1e-6, msg=name)
 
     def test_rejects_a_surface_with_an_extreme_strike(self):
         head, line = "id,spot,rate,lambda,alpha,beta,delta,variance", "a,1,0.05,1,8.15,-2.5,0.767,0.04"

@@ -119,8 +119,8 @@ class Usage(gas_program.GasTest):
             self.skipTest("a CUDA build has that backend")
         message = self.expect(77, "sod", "--backend", "cuda").stderr
         self.assertRegex(message, r"cuda.*not compiled in.*preset 'cuda'")
-        told = self.result("out/sod")
-        self.assertEqual(("no-backend", 77), (told["status"], told["exit_code"]))
+        reported = self.result("out/sod")
+        self.assertEqual(("no-backend", 77), (reported["status"], reported["exit_code"]))
         self.expect(0, "sod", "--quiet", "--backend", "serial", sets=COARSE)  # a run with the same name still works
 
     def test_rejects_several_ranks(self):
@@ -172,9 +172,9 @@ class Kokkos(gas_program.GasTest):
         subprocess.run([compiler, "-shared", "-fPIC", "-o", "tool.so", "tool.c"], cwd=self.folder, check=True)
         text = self.coarse(0, "--backend", "serial", environment={"KOKKOS_TOOLS_LIBS": str(self.folder / "tool.so")}).stdout
         seen = int(re.fullmatch(r"tool saw (\d+) kernels\n", text)[1])
-        told = self.result("run")
-        self.assertGreaterEqual(seen, 2 * told["steps"])
-        self.assertGreaterEqual(seen, told["ledger"]["kernel_launches"])
+        reported = self.result("run")
+        self.assertGreaterEqual(seen, 2 * reported["steps"])
+        self.assertGreaterEqual(seen, reported["ledger"]["kernel_launches"])
 
     def test_missing_tool_is_reported_and_ignored(self):
         run = self.start("sod", "--quiet", "--out", "run", sets=COARSE, environment={"KOKKOS_TOOLS_LIBS": "/no/tool.so"})

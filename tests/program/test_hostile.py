@@ -29,13 +29,13 @@ class Hostile(gas_program.GasTest):
                          sets=[gas_program.NO_FIELDS, *LENIENT[scene], *sets])
         self.assertIn(run.returncode, codes, f"{run.args}\n{run.stderr}")
         self.assertEqual(0 if run.returncode == 0 else 1, len(run.stderr.splitlines()))
-        told = self.result("run")
+        reported = self.result("run")
         if run.returncode == 0:
-            for value in [*told["errors"].values(), *(check["value"] for check in told["checks"])]:
-                self.assertTrue(value is not None and math.isfinite(value), f"{run.args}\n{told}")
-            conservation = next(check for check in told["checks"] if check["name"] == "conservation")
+            for value in [*reported["errors"].values(), *(check["value"] for check in reported["checks"])]:
+                self.assertTrue(value is not None and math.isfinite(value), f"{run.args}\n{reported}")
+            conservation = next(check for check in reported["checks"] if check["name"] == "conservation")
             self.assertLess(conservation["value"], 1e-11)
-        return run.returncode, told
+        return run.returncode, reported
 
     def test_runs_on_the_smallest_meshes(self):
         for scene in gas_program.SCENES:
@@ -87,16 +87,16 @@ class Hostile(gas_program.GasTest):
         for left, right in (((1.0, 0.0, 1e300), (1.0, 0.0, 1e299)), ((1.0, 0.0, 1e200), (1.0, 0.0, 1e-200)),
                             ((1.0, 1e150, 1.0), (1.0, -1e150, 1.0))):
             with self.subTest(left=left, right=right):
-                told = self.try_run({4}, "sod", riemann(left, right))[1]
-                self.assertIn("not finite in cell", told["message"])
-                self.assertEqual(0, told["steps"])
+                reported = self.try_run({4}, "sod", riemann(left, right))[1]
+                self.assertIn("not finite in cell", reported["message"])
+                self.assertEqual(0, reported["steps"])
 
     def test_runs_for_extreme_times(self):
         for end in ("5e-324", "1e-300", "1e-17"):
             self.assertEqual((1, float(end)), tuple(self.try_run({0}, "sod", f"run.end_time={end}")[1][key]
                                                     for key in ("steps", "time")))
-        told = self.try_run({4}, "sod", "run.end_time=1e300", "run.max_steps=50")[1]
-        self.assertRegex(told["message"], r"^run\.max_steps = 50 reached at t = \S+ s, before run\.end_time = \S+ s$")
+        reported = self.try_run({4}, "sod", "run.end_time=1e300", "run.max_steps=50")[1]
+        self.assertRegex(reported["message"], r"^run\.max_steps = 50 reached at t = \S+ s, before run\.end_time = \S+ s$")
 
     def test_max_steps_may_equal_the_steps_needed(self):
         steps = self.try_run({0}, "sod")[1]["steps"]
@@ -106,8 +106,8 @@ class Hostile(gas_program.GasTest):
     def test_reports_a_violated_time_step_limit(self):
         for step in ("0.01", "0.1", "1e10"):
             with self.subTest(step):
-                told = self.try_run({4}, "sod", f"scheme.fixed_dt={step}", 'scheme.positivity="off"')[1]
-                self.assertRegex(told["message"], r"(pressure|density) is not positive in cell \d+ \(x = .* m\) at step ")
+                reported = self.try_run({4}, "sod", f"scheme.fixed_dt={step}", 'scheme.positivity="off"')[1]
+                self.assertRegex(reported["message"], r"(pressure|density) is not positive in cell \d+ \(x = .* m\) at step ")
         self.try_run({0}, "sod", "scheme.fixed_dt=0.1", 'scheme.positivity="auto"')
 
     def test_long_runs_with_reflections_end_well(self):

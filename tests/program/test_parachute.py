@@ -70,12 +70,12 @@ class RunDirectory(parachute_program.FlowTest):
     def test_files_hold_the_documented_layout(self):
         scene = self.write(GUST)
         self.expect(0, scene, *QUIET)
-        told = self.result("out")
+        reported = self.result("out")
         self.assertEqual(("drogue.result/1", "drogue-parachute", "ok", 0, 0.5),
-                         tuple(told[key] for key in ("schema", "program", "status", "exit_code", "time")))
-        self.assertIn(told["pressure"]["solver"], ("fft", "diagonalization"))
-        self.assertLess(told["pressure"]["divergence_rms"], 1e-12)
-        self.assertGreater(told["dt_min"], 0.0)
+                         tuple(reported[key] for key in ("schema", "program", "status", "exit_code", "time")))
+        self.assertIn(reported["pressure"]["solver"], ("fft", "diagonalization"))
+        self.assertLess(reported["pressure"]["divergence_rms"], 1e-12)
+        self.assertGreater(reported["dt_min"], 0.0)
         file = self.fields("out")
         for path, count in (("/mesh/x", 13), ("/mesh/y", 11), ("/mesh/z", 9), ("/steps/000000/velocity", 3 * 960),
                             ("/steps/000001/vorticity", 3 * 960), ("/steps/000001/pressure", 960),
@@ -154,8 +154,8 @@ class Failures(parachute_program.FlowTest):
         message = self.expect(4, self.write(GUST), *QUIET, sets=["run.dt=0.09", "run.end_time=400", "fluid.velocity=['1+t', 0, 0]", "output={restart_every=0}"]).stderr
         self.assertRegex(message, r"run.dt = 0.09 s exceeds the largest stable time step, 0.08\d+ s, at step \d+, t = \S+ s\n$")
         self.assertGreater(self.result("out")["steps"], 2)
-        told = self.result("out")
-        self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
+        reported = self.result("out")
+        self.assertEqual(("numerical-failure", 4), (reported["status"], reported["exit_code"]))
         self.assertTrue((self.folder / "out/restart.h5").exists())
         self.assertTrue(all(math.isfinite(value) for value in self.history("out")["kinetic_energy"]))
 
@@ -537,8 +537,8 @@ class ClothDrops(parachute_program.FlowTest):
                          | {f"/steps/{step}/canopy/{name}" for step in ("000000", "000001") for name in ("position", "von_mises")}, names)
 
     def test_failures_name_their_cause(self):
-        told = self.drop("out", "run.dt=1", code=4).stderr
-        self.assertIn("run.dt = 1 s exceeds the largest stable time step", told)
+        reported = self.drop("out", "run.dt=1", code=4).stderr
+        self.assertIn("run.dt = 1 s exceeds the largest stable time step", reported)
         self.assertIn("run.max_steps = 20 reached at t = ", self.drop("out", "run.max_steps=20", code=4).stderr)
         self.assertEqual(20, self.result("out")["steps"])
         self.assertIn("--seed-mode", self.expect(2, self.write(CLOTH), *QUIET, "--overwrite", "--seed-mode").stderr)
@@ -562,9 +562,9 @@ class Canopies(parachute_program.FlowTest):
         self.assertGreater(min(rows["cloth_elastic_energy"][1:]), 0.0)
         self.assertGreater(max(rows["force_balance"]), 0.0)
         self.assertLess(max(rows["force_balance"]), 1e-14)
-        told = self.result("out")
-        self.assertGreater(told["canopies"]["vertices"], 200)
-        self.assertGreater(told["canopies"]["substeps"], 1)
+        reported = self.result("out")
+        self.assertGreater(reported["canopies"]["vertices"], 200)
+        self.assertGreater(reported["canopies"]["substeps"], 1)
 
     def test_files_hold_the_canopy_beside_the_flow(self):
         self.expect(0, self.write(CANOPY), *QUIET)
@@ -602,18 +602,18 @@ class Canopies(parachute_program.FlowTest):
         scene = self.write(CANOPY)
         wanted = [1, 8, 0, 1e5, 0, 0.2]
         self.start(scene, *QUIET, sets=[sets[0].format(*wanted)])
-        told, rows = self.result("out")["canopies"], self.history("out")
+        reported, rows = self.result("out")["canopies"], self.history("out")
         forces = [math.hypot(*(rows[f"canopy_0_line_force_{axis}"][k] for axis in "xyz")) for k in range(len(rows["time"]))]
-        self.assertAlmostEqual(max(forces), told["peak_force_0"], delta=1e-9 * max(forces))
-        self.assertEqual(rows["time"][forces.index(max(forces))], told["peak_force_0_time"])
+        self.assertAlmostEqual(max(forces), reported["peak_force_0"], delta=1e-9 * max(forces))
+        self.assertEqual(rows["time"][forces.index(max(forces))], reported["peak_force_0_time"])
         window = [k for k, time in enumerate(rows["time"]) if 0.05 <= time <= 0.2]
         areas = sum(0.5 * (rows["time"][k] - rows["time"][k - 1]) * (rows["canopy_0_force_z"][k] + rows["canopy_0_force_z"][k - 1])
                     for k in window[1:])
         mean = areas / (rows["time"][window[-1]] - rows["time"][window[0]])
-        self.assertAlmostEqual(2 * mean / (1.225 * 64 * math.pi), told["drag_0"], delta=1e-6)
-        good = [told["drag_0"], 8, 0.9 * max(forces), 1.1 * max(forces), told["peak_force_0_time"] - 0.01, 1]
+        self.assertAlmostEqual(2 * mean / (1.225 * 64 * math.pi), reported["drag_0"], delta=1e-6)
+        good = [reported["drag_0"], 8, 0.9 * max(forces), 1.1 * max(forces), reported["peak_force_0_time"] - 0.01, 1]
         self.expect(0, scene, *QUIET, "--overwrite", sets=[sets[0].format(*good)])
-        for which, value in ((0, 1.2 * good[0]), (1, 8.1), (3, 0.95 * max(forces)), (4, told["peak_force_0_time"] + 0.01)):
+        for which, value in ((0, 1.2 * good[0]), (1, 8.1), (3, 0.95 * max(forces)), (4, reported["peak_force_0_time"] + 0.01)):
             with self.subTest(which):
                 bad = [*good[:which], value, *good[which + 1:]]
                 self.expect(5, scene, *QUIET, "--overwrite", sets=[sets[0].format(*bad)])
@@ -624,9 +624,9 @@ class Canopies(parachute_program.FlowTest):
         self.assertIn("waves as long as canopy[0], 2 m, move 0.78 kg/m^2 of fluid, 20.9 times the 0.0373 kg/m^2 of its cloth", refused)
         message = self.expect(4, scene, *QUIET, sets=[method, "coupling.allow_unstable=true"]).stderr
         self.assertIn('coupling.method = "explicit" is unstable for cloth that moves 20.9 times its own mass of fluid', message)
-        told = self.result("out")
-        self.assertAlmostEqual(20.9, told["canopies"]["added_mass_ratio"], delta=0.05)
-        self.assertLess(told["steps"], 20)
+        reported = self.result("out")
+        self.assertAlmostEqual(20.9, reported["canopies"]["added_mass_ratio"], delta=0.05)
+        self.assertLess(reported["steps"], 20)
         self.assertTrue((self.folder / "out/restart.h5").exists())
 
     def test_explicit_coupling_of_heavy_cloth_agrees_with_spreading(self):
@@ -658,9 +658,9 @@ class Canopies(parachute_program.FlowTest):
         self.assertRegex(process.stderr, r"canopy\[0\] leaves the domain: its (cloth|payload) at .* side z_high after t = ")
         rows = self.history("out")
         self.assertGreater(rows["canopy_0_payload_velocity_z"][-1], 0.5)
-        told = self.result("out")
-        self.assertEqual("numerical-failure", told["status"])
-        self.assertAlmostEqual(told["time"], rows["time"][-1], delta=1e-12)
+        reported = self.result("out")
+        self.assertEqual("numerical-failure", reported["status"])
+        self.assertAlmostEqual(reported["time"], rows["time"][-1], delta=1e-12)
         again = self.expect(4, self.write(free), *QUIET, "--restart", "auto")
         self.assertEqual(process.stderr, again.stderr)
 
@@ -759,8 +759,8 @@ class Canopies(parachute_program.FlowTest):
                               sets=["output.history_every=1", f"canopy[0].lines.strength={strength}"])
         self.assertRegex(process.stderr, r"line [0-7] of canopy\[0\] breaks: it carries more than "
                          r"canopy\[0\].lines.strength = \S+ N in the step after t = ")
-        told, broken = self.result("out"), self.history("out")
-        self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
+        reported, broken = self.result("out"), self.history("out")
+        self.assertEqual(("numerical-failure", 4), (reported["status"], reported["exit_code"]))
         # Eight lines at an angle to z, of which the first one breaks at its strength.
         self.assertLess(max(broken["canopy_0_line_force_z"]), 8 * strength)
         again = self.expect(4, self.write(CANOPY), *QUIET, "--restart", "auto",

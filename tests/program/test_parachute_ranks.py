@@ -72,8 +72,8 @@ class Results(RanksTest):
         scene = self.write(GUST)
         for ranks in (1, 2, 4):
             self.run_on(0, ranks, scene, *QUIET, "--out", ranks)
-            told = self.result(str(ranks))
-            self.assertEqual((ranks, "ok", 0.5), (told["ranks"], told["status"], told["time"]))
+            reported = self.result(str(ranks))
+            self.assertEqual((ranks, "ok", 0.5), (reported["ranks"], reported["status"], reported["time"]))
         self.assertEqual("plain", self.result("4")["driver"])
         for ranks in (2, 4):
             self.assert_same_runs("1", str(ranks))

@@ -31,54 +31,54 @@ class Result(gas_program.GasTest):
     def ended(self, code, status, *words, sets=COARSE, directory="out/sod", **settings):
         """Runs sod and returns result.json; expects every field, the exit code and its status."""
         run = self.expect(code, "sod", "--backend", "serial", *words, sets=sets, **settings)
-        told = self.result(directory)
-        self.assertLessEqual(set(KEYS), set(told))
+        reported = self.result(directory)
+        self.assertLessEqual(set(KEYS), set(reported))
         for part, keys in PARTS.items():
-            self.assertLessEqual(set(keys), set(told[part]), part)
+            self.assertLessEqual(set(keys), set(reported[part]), part)
         self.assertEqual(("drogue.result/1", "drogue-gas", "sod", status, code),
-                         tuple(told[key] for key in ("schema", "program", "scene", "status", "exit_code")))
-        self.assertIn(told["message"], run.stderr)
-        self.assertEqual(code == 0, told["message"] == "")
-        self.assertRegex(told["provenance"]["date"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
-        self.assertGreater(told["peak_bytes"]["host"], 1 << 20)
-        self.assertEqual(1, told["ranks"])
-        return told
+                         tuple(reported[key] for key in ("schema", "program", "scene", "status", "exit_code")))
+        self.assertIn(reported["message"], run.stderr)
+        self.assertEqual(code == 0, reported["message"] == "")
+        self.assertRegex(reported["provenance"]["date"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.assertGreater(reported["peak_bytes"]["host"], 1 << 20)
+        self.assertEqual(1, reported["ranks"])
+        return reported
 
     def test_successful_run_holds_every_field(self):
-        told = self.ended(0, "ok")
-        self.assertEqual(("serial", "double", 1, 0.4), tuple(told[key] for key in
+        reported = self.ended(0, "ok")
+        self.assertEqual(("serial", "double", 1, 0.4), tuple(reported[key] for key in
                                                              ("backend", "precision", "threads", "time")))
-        self.assertEqual(NORMS, set(told["errors"]))
-        self.assertEqual({"l1_density", "conservation"}, {check["name"] for check in told["checks"]})
-        for check in told["checks"]:
+        self.assertEqual(NORMS, set(reported["errors"]))
+        self.assertEqual({"l1_density", "conservation"}, {check["name"] for check in reported["checks"]})
+        for check in reported["checks"]:
             self.assertEqual({"name", "value", "tolerance", "passed"}, set(check))
-        self.assertTrue(0.0 < told["dt_min"] <= told["dt_max"] < 0.4)
-        self.assertEqual({"touches": 0, "cells": 0, "redone_steps": 0}, told["limiter"])
-        self.assertEqual({"space": 5, "time": 3}, told["order"])
-        self.assertTrue(0.0 < told["timing"]["compute_s"] < told["timing"]["wall_s"])
+        self.assertTrue(0.0 < reported["dt_min"] <= reported["dt_max"] < 0.4)
+        self.assertEqual({"touches": 0, "cells": 0, "redone_steps": 0}, reported["limiter"])
+        self.assertEqual({"space": 5, "time": 3}, reported["order"])
+        self.assertTrue(0.0 < reported["timing"]["compute_s"] < reported["timing"]["wall_s"])
         # Three stages and the end of a step.
-        self.assertGreaterEqual(told["ledger"]["kernel_launches"], 2 * told["steps"])
-        self.assertEqual(0, told["ledger"]["device_allocations_after_warmup"])
+        self.assertGreaterEqual(reported["ledger"]["kernel_launches"], 2 * reported["steps"])
+        self.assertEqual(0, reported["ledger"]["device_allocations_after_warmup"])
         for key in ("compiler", "kokkos", "cpu"):
-            self.assertTrue(told["provenance"][key], key)
+            self.assertTrue(reported["provenance"][key], key)
         # 50 cells of at most 80 bytes, and 64 MB.
-        self.assertTrue(50 * 24 < told["peak_bytes"]["device"] < 64 << 20, told["peak_bytes"])
+        self.assertTrue(50 * 24 < reported["peak_bytes"]["device"] < 64 << 20, reported["peak_bytes"])
 
     def test_without_verify_there_are_no_checks(self):
         scene = self.folder / "sod.toml"
         text = (gas_program.SOURCE / "miniapps/gas/scenes/sod.toml").read_text(encoding="utf-8")
         scene.write_text(text[:text.index("[verify]")], encoding="utf-8")
         self.expect(0, scene, "--backend", "serial")
-        told = self.result("out/sod")
-        self.assertEqual(([], {}), (told["checks"], told["errors"]))
+        reported = self.result("out/sod")
+        self.assertEqual(([], {}), (reported["checks"], reported["errors"]))
 
     def test_failures_state_code_and_status(self):
         self.ended(3, "invalid", sets=["mesh.cells=7"])
-        told = self.ended(4, "numerical-failure", "--overwrite", sets=[*COARSE, "run.max_steps=5"])
-        self.assertEqual(5, told["steps"])
-        self.assertIn("max_steps = 5", told["message"])
-        told = self.ended(5, "verification-failed", "--overwrite", sets=["mesh.cells=50", "verify.l1_density=1e-9"])
-        self.assertEqual([False, True], [check["passed"] for check in told["checks"]])
+        reported = self.ended(4, "numerical-failure", "--overwrite", sets=[*COARSE, "run.max_steps=5"])
+        self.assertEqual(5, reported["steps"])
+        self.assertIn("max_steps = 5", reported["message"])
+        reported = self.ended(5, "verification-failed", "--overwrite", sets=["mesh.cells=50", "verify.l1_density=1e-9"])
+        self.assertEqual([False, True], [check["passed"] for check in reported["checks"]])
         (self.folder / "out/sod/restart.h5").write_bytes(b"no restart file")
         self.ended(6, "io-error", "--restart", "auto")
 
@@ -88,21 +88,21 @@ class Result(gas_program.GasTest):
     @gas_program.needs_openmp
     def test_openmp_records_its_threads(self):
         self.expect(0, "sod", "--backend", "openmp", sets=COARSE, environment={"OMP_NUM_THREADS": "2"})
-        told = self.result("out/sod")
-        self.assertEqual(("openmp", 2, "plain"), (told["backend"], told["threads"], told["driver"]))
+        reported = self.result("out/sod")
+        self.assertEqual(("openmp", 2, "plain"), (reported["backend"], reported["threads"], reported["driver"]))
 
     def test_steps_need_no_fence_and_no_copy(self):
         """Twice the steps add kernel launches to the counters and nothing else."""
-        told = [self.ended(0, "ok", "--overwrite", sets=[f"mesh.cells={cells}", "verify.l1_density=1.0",
+        reported = [self.ended(0, "ok", "--overwrite", sets=[f"mesh.cells={cells}", "verify.l1_density=1.0",
                                                          gas_program.NO_FIELDS, "output.history_every=0"])["ledger"]
                 for cells in (50, 100)]
-        self.assertGreater(told[1]["kernel_launches"], 1.5 * told[0]["kernel_launches"])
-        self.assertEqual(told[0]["fences"], told[1]["fences"])
+        self.assertGreater(reported[1]["kernel_launches"], 1.5 * reported[0]["kernel_launches"])
+        self.assertEqual(reported[0]["fences"], reported[1]["fences"])
 
     def test_baseline_times_its_copies(self):
-        told = self.ended(0, "ok", "--seed-mode")
+        reported = self.ended(0, "ok", "--seed-mode")
         for key in ("h2d_s", "compute_s", "d2h_s"):
-            self.assertGreater(told["timing"][key], 0.0, key)
+            self.assertGreater(reported["timing"][key], 0.0, key)
 
 
 class Files(gas_program.GasTest):
@@ -114,12 +114,12 @@ class Files(gas_program.GasTest):
     def test_history_lists_rows_with_units(self):
         self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, "output.history_every=1"])
         rows = self.rows()
-        told = self.result("out/sod")
-        self.assertEqual([float(step) for step in range(told["steps"] + 1)], [row[1] for row in rows])
+        reported = self.result("out/sod")
+        self.assertEqual([float(step) for step in range(reported["steps"] + 1)], [row[1] for row in rows])
         self.assertEqual((0.0, 0.4), (rows[0][0], rows[-1][0]))
         for before, row in zip(rows, rows[1:]):
             self.assertAlmostEqual(before[0] + row[2], row[0], places=14)
-        self.assertEqual(told["dt_max"], max(row[2] for row in rows))
+        self.assertEqual(reported["dt_max"], max(row[2] for row in rows))
         for row in rows:
             for total, start, left in zip(row[3:6], rows[0][3:6], row[6:9]):
                 self.assertAlmostEqual(start, total + left, places=13)
@@ -140,10 +140,10 @@ class Files(gas_program.GasTest):
         self.assertEqual(times, [file.attributes[f"/steps/{group}"]["time"] for group in groups])
         units = {"rho": "kg/m^3", "u": "m/s", "p": "Pa"}
         for path in ["/mesh/x", *(f"/steps/{group}/{field}" for group in groups for field in units)]:
-            told = file.attributes[path]
-            self.assertEqual({"units", "centering", "description"}, set(told), path)
-            self.assertEqual(units.get(path.split("/")[-1], "m"), told["units"])
-            self.assertEqual("cell", told["centering"])
+            reported = file.attributes[path]
+            self.assertEqual({"units", "centering", "description"}, set(reported), path)
+            self.assertEqual(units.get(path.split("/")[-1], "m"), reported["units"])
+            self.assertEqual("cell", reported["centering"])
             self.assertEqual(50, len(file.values(path)))
         centres = file.values("/mesh/x")
         for i, x in enumerate(centres):

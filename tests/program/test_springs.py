@@ -75,11 +75,11 @@ class RunDirectory(springs_program.SpringsTest):
     def test_files_hold_the_documented_layout(self):
         scene = self.write(DRUM)
         self.expect(0, scene, "--backend", "serial", "--out", "out")
-        told = self.result("out")
+        reported = self.result("out")
         self.assertEqual(("drogue.result/1", "drogue-springs", "ok", 0, 0.3),
-                         tuple(told[key] for key in ("schema", "program", "status", "exit_code", "time")))
-        self.assertLess(told["dt_max"] / told["dt_min"], 1.1)
-        self.assertEqual((0, 0), (told["limiter"]["touches"], told["limiter"]["cells"]))
+                         tuple(reported[key] for key in ("schema", "program", "status", "exit_code", "time")))
+        self.assertLess(reported["dt_max"] / reported["dt_min"], 1.1)
+        self.assertEqual((0, 0), (reported["limiter"]["touches"], reported["limiter"]["cells"]))
         file = self.fields("out")
         vertices, triangles = 61, 96
         for path, count in (("/mesh/vertices", 3 * vertices), ("/mesh/triangles", 3 * triangles),
@@ -247,9 +247,9 @@ class Failures(springs_program.SpringsTest):
         message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=['load=[{force={z="sqrt(0.05-t)"}}]']).stderr
         self.assertRegex(message, r"not finite at vertex \d+ \(at rest at .* m\) at step \d+, t = 0\.05.* s")
         self.assertIn("restart.h5 holds the last good state", message)
-        told = self.result("out")
-        self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
-        self.assertIn(told["message"], message)
+        reported = self.result("out")
+        self.assertEqual(("numerical-failure", 4), (reported["status"], reported["exit_code"]))
+        self.assertIn(reported["message"], message)
         self.assertTrue((self.folder / "out/restart.h5").exists())
 
     def test_reports_a_time_step_beyond_the_stability_limit(self):
@@ -280,9 +280,9 @@ class Failures(springs_program.SpringsTest):
         self.expect(0, scene, "--quiet", "--out", "auto", sets=["time.safety=1.0"])
         dt = self.result("auto")["dt_max"]
         self.expect(4, scene, "--quiet", "--out", "out", sets=[f"time.dt={dt!r}"])
-        told = self.result("out")
-        self.assertRegex(told["message"], f"are unstable at step {told['steps']}, t = ")
-        self.assertGreater(told["steps"], 0)
+        reported = self.result("out")
+        self.assertRegex(reported["message"], f"are unstable at step {reported['steps']}, t = ")
+        self.assertGreater(reported["steps"], 0)
 
     def test_reports_damping_too_strong_for_the_time_step(self):
         """Damping beyond the stability limit amplifies the motion."""
@@ -317,8 +317,8 @@ class Failures(springs_program.SpringsTest):
         for name, text in (("blown", blown), ("torn", torn)):
             with self.subTest(name):
                 self.expect(0, self.write(text, f"{name}.toml"), "--quiet", "--out", name, sets=["time.end_time=0.05", "output.times=[0.05]"])
-                told = self.result(name)
-                self.assertLess(told["dt_min"], 0.7 * told["dt_max"])
+                reported = self.result(name)
+                self.assertLess(reported["dt_min"], 0.7 * reported["dt_max"])
 
     def test_stable_under_fifty_times_the_load(self):
         """A run of cloth under 50 g, which stretches it to several times its size, succeeds."""
@@ -333,9 +333,9 @@ class Failures(springs_program.SpringsTest):
                 message = self.expect(4, self.write(DRUM), "--quiet", "--overwrite", "--out", "out", sets=[force, f"time.dt={dt}"]).stderr
                 self.assertRegex(message, r"not finite at vertex \d+ .*, t = 0\.1\d* s")
                 self.assertIn("if no expression gives such a number", message)
-                told = self.result("out")
-                self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
-                self.assertLessEqual(told["time"], 0.1)
+                reported = self.result("out")
+                self.assertEqual(("numerical-failure", 4), (reported["status"], reported["exit_code"]))
+                self.assertLessEqual(reported["time"], 0.1)
                 self.assertTrue(all(map(math.isfinite, self.history("out")["kinetic"])))
 
     def test_motion_may_end_with_the_scene(self):
@@ -495,12 +495,12 @@ class Failures(springs_program.SpringsTest):
         scene = self.write(springs_program.FALLING)
         self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "out", sets=["verify={energy_balance=2e-2}"])
         rows = self.history("out")
-        told = self.result("out")["energy"]
-        self.assertEqual({name: rows[name][-1] for name in ("kinetic", "elastic", "potential", "contact_work", "friction_work")}, told)
+        reported = self.result("out")["energy"]
+        self.assertEqual({name: rows[name][-1] for name in ("kinetic", "elastic", "potential", "contact_work", "friction_work")}, reported)
         scale = max(a - b for a, b in zip([rows["potential"][0]] * len(rows["time"]), rows["potential"]))
         lost = rows["energy"][-1] - rows["energy"][0]
-        self.assertLess(abs(lost - told["contact_work"] - told["friction_work"]), 2e-2 * scale)
-        self.assertGreater(abs(lost - told["contact_work"]), 4e-2 * scale)
+        self.assertLess(abs(lost - reported["contact_work"] - reported["friction_work"]), 2e-2 * scale)
+        self.assertGreater(abs(lost - reported["contact_work"]), 4e-2 * scale)
         for earlier, later in zip(rows["friction_work"], rows["friction_work"][1:]):
             self.assertLessEqual(later, earlier)
         self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "none", sets=[

@@ -67,9 +67,9 @@ class GasStudy(StudyTest):
         self.expect(0, "sod", "--backend", "serial", sets=[
             "mesh.cells=100", 'scheme.weno="js"', 'scheme.splitting="lf-global"', 'scheme.time="ssprk43"',
             "verify.l1_density=1.0", gas_program.NO_FIELDS])
-        told = self.result("out/sod")
-        self.assertEqual(told["steps"], int(row["steps"]))
-        self.assertAlmostEqual(told["errors"]["l1_density"], float(row["l1_density"]), places=8)
+        reported = self.result("out/sod")
+        self.assertEqual(reported["steps"], int(row["steps"]))
+        self.assertAlmostEqual(reported["errors"]["l1_density"], float(row["l1_density"]), places=8)
 
     def test_two_meshes_make_a_doubling_sequence(self):
         self.study(0, "toro-1", "meshes=20:100", "--quiet")
@@ -167,9 +167,9 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         self.expect(0, scene, "--backend", "serial", "--out", "run", "--quiet", sets=[
             self.VERIFY, self.LEVEL, "mesh.disk.vertices=127", 'material.model="quadratic"', 'material.mass="equal"',
             'time.integrator="verlet"'])
-        told = self.result("run")
-        self.assertEqual(told["steps"], row["steps"])
-        self.assertEqual(told["errors"], {name: row["errors"][name] for name in told["errors"]})
+        reported = self.result("run")
+        self.assertEqual(reported["steps"], row["steps"])
+        self.assertEqual(reported["errors"], {name: row["errors"][name] for name in reported["errors"]})
         self.assertEqual([0.1, 0.3], row["series"]["time"])
         self.assertEqual(self.history("run")["kinetic"][-1], row["series"]["kinetic"][-1])
 
@@ -250,8 +250,8 @@ class ReferenceOfARun(gas_program.GasTest):
             time.sleep(0.005)
         process.send_signal(signal.SIGTERM)
         self.assertEqual(130, process.wait(timeout=60))
-        told = self.result("run")
-        self.assertEqual(("interrupted", 0.038, []), (told["status"], told["time"], told["checks"]))
+        reported = self.result("run")
+        self.assertEqual(("interrupted", 0.038, []), (reported["status"], reported["time"], reported["checks"]))
         before = history.read_text()
         self.expect(0, "blast", "--backend", "serial", "--quiet", "--out", "run", "--restart", "auto",
                     sets=[*sets, "verify.reference.cells=400"])

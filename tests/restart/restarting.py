@@ -64,6 +64,6 @@ class RestartTest(gas_program.GasTest):
         self.assertEqual([], [path for path in one.datasets if one.datasets[path] != other.datasets[path]])
         for name in ("history.csv", "fields.xdmf", "scene.toml"):
             self.assertEqual((whole / name).read_text(), (part / name).read_text())
-        known, told = gas_program.result(whole), gas_program.result(part)
+        known, reported = gas_program.result(whole), gas_program.result(part)
         for key in ("steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter", "status"):
-            self.assertEqual(known[key], told[key], key)
+            self.assertEqual(known[key], reported[key], key)

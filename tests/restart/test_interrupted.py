@@ -21,19 +21,19 @@ class Interrupted(restarting.RestartTest):
         code = process.wait(timeout=30)
         self.assertEqual(130, code, process.stderr.read())
         self.assertEqual(b"", process.stderr.read())
-        told = self.result("part")
-        self.assertEqual(("interrupted", 130), (told["status"], told["exit_code"]))
-        self.assertIn("restart.h5", told["message"])
+        reported = self.result("part")
+        self.assertEqual(("interrupted", 130), (reported["status"], reported["exit_code"]))
+        self.assertIn("restart.h5", reported["message"])
         self.assertTrue((self.folder / "part/restart.h5").exists())
-        return told
+        return reported
 
     def assert_continues(self, number, scene="sod", backend="serial"):
         self.whole(scene, backend)
-        told = self.interrupt(number, scene=scene, backend=backend)
-        self.assertGreater(told["steps"], 0)
-        self.assertLess(told["time"], self.result("whole")["time"])
+        reported = self.interrupt(number, scene=scene, backend=backend)
+        self.assertGreater(reported["steps"], 0)
+        self.assertLess(reported["time"], self.result("whole")["time"])
         again = self.interrupt(number, "--restart", "auto", scene=scene, backend=backend)
-        self.assertGreaterEqual(again["steps"], told["steps"])
+        self.assertGreaterEqual(again["steps"], reported["steps"])
         self.expect(0, scene, "--quiet", "--backend", backend, "--out", "part", "--restart", "auto",
                     sets=restarting.CASES[scene])
         self.assert_same_runs()

@@ -23,8 +23,8 @@ class Killed(restarting.RestartTest):
     def test_run_uses_the_limiter(self):
         """Precondition of the tests above: the limiter acts in the blast."""
         self.whole("blast", "serial")
-        told = self.result("whole")["limiter"]
-        self.assertTrue(told["redone_steps"] > 0 and told["touches"] > 0 and told["cells"] > 0, told)
+        reported = self.result("whole")["limiter"]
+        self.assertTrue(reported["redone_steps"] > 0 and reported["touches"] > 0 and reported["cells"] > 0, reported)
 
     def test_continued_baseline_run_equals_uninterrupted_run(self):
         sets = ["mesh.cells=400", "output.restart_every=20", "output.history_every=7", "verify.l1_density=1.0"]

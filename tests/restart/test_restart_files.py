@@ -28,9 +28,9 @@ class RestartFiles(gas_program.GasTest):
         message = self.resume(6, scene=scene, sets=sets)
         self.assertIn("restart.h5", message)
         self.assertIn(word, message)
-        told = self.result("run")
-        self.assertEqual(("io-error", 6), (told["status"], told["exit_code"]))
-        self.assertIn(told["message"], message)
+        reported = self.result("run")
+        self.assertEqual(("io-error", 6), (reported["status"], reported["exit_code"]))
+        self.assertIn(reported["message"], message)
         for name, content in kept.items():
             self.assertEqual(content, (self.folder / "run" / name).read_bytes(), f"{name} was touched")
 

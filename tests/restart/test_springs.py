@@ -71,9 +71,9 @@ class Restart(springs_program.SpringsTest):
             process = self.begin("serial", *again)
             process.send_signal(number)
             self.assertEqual(130, process.wait(timeout=30), process.stderr.read())
-            told = self.result("part")
-            self.assertEqual(("interrupted", 130), (told["status"], told["exit_code"]))
-            self.assertLess(told["time"], 2.5)
+            reported = self.result("part")
+            self.assertEqual(("interrupted", 130), (reported["status"], reported["exit_code"]))
+            self.assertLess(reported["time"], 2.5)
         self.finish("serial", "part", "--restart", "auto")
         self.assert_same_runs()
 

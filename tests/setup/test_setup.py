@@ -46,7 +46,7 @@ class Setup(unittest.TestCase):
     def test_unknown_argument(self):
         self.assertIn("--cude", self.refused("--cude"))
 
-    def test_wrong_hash(self):
+    def test_rejects_a_wrong_hash(self):
         archive = self.fakes / "kokkos.tar.gz"
         archive.write_bytes(b"something else")
         message = self.refused(DROGUE_KOKKOS_ARCHIVE=archive)
@@ -76,7 +76,7 @@ class Setup(unittest.TestCase):
         self.fake("sudo", "exit 1")
         self.assertRegex(self.refused(), r"run `sudo apt-get install -y --no-install-recommends g\+\+ .*libboost-math-dev`")
 
-    def test_no_network(self):
+    def test_reports_a_missing_network(self):
         self.fake("dpkg-query", "exit 1")
         self.fake("id", "echo 0")
         self.fake("apt-get", "echo \"E: Temporary failure resolving 'deb.debian.org'\"; exit 100")

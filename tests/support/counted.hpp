@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kernels/device/pack.hpp"
-#include "kernels/gas/step_work.hpp"
+#include "perf/models/gas_step.hpp"
 
 // A number type that records its operations, for the point functions of kernels/. Include this header before
 // them: they call `device::root` and other functions by qualified names, which only earlier overloads match.

@@ -252,12 +252,6 @@ void FieldsWriter::add_mesh(const DatasetSpec& spec, const IntegerSource& source
   _state->add_mesh<std::int64_t>(spec, H5T_NATIVE_INT64, source);
 }
 
-void FieldsWriter::add_mesh(const DatasetSpec& spec, const std::vector<double>& values) {
-  add_mesh(spec, Source([&](std::uint64_t first, std::span<double> to) {
-             std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), to.size(), to.begin());
-           }));
-}
-
 void FieldsWriter::begin_step(double time, std::int64_t step) {
   if (_state->outputs.size() == page_links) _state->enlarge_index();
   std::uint64_t bytes = metadata_bytes;
@@ -292,11 +286,9 @@ void FieldsWriter::write(std::string_view field, std::uint64_t first, std::span<
   }
 }
 
-std::uint64_t FieldsWriter::offset(std::string_view field) const {
-  return h5::offset(_state->datasets.find(field)->second);
+FieldPlace FieldsWriter::place(std::string_view field) const {
+  return {_state->file, h5::offset(_state->datasets.find(field)->second)};
 }
-
-const std::filesystem::path& FieldsWriter::file() const noexcept { return _state->file; }
 
 void FieldsWriter::end_step() {
   _state->datasets.clear();

@@ -5,7 +5,7 @@
 namespace drogue::run {
 namespace {
 
-void add_points(FieldsWriter& fields, const FaceCoordinates& faces, const std::string& grid) {
+void add_points(FieldSink& fields, const FaceCoordinates& faces, const std::string& grid) {
   const DatasetSpec points = {"points", {faces.x.size(), faces.y.size(), faces.z.size(), 3}, "m",
                               "vertex", "vertices in the order of the fields, z fastest",    grid};
   fields.add_mesh(points, [&](std::uint64_t first, std::span<double> values) {
@@ -20,7 +20,7 @@ void add_points(FieldsWriter& fields, const FaceCoordinates& faces, const std::s
 
 }  // namespace
 
-void add_rectilinear_mesh(FieldsWriter& fields, const FaceCoordinates& faces, AxisOrder order,
+void add_rectilinear_mesh(FieldSink& fields, const FaceCoordinates& faces, AxisOrder order,
                           const std::string& grid) {
   if (faces.x.size() < 2 || faces.y.size() < 2 || faces.z.size() < 2)
     throw std::invalid_argument("a rectilinear grid needs at least two face coordinates along each axis");

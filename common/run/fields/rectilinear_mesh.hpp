@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/run/fields/fields_writer.hpp"
+#include "common/run/fields/field_sink.hpp"
 
 namespace drogue::run {
 
@@ -23,7 +23,7 @@ enum class AxisOrder { zyx, xyz };
 /// described as a structured grid with explicit vertices in the order of the fields; the file holds as many
 /// numbers for them as for one vector field. `grid` names the grid, empty for the main one. Throws
 /// std::invalid_argument for fewer than two coordinates of an axis, and `Failure` (io_error).
-void add_rectilinear_mesh(FieldsWriter& fields, const FaceCoordinates& faces, AxisOrder order,
+void add_rectilinear_mesh(FieldSink& fields, const FaceCoordinates& faces, AxisOrder order,
                           const std::string& grid = {});
 
 }  // namespace drogue::run

@@ -25,7 +25,7 @@ int system_error(int error) {
 }
 
 /// Throws on all ranks if `error` is one on any.
-void check_together(int error, const std::filesystem::path& file) {
+void check_collectively(int error, const std::filesystem::path& file) {
   int worst = system_error(error);
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
   if (worst != 0) throw io_failure("write", file, worst);
@@ -37,7 +37,8 @@ void write_parts(const std::filesystem::path& file, std::uint64_t offset, const 
                  std::span<const double> values) {
   MPI_File handle = MPI_FILE_NULL;
   // Files return errors, other objects of MPI end the program.
-  check_together(MPI_File_open(MPI_COMM_WORLD, file.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &handle), file);
+  check_collectively(MPI_File_open(MPI_COMM_WORLD, file.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &handle),
+                     file);
   MPI_Datatype place = MPI_DATATYPE_NULL;
   MPI_Type_create_subarray(static_cast<int>(part.whole.size()), as_integers(part.whole).data(),
                            as_integers(part.extent).data(), as_integers(part.begin).data(), MPI_ORDER_C,
@@ -55,7 +56,7 @@ void write_parts(const std::filesystem::path& file, std::uint64_t offset, const 
     error = MPI_ERR_NO_SPACE;
   const int closed = MPI_File_close(&handle);
   MPI_Type_free(&place);
-  check_together(error == MPI_SUCCESS ? closed : error, file);
+  check_collectively(error == MPI_SUCCESS ? closed : error, file);
 }
 
 }  // namespace drogue::run

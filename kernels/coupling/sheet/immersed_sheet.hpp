@@ -52,13 +52,14 @@ template <class ExecutionSpace>
 struct EndSheetStepFunctor {
   LocalAir<ExecutionSpace> air;
   typename LocalAir<ExecutionSpace>::Vectors after;  ///< velocity at the end of the step, m/s
-  typename LocalAir<ExecutionSpace>::Vectors push;   ///< interpolated force of the sheet per volume, N/m^3
+  typename LocalAir<ExecutionSpace>::Vectors
+      interpolated_force;  ///< interpolated force of the sheet per volume, N/m^3
   double inverse_dt, inverse_density, filter;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     using spatial::load_vector;
     const spatial::Point present = inverse_dt * (load_vector(after, i) - load_vector(air.before, i)) -
-                                   inverse_density * load_vector(push, i),
+                                   inverse_density * load_vector(interpolated_force, i),
                          mean = load_vector(air.acceleration, i);
     spatial::store_vector(air.acceleration, i, mean + filter * (present - mean));
   }
@@ -110,7 +111,7 @@ class ImmersedSheet {
              Vectors()},
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
-        _push(vectors("drogue::coupling::push")) {
+        _interpolated_force(vectors("drogue::coupling::interpolated_force")) {
     if (parameters.method == CouplingMethod::explicit_) _air.last_force = _force;
     copy_inverse_masses(space, cloth);
     copy_laws(space);
@@ -176,11 +177,11 @@ class ImmersedSheet {
     const double filter = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
     if (_sharp) return _sharp->end_step(space, velocity, density, dt, filter, control);
     interpolate(space, _transfer, velocity, _after);
-    interpolate(space, _transfer, density, _push);
-    _rank_sum(space, {_after, _push});
-    device::launch_each(
-        space, "drogue::coupling::end_sheet_step", _transfer.points,
-        EndSheetStepFunctor<ExecutionSpace>{_air, _after, _push, 1.0 / dt, 1.0 / _density, filter});
+    interpolate(space, _transfer, density, _interpolated_force);
+    _rank_sum(space, {_after, _interpolated_force});
+    device::launch_each(space, "drogue::coupling::end_sheet_step", _transfer.points,
+                        EndSheetStepFunctor<ExecutionSpace>{_air, _after, _interpolated_force, 1.0 / dt,
+                                                            1.0 / _density, filter});
   }
 
  private:
@@ -240,7 +241,7 @@ class ImmersedSheet {
   GridTransfer<ExecutionSpace> _transfer;
   RankSum<ExecutionSpace> _rank_sum;
   LocalAir<ExecutionSpace> _air;
-  Vectors _force, _after, _push;
+  Vectors _force, _after, _interpolated_force;
   std::optional<SharpSheet<ExecutionSpace>> _sharp;
 };
 

@@ -57,11 +57,11 @@ class MovingFrame {
       if (!std::isfinite(parameters.place[axis]))
         throw std::invalid_argument("moving frame: the place of the vertex must be finite");
       if (!parameters.axes[axis]) continue;
-      bool is_held = false;
-      for (const std::uint8_t axes : cloth.pinned) is_held = is_held || (axes >> axis & 1U) != 0U;
+      bool is_fixed = false;
+      for (const std::uint8_t axes : cloth.pinned) is_fixed = is_fixed || (axes >> axis & 1U) != 0U;
       for (const fabric::Motion& motion : cloth.motions)
-        is_held = is_held || motion.axis == static_cast<int>(axis);
-      if (is_held) throw std::invalid_argument("moving frame: all vertices must move freely along its axes");
+        is_fixed = is_fixed || motion.axis == static_cast<int>(axis);
+      if (is_fixed) throw std::invalid_argument("moving frame: all vertices must move freely along its axes");
     }
   }
 

@@ -34,10 +34,4 @@ KOKKOS_INLINE_FUNCTION void centred_gradient(const MacGrid& g, const double* u, 
     }
 }
 
-/// Component k of the vorticity at the edge of a cell at its low sides along the other two axes, 1/s.
-KOKKOS_INLINE_FUNCTION double edge_vorticity(const MacGrid& g, const double* u, int k) {
-  const int i = (k + 1) % 3, j = (k + 2) % 3;
-  return staggered_derivative(g, u, j, i) - staggered_derivative(g, u, i, j);
-}
-
 }  // namespace drogue::flow

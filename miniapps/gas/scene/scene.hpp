@@ -98,6 +98,9 @@ std::filesystem::path scene_folder();
 /// Name of a reconstruction in scenes: js, z, m, teno5.
 std::string weno_name(gas::Weno weno);
 
+/// Name of a flux splitting in scenes: lf-global, lf-single, lf-stencil.
+std::string splitting_name(gas::Splitting splitting);
+
 /// Markdown page docs/scenes-gas.md: all keys with type, range, unit, default and meaning.
 std::string document_gas_scene();
 

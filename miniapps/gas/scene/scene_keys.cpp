@@ -287,8 +287,10 @@ void declare_gas_scene(Table& root, GasScene& scene) {
       "Block sizes and launches of kernels; they change speed, not results");
 }
 
-std::string weno_name(gas::Weno weno) {
-  return std::ranges::find(weno_choices, weno, &Choices<gas::Weno>::value_type::second)->first;
+std::string weno_name(gas::Weno weno) { return scene::choice_name(weno_choices, weno); }
+
+std::string splitting_name(gas::Splitting splitting) {
+  return scene::choice_name(splitting_choices, splitting);
 }
 
 }  // namespace drogue::gas_app

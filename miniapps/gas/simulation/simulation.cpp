@@ -123,7 +123,7 @@ std::vector<run::DatasetSpec> Simulation::field_specs() const {
   return specs;
 }
 
-void Simulation::write_mesh(run::FieldsWriter& fields) const {
+void Simulation::write_mesh(run::FieldSink& fields) const {
   fields.add_mesh(cell_centre_spec(_scene.parameters.cells), [&](std::uint64_t first, std::span<double> x) {
     for (std::size_t i = 0; i < x.size(); ++i)
       x[i] = cell_centre(_scene.parameters, static_cast<std::int64_t>(first + i));
@@ -132,7 +132,7 @@ void Simulation::write_mesh(run::FieldsWriter& fields) const {
 
 framework::FieldsTask Simulation::snapshot() {
   _solver->begin_snapshot();
-  return [this](run::FieldsWriter& fields) {
+  return [this](run::FieldSink& fields) {
     const gas::ConstConservedFields u = _solver->finish_snapshot();
     std::vector<double> values;
     for (const std::string& name : _scene.output.fields)

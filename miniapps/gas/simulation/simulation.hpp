@@ -35,7 +35,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::vector<run::Column> history_columns() const override;
   [[nodiscard]] framework::HistoryRow row() override;
   [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
-  void write_mesh(run::FieldsWriter& fields) const override;
+  void write_mesh(run::FieldSink& fields) const override;
   /// The solver holds one snapshot.
   [[nodiscard]] std::size_t snapshot_buffers() const override { return 1; }
   [[nodiscard]] framework::FieldsTask snapshot() override;

@@ -61,10 +61,9 @@ study::StudyRow row_of(const gas::Parameters& p, framework::RepeatedRun run) {
 }  // namespace
 
 SchemeNames scheme_names(const gas::Parameters& p) {
-  const char* const splittings[] = {"lf-global", "lf-single", "lf-stencil"};
   SchemeNames names;
   names.weno = weno_name(p.weno);
-  names.splitting = splittings[static_cast<int>(p.splitting)];
+  names.splitting = splitting_name(p.splitting);
   names.time = p.time_scheme == gas::TimeScheme::ssprk3 ? "ssprk3" : "ssprk43";
   names.precision = precision_name(p);
   names.label = names.weno + (p.weno == gas::Weno::z && p.weno_power == 2 ? "2" : "");

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/run/fields/fields_writer.hpp"
 #include "common/run/statistics.hpp"
 #include "miniapps/gas/simulation/fields.hpp"
 #include "miniapps/gas/simulation/simulation.hpp"

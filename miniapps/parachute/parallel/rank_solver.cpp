@@ -42,9 +42,9 @@ RankSolver::RankSolver(Communicator& communicator, device::Backend backend,
   communicator.run_collectively([&] {
     _group = linear::RankGroup::world();
     if (parameters.fabric.mass.empty()) {
-      _solver = made_as_asked([&] { return flow::create_solver(backend, parameters.flow, _group); });
+      _solver = with_usage_error([&] { return flow::create_solver(backend, parameters.flow, _group); });
     } else {
-      auto coupled = made_as_asked([&] { return coupling::create_solver(backend, parameters, _group); });
+      auto coupled = with_usage_error([&] { return coupling::create_solver(backend, parameters, _group); });
       _coupled = coupled.get();
       _solver = std::move(coupled);
     }
@@ -168,7 +168,7 @@ void SharedSolver::request(Request request, const Values&... values) {
 SharedSolver::SharedSolver(Communicator& communicator, device::Backend backend,
                            const coupling::Parameters& parameters)
     : _communicator(communicator) {
-  made_as_asked([&] { return flow::ranks_of(parameters.flow, communicator.size(), root); });
+  with_usage_error([&] { return flow::ranks_of(parameters.flow, communicator.size(), root); });
   MessageWriter message;
   message.put(Request::create);
   message.put(backend);

@@ -234,6 +234,9 @@ std::string scene_fingerprint(FlowScene scene);
 /// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
 std::filesystem::path scene_folder();
 
+/// Name of a pressure solver in scenes: auto, fft, diagonalization, hypre-pfmg.
+std::string pressure_solver_name(flow::PressureSolver solver);
+
 /// Markdown page docs/scenes-parachute.md: all keys with type, range, unit, default and meaning.
 std::string document_flow_scene();
 

@@ -248,4 +248,8 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
       .when(of_fluid, fluid_condition, "fluid");
 }
 
+std::string pressure_solver_name(flow::PressureSolver solver) {
+  return scene::choice_name(pressure_choices, solver);
+}
+
 }  // namespace drogue::parachute_app

@@ -195,7 +195,7 @@ std::vector<run::DatasetSpec> ClothSimulation::field_specs() const {
   return specs;
 }
 
-void ClothSimulation::write_mesh(run::FieldsWriter& fields) const { write_canopy_mesh(_sheets, fields); }
+void ClothSimulation::write_mesh(run::FieldSink& fields) const { write_canopy_mesh(_sheets, fields); }
 
 framework::FieldsTask ClothSimulation::snapshot() {
   std::vector<std::vector<double>> values;
@@ -209,7 +209,7 @@ framework::FieldsTask ClothSimulation::snapshot() {
     _solver->stress(fabric::StressMeasure::cauchy, stress);
     copy_canopy_stress(_sheets, stress, field);
   }
-  return [&names = _scene.output.fields, values = std::move(values)](run::FieldsWriter& fields) {
+  return [&names = _scene.output.fields, values = std::move(values)](run::FieldSink& fields) {
     for (std::size_t k = 0; k < names.size(); ++k) fields.write("canopy/" + names[k], 0, values[k]);
   };
 }

@@ -32,7 +32,7 @@ class ClothSimulation final : public framework::Simulation {
   [[nodiscard]] std::vector<run::Column> history_columns() const override;
   [[nodiscard]] framework::HistoryRow row() override;
   [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
-  void write_mesh(run::FieldsWriter& fields) const override;
+  void write_mesh(run::FieldSink& fields) const override;
   [[nodiscard]] framework::FieldsTask snapshot() override;
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;

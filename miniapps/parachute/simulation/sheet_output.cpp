@@ -92,7 +92,7 @@ run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name
           "face", "von Mises stress of the triangles, Cauchy stress times thickness", "canopy"};
 }
 
-void write_canopy_mesh(const Sheets& sheets, run::FieldsWriter& fields) {
+void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
   const std::size_t bodies = sheets.canopies.front().begin;
   const auto first = static_cast<int>(bodies);

@@ -31,7 +31,7 @@ std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets
 [[nodiscard]] run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name);
 
 /// Writes the mesh of all canopies. Throws `Failure` (io_error).
-void write_canopy_mesh(const Sheets& sheets, run::FieldsWriter& fields);
+void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields);
 
 /// Values of the field `position`, m, of the vertices of canopies. Does not throw.
 void copy_canopy_positions(const Sheets& sheets, std::span<const fabric::Vector> positions,

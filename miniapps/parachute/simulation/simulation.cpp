@@ -207,7 +207,7 @@ std::vector<run::DatasetSpec> Simulation::field_specs() const {
   return specs;
 }
 
-void Simulation::write_mesh(run::FieldsWriter& fields) const {
+void Simulation::write_mesh(run::FieldSink& fields) const {
   const flow::Parameters& p = _scene.parameters;
   const auto faces = [&](std::size_t axis) {
     std::vector<double> coordinates(static_cast<std::size_t>(p.cells[axis]) + 1, p.high[axis]);
@@ -229,21 +229,21 @@ void Simulation::sample_fields(Snapshot& snapshot) {
 
 framework::FieldsTask Simulation::snapshot() {
   if (_shared != nullptr)
-    return [this](run::FieldsWriter& fields) {
-      const std::string file = std::filesystem::absolute(fields.file()).string();
+    return [this](run::FieldSink& fields) {
       for (const std::string& name : _scene.output.fields)
         if (is_canopy_field(name)) {
           std::vector<double> values(run::entries(canopy_field_spec(_sheets, name)));
           sample_canopy_field(name, values);
           fields.write("canopy/" + name, 0, values);
         } else {
-          _shared->write(cell_field(name), fields.offset(name), file);
+          const run::FieldPlace place = fields.place(name);
+          _shared->write(cell_field(name), place.offset, std::filesystem::absolute(place.file).string());
         }
     };
   const Snapshot& filled = _snapshots[_next_snapshot];
   sample_fields(_snapshots[_next_snapshot]);
   _next_snapshot = (_next_snapshot + 1) % _snapshots.size();
-  return [&filled, &names = _scene.output.fields](run::FieldsWriter& fields) {
+  return [&filled, &names = _scene.output.fields](run::FieldSink& fields) {
     for (std::size_t k = 0; k < names.size(); ++k)
       fields.write((is_canopy_field(names[k]) ? "canopy/" : "") + names[k], 0, filled[k]);
   };

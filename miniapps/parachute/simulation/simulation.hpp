@@ -30,7 +30,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::vector<run::Column> history_columns() const override;
   [[nodiscard]] framework::HistoryRow row() override;
   [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
-  void write_mesh(run::FieldsWriter& fields) const override;
+  void write_mesh(run::FieldSink& fields) const override;
   [[nodiscard]] std::size_t snapshot_buffers() const override { return _snapshots.size(); }
   [[nodiscard]] bool writes_on_calling_thread() const override { return _shared != nullptr; }
   [[nodiscard]] framework::FieldsTask snapshot() override;

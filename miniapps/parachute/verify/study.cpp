@@ -95,12 +95,11 @@ framework::RepeatedRun run_point(const FlowScene& scene, device::Backend backend
 
 study::StudyRow row_of(const FlowScene& scene, framework::RepeatedRun runs) {
   const flow::Parameters& p = scene.parameters;
-  const std::string pressures[] = {"auto", "fft", "diagonalization", "hypre-pfmg"};
   const std::string advection = p.advection == flow::Advection::central   ? "central"
                                 : p.advection == flow::Advection::weno_js ? "weno-js"
                                                                           : "weno-z";
   const std::string time = p.time_scheme == flow::TimeScheme::ab2 ? "ab2" : "rk3";
-  const std::string& pressure = pressures[static_cast<std::size_t>(p.pressure_solver)];
+  const std::string pressure = pressure_solver_name(p.pressure_solver);
   study::StudyRow row = framework::study_row(std::move(runs));
   const bool is_implicit = p.diffusion == flow::Diffusion::crank_nicolson;
   row.settings = {advection, time, std::string(is_implicit ? "crank-nicolson" : "explicit"), pressure};

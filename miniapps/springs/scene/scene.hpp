@@ -95,7 +95,7 @@ struct SpringsContact {
   double thickness = 0.002;  ///< m
   double friction = 0.0;     ///< between layers
 
-  [[nodiscard]] bool asked_for() const { return self || !objects.empty(); }
+  [[nodiscard]] bool is_enabled() const { return self || !objects.empty(); }
 };
 
 inline constexpr double most_steps = 1e15;
@@ -194,6 +194,9 @@ std::string scene_fingerprint(SpringsScene scene);
 
 /// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
 std::filesystem::path scene_folder();
+
+/// Name of a constitutive model in scenes: linear-vector, edge, quadratic, biquadratic.
+std::string model_name(fabric::Model model);
 
 /// Markdown page docs/scenes-springs.md: all keys with type, range, unit, default and meaning.
 std::string document_springs_scene();

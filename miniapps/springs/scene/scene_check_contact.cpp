@@ -16,7 +16,7 @@ using scene::Table;
 
 void check_contact(const Table& root, const SpringsScene& scene) {
   const SpringsContact& contact = scene.contact;
-  if (!contact.asked_for()) return;
+  if (!contact.is_enabled()) return;
   for (std::size_t k = 0; k < contact.objects.size(); ++k) {
     const ContactObject& object = contact.objects[k];
     const std::string path = "contact.objects[" + std::to_string(k) + "]";

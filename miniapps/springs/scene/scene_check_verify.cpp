@@ -44,7 +44,7 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   const MeshSource& source = scene.source;
   const bool has_rows = scene.output.history_every > 0;
   const std::string rows = "rows of history.csv: output.history_every > 0";
-  const bool meets = scene.contact.asked_for();
+  const bool meets = scene.contact.is_enabled();
   if (verify.energy_drift)
     require(root, !meets, "verify.energy_drift",
             "a scene without contact, of which energy_balance counts the work");

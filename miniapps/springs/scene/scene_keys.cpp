@@ -405,4 +405,6 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
       "Launches of kernels; they change speed, not results");
 }
 
+std::string model_name(fabric::Model model) { return scene::choice_name(model_choices, model); }
+
 }  // namespace drogue::springs_app

@@ -47,7 +47,7 @@ void declare_contact(Table& table, SpringsContact& contact) {
   table.tables("objects", contact.objects, declare_object, "Impenetrable bodies at rest");
   scene::Codec self = scene::boolean_codec(contact.self);
   // Without bodies and self-contact the table is absent.
-  self.print = [print = self.print, &contact] { return contact.asked_for() ? print() : std::nullopt; };
+  self.print = [print = self.print, &contact] { return contact.is_enabled() ? print() : std::nullopt; };
   table.value("self", self, "Contact of cloth and strings with themselves").default_text("`false`");
   table
       .value(
@@ -56,7 +56,7 @@ void declare_contact(Table& table, SpringsContact& contact) {
           "of a triangle")
       .unit("m")
       .above(0.0)
-      .when([&contact] { return contact.asked_for(); }, "with objects or self", "self");
+      .when([&contact] { return contact.is_enabled(); }, "with objects or self", "self");
   table.value("friction", scene::real_codec(contact.friction), "Coulomb's coefficient between layers")
       .at_least(0.0)
       .when([&contact] { return contact.self; }, "with self", "self");

@@ -175,7 +175,7 @@ std::int64_t Simulation::steps_to_event(const framework::AdvanceLimits& limits) 
 /// Copies the state to the host and back.
 void Simulation::round_trip() {
   std::vector<Vector> x(_problem.x.size()), v(x.size());
-  std::vector<fabric::ContactWork> work(_scene.contact.asked_for() ? x.size() : 0);
+  std::vector<fabric::ContactWork> work(_scene.contact.is_enabled() ? x.size() : 0);
   {
     const ScopedStopwatch stopwatch(_d2h_s);
     _solver->download(x, v);

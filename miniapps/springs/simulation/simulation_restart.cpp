@@ -64,7 +64,7 @@ void Simulation::write_restart(run::RestartWriter& writer) {
     writer.array(name, 3 * vectors->size());
     writer.write(name, 0, numbers(_problem.to_scene(*vectors)));
   }
-  if (!_scene.contact.asked_for()) return;
+  if (!_scene.contact.is_enabled()) return;
   std::vector<fabric::ContactWork> work(x.size());
   _solver->contact_work(work);
   work = _problem.to_scene(std::span<const fabric::ContactWork>(work));
@@ -86,7 +86,7 @@ void Simulation::restore(const run::RestartReader& reader) {
   reader.read("velocity", 0, numbers(v));
   _solver->set_time_state(plan.clock);
   _solver->upload(_problem.to_solver(x), _problem.to_solver(v));
-  if (_scene.contact.asked_for()) {
+  if (_scene.contact.is_enabled()) {
     std::vector<fabric::ContactWork> work(x.size());
     for (const auto& [name, part] : work_parts) {
       std::vector<double> values(work.size());

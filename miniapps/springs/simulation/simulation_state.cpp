@@ -84,7 +84,7 @@ framework::HistoryRow Simulation::row() {
   const auto append = [&values](const Vector& v) { values.insert(values.end(), v.begin(), v.end()); };
   append(totals.momentum);
   append(totals.angular_momentum);
-  if (_scene.contact.asked_for()) values.insert(values.end(), {totals.contact_work, totals.friction_work});
+  if (_scene.contact.is_enabled()) values.insert(values.end(), {totals.contact_work, totals.friction_work});
   if (_scene.verify.intersections) values.push_back(totals.intersections);
   std::ranges::for_each(totals.probes, append);
   return row;
@@ -96,7 +96,7 @@ std::vector<run::DatasetSpec> Simulation::field_specs() const {
   return specs;
 }
 
-void Simulation::write_mesh(run::FieldsWriter& fields) const {
+void Simulation::write_mesh(run::FieldSink& fields) const {
   const fabric::Mesh& mesh = _scene.mesh;
   const auto edges = edges_of(mesh);
   fields.add_mesh({"triangles", {mesh.triangles.size(), 3}, "1", "face", "vertices of every triangle"},
@@ -132,7 +132,7 @@ framework::FieldsTask Simulation::snapshot() {
     if (!computed.contains(*kind)) computed[*kind] = stress_of(*kind);
     values.stress[field] = stress_values(field, computed[*kind]);
   }
-  return [this, values = std::move(values)](run::FieldsWriter& fields) {
+  return [this, values = std::move(values)](run::FieldSink& fields) {
     for (const std::string& name : _scene.output.fields) fields.write(name, 0, values.of(name));
   };
 }
@@ -174,7 +174,7 @@ FinalState Simulation::final_state() {
 ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
   const StateTotals now = totals();
   const auto set = [&result](const char* name, double value) { result.metrics.set("energy", name, value); };
-  const bool contact = _scene.contact.asked_for();
+  const bool contact = _scene.contact.is_enabled();
   if (contact) set("contact_work", now.contact_work);
   set("elastic", now.elastic);
   if (contact) set("friction_work", now.friction_work);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 namespace drogue::springs_app {
@@ -60,8 +61,27 @@ double bessel_zero(int m, int n) {
 double drum_tension(const fabric::Material& material, double strain) {
   const double plane = material.membrane_modulus / (1.0 - material.poisson);
   // The second Piola-Kirchhoff stress: strain of Green, or nominal stress over stretch.
-  if (material.model == fabric::Model::biquadratic) return plane * (strain + 0.5 * strain * strain);
-  return plane * strain / (1.0 + strain);
+  switch (material.model) {
+    case fabric::Model::biquadratic:
+      return plane * (strain + 0.5 * strain * strain);
+    case fabric::Model::linear_vector:
+    case fabric::Model::edge:
+    case fabric::Model::quadratic:
+      return plane * strain / (1.0 + strain);
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double nominal_stress_factor(fabric::Model model, double strain) {
+  switch (model) {
+    case fabric::Model::biquadratic:
+      return (1.0 + strain) * (1.0 + 0.5 * strain);
+    case fabric::Model::linear_vector:
+    case fabric::Model::edge:
+    case fabric::Model::quadratic:
+      return 1.0;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 double drum_frequency(const fabric::Material& material, double area_density, double radius, double strain,

@@ -15,6 +15,10 @@ double bessel_zero(int m, int n);
 /// Venant-Kirchhoff; quadratic ones are linear in the stretch.
 double drum_tension(const fabric::Material& material, double strain);
 
+/// Nominal stress of cloth that is pulled along one axis, over modulus and strain: St Venant-Kirchhoff's is
+/// E (1 + e)(e + e^2/2), other models are linear in the strain. Does not throw.
+double nominal_stress_factor(fabric::Model model, double strain);
+
 /// Frequency, Hz, of a drum: omega_mn = (j_mn / a) sqrt(T / rho).
 double drum_frequency(const fabric::Material& material, double area_density, double radius, double strain,
                       int diameters, int circles);

@@ -10,18 +10,16 @@
 namespace drogue::springs_app {
 namespace {
 
-const std::vector<std::string> model_names = {"linear-vector", "edge", "quadratic", "biquadratic"};
-
-/// Settings of a point. Empty texts and 0 vertices keep the value of the scene.
-struct Wanted {
+/// Settings of a point of the study. Empty texts and 0 vertices keep the value of the scene.
+struct PointSettings {
   std::string model, mass, integrator;
   std::int64_t vertices = 0;
 };
 
-std::vector<Wanted> product(const study::Axes& axes) {
+std::vector<PointSettings> product(const study::Axes& axes) {
   std::vector<std::int64_t> meshes = axes.meshes.empty() ? std::vector<std::int64_t>{0} : axes.meshes;
   std::ranges::sort(meshes);
-  std::vector<Wanted> all;
+  std::vector<PointSettings> all;
   for (const std::string& model : axes.of("models"))
     for (const std::string& mass : axes.of("masses"))
       for (const std::string& integrator : axes.of("integrators"))
@@ -36,13 +34,13 @@ std::string generator_name(const MeshSource& source) {
   return source.triangle ? "triangle" : "string";
 }
 
-void refuse_what_the_mesh_has_not(const study::Axes& axes, const SpringsScene& base) {
+void check_axes_fit_mesh(const study::Axes& axes, const SpringsScene& base) {
   if (!axes.meshes.empty() && !base.source.file.empty())
     throw Failure(ExitCode::usage, "--study: meshes needs a generator, and the mesh of " + base.name +
-                                       " is " + base.source.file + ", whose vertices are what they are");
+                                       " is " + base.source.file + ", which has a fixed number of vertices");
   if (axes.words.contains("models") && !base.has_triangles())
     throw Failure(ExitCode::usage,
-                  "--study: models is about triangles, and the mesh of " + base.name + " has none");
+                  "--study: models needs triangles, and the mesh of " + base.name + " has none");
 }
 
 /// Table [material] for springs along edges in place of triangles, or vice versa.
@@ -63,22 +61,23 @@ std::string material_table(const SpringsScene& base, const std::string& model) {
   return text + ", mass = \"" + (f.mass == fabric::Lumping::area ? "area" : "equal") + "\" }";
 }
 
-std::vector<std::string> assignments(const SpringsScene& base, const Wanted& wanted) {
+std::vector<std::string> assignments(const SpringsScene& base, const PointSettings& settings) {
   std::vector<std::string> sets;
   const Fabric& f = base.fabric;
-  if (!wanted.model.empty()) {
-    const bool whole = wanted.model != "edge";
-    sets.push_back(whole == fabric::has_triangles(f.material.model) ? "material.model=\"" + wanted.model + '"'
-                                                                    : material_table(base, wanted.model));
+  if (!settings.model.empty()) {
+    const bool whole = settings.model != "edge";
+    sets.push_back(whole == fabric::has_triangles(f.material.model)
+                       ? "material.model=\"" + settings.model + '"'
+                       : material_table(base, settings.model));
   }
-  if (!wanted.mass.empty()) sets.push_back("material.mass=\"" + wanted.mass + '"');
-  if (!wanted.integrator.empty()) sets.push_back("time.integrator=\"" + wanted.integrator + '"');
-  if (wanted.vertices == 0) return sets;
-  sets.push_back("mesh." + generator_name(base.source) + ".vertices=" + std::to_string(wanted.vertices));
+  if (!settings.mass.empty()) sets.push_back("material.mass=\"" + settings.mass + '"');
+  if (!settings.integrator.empty()) sets.push_back("time.integrator=\"" + settings.integrator + '"');
+  if (settings.vertices == 0) return sets;
+  sets.push_back("mesh." + generator_name(base.source) + ".vertices=" + std::to_string(settings.vertices));
   if (base.source.string && f.stiffness) {
     const double edges = static_cast<double>(base.mesh.lines.size());
     sets.push_back("material.stiffness=" +
-                   scene::toml_text(*f.stiffness * static_cast<double>(wanted.vertices - 1) / edges));
+                   scene::toml_text(*f.stiffness * static_cast<double>(settings.vertices - 1) / edges));
   }
   return sets;
 }
@@ -92,8 +91,7 @@ void keep_strings(const SpringsScene& base, SpringsScene& scene) {
 
 StudyPoint named(SpringsScene scene) {
   StudyPoint point;
-  point.model =
-      scene.has_triangles() ? model_names[static_cast<std::size_t>(scene.fabric.material.model)] : "string";
+  point.model = scene.has_triangles() ? model_name(scene.fabric.material.model) : "string";
   point.mass = scene.fabric.mass == fabric::Lumping::area ? "area" : "equal";
   point.integrator = scene.time.integrator == fabric::Integrator::rk4 ? "rk4" : "verlet";
   point.label = point.model;
@@ -112,11 +110,11 @@ std::vector<StudyPoint> study_points(const std::filesystem::path& file, const st
                                               {"masses", {"area", "equal"}},
                                               {"integrators", {"rk4", "verlet"}}});
   const SpringsScene base = read_springs_scene(file, sets);
-  refuse_what_the_mesh_has_not(axes, base);
+  check_axes_fit_mesh(axes, base);
   std::vector<StudyPoint> points;
-  for (const Wanted& wanted : product(axes)) {
+  for (const PointSettings& settings : product(axes)) {
     std::vector<std::string> all = sets;
-    std::ranges::move(assignments(base, wanted), std::back_inserter(all));
+    std::ranges::move(assignments(base, settings), std::back_inserter(all));
     SpringsScene scene = read_springs_scene(file, all);
     keep_strings(base, scene);
     StudyPoint point = named(std::move(scene));

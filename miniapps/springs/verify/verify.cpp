@@ -170,13 +170,13 @@ double final_value(const SpringsScene& scene, const FinalState& state, const Fin
 }  // namespace
 
 double imbalance(const FinalState& state) {
-  double of_free = 0.0, of_held = state.largest_load;
+  double on_free = 0.0, on_fixed = state.largest_load;
   for (std::size_t i = 0; i < state.force.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      double& place = (state.pinned[i] >> axis & 1U) != 0U ? of_held : of_free;
+      double& place = (state.pinned[i] >> axis & 1U) != 0U ? on_fixed : on_free;
       place = run::maximum_or_nan(place, std::abs(state.force[i][axis]));
     }
-  return of_free / of_held;
+  return on_free / on_fixed;
 }
 
 Response pulled_response(const fabric::Mesh& mesh, const FinalState& state) {
@@ -235,10 +235,10 @@ std::optional<double> even_line_stiffness(const fabric::Mesh& mesh) {
 void verify(const SpringsScene& scene, const FinalState& state, const std::filesystem::path& history_file,
             run::ResultDocument& result) {
   const Verify& wanted = scene.verify;
-  const bool asks_history = wanted.frequency || wanted.front_speed || wanted.energy_drift ||
-                            wanted.energy_balance || wanted.intersections || wanted.momentum ||
-                            wanted.angular_momentum;
-  const History history = asks_history ? run::read_history(history_file) : History{};
+  const bool needs_history = wanted.frequency || wanted.front_speed || wanted.energy_drift ||
+                             wanted.energy_balance || wanted.intersections || wanted.momentum ||
+                             wanted.angular_momentum;
+  const History history = needs_history ? run::read_history(history_file) : History{};
   const auto add = [&result](const std::string& name, double error, double tolerance) {
     result.errors[name] = error;
     result.add_check(name, error, tolerance);
@@ -256,11 +256,9 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
   if (wanted.young || wanted.poisson) {
     const fabric::Material& m = scene.fabric.material;
     const Response response = pulled_response(scene.mesh, state);
-    const double e = response.strain;
-    // St Venant-Kirchhoff: nominal stress E (1 + e)(e + e^2/2). Reinforcements bear E A e beside it.
-    const double expected =
-        m.membrane_modulus * (m.model == fabric::Model::biquadratic ? (1.0 + e) * (1.0 + 0.5 * e) : 1.0) +
-        *even_line_stiffness(scene.mesh) / response.width;
+    // Reinforcements bear E A e beside the cloth.
+    const double expected = m.membrane_modulus * nominal_stress_factor(m.model, response.strain) +
+                            *even_line_stiffness(scene.mesh) / response.width;
     if (wanted.young) add("young", relative_error(response.young, expected), *wanted.young);
     if (wanted.poisson) add("poisson", std::abs(response.poisson - m.poisson), *wanted.poisson);
   }

@@ -52,11 +52,11 @@ struct Heat final : framework::Simulation {
   std::vector<run::Column> history_columns() const override { return {{"u_0", ""}}; }
   framework::HistoryRow row() override { return {_now.time, {_u[0]}}; }
   std::vector<run::DatasetSpec> field_specs() const override { return {{"u", {_u.size()}, "K", "cell", ""}}; }
-  void write_mesh(run::FieldsWriter& fields) const override {
+  void write_mesh(run::FieldSink& fields) const override {
     fields.add_mesh({"x", {_u.size()}, "m", "cell", "cell centres"}, _x);
   }
   framework::FieldsTask snapshot() override {
-    return [u = _u](run::FieldsWriter& fields) { fields.write("u", 0, u); };
+    return [u = _u](run::FieldSink& fields) { fields.write("u", 0, u); };
   }
   ExitCode verify(const run::RunDirectory*, run::ResultDocument& result) override {
     double& error = result.errors["linf"];
@@ -103,7 +103,8 @@ struct HeatScene final : framework::Scene {
 };
 
 int main(int argc, char** argv) {
-  framework::MiniApp app{"heat", "Heat equation on a line.", HEAT_SCENES, {}, {}, {}, {}};
+  framework::MiniApp app{
+      .name = "heat", .description = "Heat equation on a line.", .scene_folder = HEAT_SCENES};
   app.read = [](const auto& file, const auto& sets, bool) { return std::make_unique<HeatScene>(file, sets); };
   return framework::run_mini_app(app, argc, argv);
 }

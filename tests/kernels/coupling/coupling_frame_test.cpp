@@ -264,7 +264,7 @@ TEST(MovingFrame, RejectsInvalidParameters) {
   EXPECT_THROW(at_rest.solver->set_frame({{1.0, 0.0, 0.0}, {}, 0.0}), std::invalid_argument);
 }
 
-TEST(MovingFrameLedger, CostsNothingWithinABlock) {
+TEST(MovingFrameCounters, CostsNothingWithinABlock) {
   CoupledCase c = coasting_strip();
   c.p.substeps = 16;
   c.p.flow.max_dt = 0.0;

@@ -489,7 +489,7 @@ CoupledCase strip_in_accelerating_air() {
   return c;
 }
 
-TEST(CoupledSolver, StepsThatTheFlowOutgrowsAreAFailure) {
+TEST(CoupledSolver, FixedStepsBeyondTheStabilityLimitFail) {
   CoupledCase c = strip_in_accelerating_air();
   c.p.flow.fixed_dt = 0.004;
   expect_failure(c, FailureReason::flow);
@@ -546,7 +546,7 @@ std::int64_t on_device(std::int64_t there, std::int64_t here) {
   return tested_backend == device::Backend::cuda ? there : here;
 }
 
-TEST(CoupledLedger, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
+TEST(CoupledCounters, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
   CoupledCase c = flying_strip();
   c.p.substeps = 16;
   c.p.flow.fixed_dt = 0.002;
@@ -561,7 +561,7 @@ TEST(CoupledLedger, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
   EXPECT_EQ(whole[3] - part[3] - 1, 12 * (1 + 8 + on_device(1, c.p.substeps) + 4 + 1 + on_device(1, 11) + 4));
 }
 
-TEST(CoupledLedger, ContactIsResolvedOncePerInterval) {
+TEST(CoupledCounters, ContactIsResolvedOncePerInterval) {
   const auto launches = [](bool with_contact) {
     CoupledCase c = meeting_strips(with_contact);
     c.p.substeps = 32, c.p.contact_interval = 8;

@@ -89,7 +89,7 @@ TEST(FlowFailure, InflowThatIsNotFiniteFailsTheStep) {
   expect_failed_side(p, 0);
 }
 
-TEST(FlowFailure, SidesAreNotJudgedBeyondTheirEnds) {
+TEST(FlowFailure, ChecksOfSidesStopAtTheirEnds) {
   Parameters p = channel();
   // Not finite in ghost cells, where y < 0 or y > 1.
   p.boundary[0].kind = BoundaryKind::inflow;

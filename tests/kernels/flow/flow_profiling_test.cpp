@@ -77,7 +77,7 @@ std::vector<Option> options() {
           {"inflow in time", inflow_in_time, 1}};
 }
 
-TEST(FlowLedger, OptionsOfAStepAddOnlyTheirKernels) {
+TEST(FlowCounters, OptionsOfAStepAddOnlyTheirKernels) {
   for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})
     for (const Option& option : options()) {
       Parameters p = tunnel();
@@ -98,7 +98,7 @@ TEST(FlowLedger, OptionsOfAStepAddOnlyTheirKernels) {
 }
 
 #if defined(DROGUE_HAVE_HYPRE)
-TEST(FlowLedger, IterativePressureSolverCopiesTwoFieldsInEachStageOnADevice) {
+TEST(FlowCounters, IterativePressureSolverCopiesTwoFieldsInEachStageOnADevice) {
   testing::start_hypre();
   for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3}) {
     Parameters p = tunnel();
@@ -121,7 +121,7 @@ TEST(FlowLedger, IterativePressureSolverCopiesTwoFieldsInEachStageOnADevice) {
 }
 #endif
 
-TEST(FlowLedger, DestructionReleasesTheMemory) {
+TEST(FlowCounters, DestructionReleasesTheMemory) {
   constexpr std::int64_t scratch = 1 << 20;  // bytes that the backend itself keeps
   Parameters p = tunnel();
   p.cells = {32, 32, 32};

@@ -6,18 +6,22 @@
 
 #include "tests/support/counted_step.hpp"
 
-// Checks the tables of kernels/gas/step_work.hpp by counting the operations of the kernels. A changed number
+// Checks the tables of perf/models/gas_step.hpp by counting the operations of the kernels. A changed number
 // means a changed cost per step.
 
-namespace drogue::gas {
+namespace drogue::perf {
 
 static void PrintTo(const Arithmetic& a, std::ostream* out) {
   *out << '{' << a.additions << ", " << a.multiplications << ", " << a.divisions << ", " << a.roots << ", "
        << a.comparisons << '}';
 }
 
+}  // namespace drogue::perf
+
+namespace drogue::gas {
 namespace {
 
+using namespace drogue::perf;  // NOLINT: the counts that are tested
 using drogue::testing::arithmetic_of;
 using drogue::testing::Counted;
 using Counting = drogue::testing::CountedStep<Counted>;

@@ -12,7 +12,7 @@ BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
 FUNCTOR = "StepFunctor<Kokkos::Serial, (drogue::reconstruction::Reconstruction)0, (drogue::gas::Precision)0, false>"
 # GCC may keep the face loop in a separate function.
 CHUNK = "FaceChunk<drogue::device::Pack<double,"
-FACE_DIVISIONS = 7  # `face_arithmetic` in kernels/gas/step_work.hpp
+FACE_DIVISIONS = 7  # `face_arithmetic` in perf/models/gas_step.hpp
 
 
 def reason_to_skip():

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
-#include "kernels/gas/parameters.hpp"
+#include "kernels/gas/solver.hpp"
 #include "kernels/gas/stepping/stage_table.hpp"
 
-namespace drogue::gas {
+namespace drogue::perf {
 
 /// Number of FP64 operations. Constants, common subexpressions, unused results and sign changes are not
 /// counted.
@@ -37,15 +37,15 @@ struct Arithmetic {
 
 /// Operations per face and stage: `stencil_wave_speeds`, `face_eigensystem` with the arithmetic average,
 /// `weno5_face`. Does not throw.
-[[nodiscard]] constexpr Arithmetic face_arithmetic(Weno weno, int power) {
+[[nodiscard]] constexpr Arithmetic face_arithmetic(gas::Weno weno, int power) {
   switch (weno) {
-    case Weno::js:
+    case gas::Weno::js:
       return {230, 235, 7, 1, 15};
-    case Weno::m:
+    case gas::Weno::m:
       return {296, 313, 31, 1, 15};
-    case Weno::teno5:
+    case gas::Weno::teno5:
       return {278, 313, 7, 1, 51};
-    case Weno::z:
+    case gas::Weno::z:
       break;
   }
   return power == 1 ? Arithmetic{254, 235, 7, 1, 15} : Arithmetic{272, 289, 7, 1, 15};
@@ -61,13 +61,6 @@ inline constexpr Arithmetic last_update_arithmetic{9, 9, 1, 1, 10};
 /// Operations per cell of a stage that includes U^n: `runge_kutta_combination`.
 inline constexpr Arithmetic combined_arithmetic{6, 3, 0, 0, 0};
 
-/// Decomposition of the mesh into tiles.
-struct Tiling {
-  std::int64_t cells = 0;  ///< cells that a tile updates
-  int halo = 0;            ///< cells that a tile reads beyond them on either side
-  bool fused = false;      ///< one kernel for all stages, otherwise one kernel per stage
-};
-
 /// Arithmetic and memory traffic of a step.
 struct StepWork {
   Arithmetic arithmetic;  ///< all zero if not counted
@@ -77,9 +70,10 @@ struct StepWork {
 
 /// Work of one tile that updates `cells` cells. The fused form also computes halo cells: three fewer on
 /// either side per stage. Does not throw.
-[[nodiscard]] constexpr StepWork tile_work(const Parameters& p, const Tiling& tiling, std::int64_t cells) {
+[[nodiscard]] constexpr StepWork tile_work(const gas::Parameters& p, const gas::Tiling& tiling,
+                                           std::int64_t cells) {
   constexpr std::int64_t state = 3 * sizeof(double);
-  const StageTable table = stage_table(p.time_scheme);
+  const gas::StageTable table = gas::stage_table(p.time_scheme);
   const std::int64_t slots = cells + 2 * tiling.halo;
   StepWork work;
   if (tiling.fused) {
@@ -104,7 +98,7 @@ struct StepWork {
 /// Work of one step of the whole mesh. Arithmetic is counted for the fused form in full FP64 with the
 /// arithmetic average and without the limiter, and is all zero otherwise. The domain ends count as interior.
 /// Does not throw.
-[[nodiscard]] constexpr StepWork step_work(const Parameters& p, const Tiling& tiling) {
+[[nodiscard]] constexpr StepWork step_work(const gas::Parameters& p, const gas::Tiling& tiling) {
   if (tiling.cells == 0) return {};
   const StepWork whole = tile_work(p, tiling, tiling.cells);
   const std::int64_t tiles = p.cells / tiling.cells, rest = p.cells % tiling.cells;
@@ -113,10 +107,10 @@ struct StepWork {
     const StepWork last = tile_work(p, tiling, rest);
     work = {work.arithmetic + last.arithmetic, work.bytes + last.bytes};
   }
-  if (p.precision != Precision::full || p.face_average != FaceAverage::arithmetic ||
-      p.positivity == Positivity::on)
+  if (p.precision != gas::Precision::full || p.face_average != gas::FaceAverage::arithmetic ||
+      p.positivity == gas::Positivity::on)
     work.arithmetic = {};
   return work;
 }
 
-}  // namespace drogue::gas
+}  // namespace drogue::perf

@@ -1,0 +1,85 @@
+# ctest-label: no-sanitizer
+"""scripts/compare_builds.py on small programs that write given histories."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(os.environ["DROGUE_SOURCE"]) / "scripts" / "compare_builds.py"
+# Writes a history unless its contents are None, and ends with a code.
+SCENE_PROGRAM = """#!/usr/bin/env python3
+import pathlib, sys
+if "--list-scenes" in sys.argv:
+    print({scenes!r})
+    sys.exit(0)
+history, code = {history!r}, {code}
+folder = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
+folder.mkdir(parents=True, exist_ok=True)
+if history is not None:
+    (folder / "history.csv").write_text(history)
+sys.exit(code)
+"""
+
+
+class Builds(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+
+    def program(self, build, name, text):
+        file = self.folder / build / name
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(text)
+        file.chmod(0o755)
+
+    def scenes(self, build, history, code=0):
+        """A build whose drogue-gas has one scene, and whose other programs have none."""
+        for name in ("drogue-gas", "drogue-springs", "drogue-parachute"):
+            scenes = "sod" if name == "drogue-gas" else ""
+            self.program(build, name, SCENE_PROGRAM.format(scenes=scenes, history=history, code=code))
+
+    def compare(self, *words):
+        command = [sys.executable, "-B", SCRIPT, self.folder / "old", self.folder / "new", *words]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    def expect_bits(self, code, words):
+        done = self.compare("--only", "drogue-gas")
+        self.assertEqual((code, True), (done.returncode, words in done.stdout), done.stdout + done.stderr)
+
+    def test_equal_histories_are_the_same_bits(self):
+        self.scenes("old", "1,2")
+        self.scenes("new", "1,2")
+        self.expect_bits(0, "sod: the same bits")
+
+    def test_unequal_histories_differ(self):
+        self.scenes("old", "1,2")
+        self.scenes("new", "1,3")
+        self.expect_bits(1, "sod: different: history.csv")
+
+    def test_runs_that_fail_alike_are_not_equal(self):
+        self.scenes("old", None, 77)
+        self.scenes("new", None, 77)
+        self.expect_bits(1, "sod: different: exit code 77")
+
+    def test_runs_without_results_are_not_equal(self):
+        self.scenes("old", None)
+        self.scenes("new", None)
+        self.expect_bits(1, "neither fields nor history")
+
+    def test_history_of_one_build_alone_differs(self):
+        self.scenes("old", "1,2")
+        self.scenes("new", None)
+        self.expect_bits(1, "history.csv of one build alone")
+
+    def test_comparing_nothing_is_an_error(self):
+        self.scenes("old", "1,2")
+        self.scenes("new", "1,2")
+        self.assertEqual(2, self.compare("--only", "no-such-scene").returncode)
+
+
+if __name__ == "__main__":
+    unittest.main()
