@@ -57,8 +57,8 @@ double difference(const WenoProblem& problem, const sod::Fields& got) {
 
 Work stage_work(const WenoProblem& problem, double launches, double traffic, const gas::Arithmetic& face) {
   const std::int64_t n = problem.cells(), tiles = n / tile_cells;
-  Work work = with_arithmetic(stages * (tiles * tile_slots * gas::load_arithmetic +
-                                        tiles * (tile_cells + 1) * face + n * gas::combined_arithmetic));
+  Work work = with_arithmetic(stages * (tiles * tile_slots * load_arithmetic +
+                                        tiles * (tile_cells + 1) * face + n * combined_arithmetic));
   work.launches = stages * launches;
   work.bytes = stages * traffic * 8.0 * static_cast<double>(n);
   return work;
