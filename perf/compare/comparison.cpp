@@ -113,7 +113,7 @@ std::vector<ComparedCase> compare_records(const std::vector<MeasuredCase>& befor
   std::vector<SpeedChange> changes;
   for (const ComparedCase& row : rows)
     if (row.speed) changes.push_back(*row.speed);
-  const std::vector<SpeedVerdict> verdicts = judge_speed(changes);
+  const std::vector<SpeedVerdict> verdicts = speed_verdict(changes);
   auto next = verdicts.begin();
   for (ComparedCase& row : rows)
     if (row.speed) row.verdict = verdict_of(*next++);

@@ -94,7 +94,7 @@ SpeedChange compare_speed(const Runs& before, const Runs& after) {
           rank_test(old_all, new_all), agreement(changes),  before == after};
 }
 
-std::vector<SpeedVerdict> judge_speed(const std::vector<SpeedChange>& changes) {
+std::vector<SpeedVerdict> speed_verdict(const std::vector<SpeedChange>& changes) {
   std::vector<double> probabilities;
   for (const SpeedChange& change : changes) probabilities.push_back(change.probability);
   probabilities = correct_for_count(probabilities);

@@ -34,6 +34,6 @@ inline constexpr double false_alarm = 0.05;
 /// Verdicts of all cases of a comparison, whose probabilities are corrected for their number. "faster" and
 /// "slower" also need the smallest effect, and blocks that agree on it: a clock that drifts or jumps moves
 /// blocks of one side as far apart as those of both sides, so ranks alone would err. Does not throw.
-std::vector<SpeedVerdict> judge_speed(const std::vector<SpeedChange>& changes);
+std::vector<SpeedVerdict> speed_verdict(const std::vector<SpeedChange>& changes);
 
 }  // namespace drogue::perf

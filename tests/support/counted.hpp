@@ -64,8 +64,8 @@ class Trace {
   /// Starts a new evaluation, which must not use values of the previous one.
   void clear() { _nodes.clear(), _known.clear(), _memory.clear(), _results.clear(); }
 
-  [[nodiscard]] gas::Arithmetic arithmetic() const {
-    gas::Arithmetic sum;
+  [[nodiscard]] perf::Arithmetic arithmetic() const {
+    perf::Arithmetic sum;
     std::vector<bool> seen(_nodes.size());
     std::vector<std::int64_t> open = _results;
     while (!open.empty()) {
@@ -89,7 +89,7 @@ class Trace {
     if (operation == Operation::select) return 3;
     return operation <= Operation::input ? 0 : operation <= Operation::root ? 1 : 2;
   }
-  static void add(Operation operation, gas::Arithmetic& sum) {
+  static void add(Operation operation, perf::Arithmetic& sum) {
     if (operation == Operation::root) ++sum.roots;
     if (operation == Operation::add || operation == Operation::subtract) ++sum.additions;
     if (operation == Operation::multiply) ++sum.multiplications;
@@ -108,7 +108,7 @@ inline Trace trace;
 
 /// Number of operations on which the stores and kept results of `evaluate` depend.
 template <class Evaluate>
-gas::Arithmetic arithmetic_of(const Evaluate& evaluate) {
+perf::Arithmetic arithmetic_of(const Evaluate& evaluate) {
   trace.clear();
   evaluate();
   return trace.arithmetic();

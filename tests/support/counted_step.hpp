@@ -48,7 +48,7 @@ class CountedStep {
     _fields[1] = _fields[2] = _fields[0];
   }
 
-  gas::StepWork work;               ///< total of all runs
+  perf::StepWork work;              ///< total of all runs
   std::int64_t times_combined = 0;  ///< number of combinations with U^n in `run_fused`
 
   /// U^{n+1} of `run_fused`, (cells, 3).
@@ -103,7 +103,7 @@ class CountedStep {
     }
   }
 
-  gas::Arithmetic load(const Thread& thread, const Tile& tile, int from) {
+  perf::Arithmetic load(const Thread& thread, const Tile& tile, int from) {
     return add([&] {
       gas::load_cells<R, false>(thread, tile, gamma, [&](std::int64_t cell) {
         return gas::load_state<R>(field(from), boundaries, cell);
@@ -112,7 +112,7 @@ class CountedStep {
   }
 
   template <gas::Reconstruction scheme>
-  gas::Arithmetic compute_face(const Tile& tile, int face) {
+  perf::Arithmetic compute_face(const Tile& tile, int face) {
     return add([&] {
       tile.store_flux(face, gas::face_flux<scheme, R>(tile, face, gas::load_stencil<R>(tile, face),
                                                       gas::FaceAverage::arithmetic, gamma,
@@ -121,7 +121,7 @@ class CountedStep {
   }
 
   template <bool last, class Functor>
-  gas::Arithmetic update(const Functor& step, const Tile& tile, int slot, int stage) {
+  perf::Arithmetic update(const Functor& step, const Tile& tile, int slot, int stage) {
     return add([&] {
       gas::CellReduction<R> reduced;
       step.template update_slot<last, R>(tile, slot, {slot, false}, _table.stage[stage], dt_over_dx, field(0),
@@ -142,8 +142,8 @@ class CountedStep {
   double* field(int buffer) { return _fields[buffer].data(); }
 
   template <class Evaluate>
-  gas::Arithmetic add(const Evaluate& evaluate) {
-    const gas::Arithmetic cost = arithmetic_of(evaluate);
+  perf::Arithmetic add(const Evaluate& evaluate) {
+    const perf::Arithmetic cost = arithmetic_of(evaluate);
     work.arithmetic = work.arithmetic + cost;
     return cost;
   }

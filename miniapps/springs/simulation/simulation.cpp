@@ -16,7 +16,7 @@ using fabric::Vector;
 /// Order of the positions in dt. Impulses of contact, and dashpots in the middle of Verlet's step, are of
 /// first order.
 std::int64_t order_in_time(const SpringsScene& scene) {
-  if (scene.contact.asked_for()) return 1;
+  if (scene.contact.is_enabled()) return 1;
   if (scene.time.integrator == fabric::Integrator::rk4) return 4;
   return scene.damping.relative > 0.0 ? 1 : 2;
 }

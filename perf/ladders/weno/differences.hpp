@@ -61,7 +61,7 @@ struct JiangShuCorrection {
 template <class Correction>
 struct DifferenceFluxWith : DirectFlux {
   /// Operations per face, counted by tests/kernels/ladders/.
-  static constexpr gas::Arithmetic arithmetic{266, 260, 32, 1, 0};
+  static constexpr Arithmetic arithmetic{266, 260, 32, 1, 0};
 
   template <class R>
   KOKKOS_FUNCTION static ConservedVector<R> face(double gamma, const CellState<R> (&cells)[6]) {

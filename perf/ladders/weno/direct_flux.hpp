@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/gas/step_work.hpp"
 #include "perf/ladders/weno/tile.hpp"
+#include "perf/models/gas_step.hpp"
 
 namespace drogue::perf::ladder {
 
@@ -9,7 +9,7 @@ namespace drogue::perf::ladder {
 /// candidate values per side with their weights, a division for each (Jiang and Shu 1996, section 2).
 struct DirectFlux {
   /// Operations per face, counted by tests/kernels/ladders/.
-  static constexpr gas::Arithmetic arithmetic{331, 381, 29, 1, 0};
+  static constexpr Arithmetic arithmetic{331, 381, 29, 1, 0};
 
   template <class R>
   KOKKOS_FUNCTION static CellState<R> cell(double gamma, const ConservedVector<R>& w) {

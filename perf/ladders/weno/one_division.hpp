@@ -8,7 +8,7 @@ namespace drogue::perf::ladder {
 /// field; roots and reciprocals from the approximations of the hardware on a GPU.
 struct OneDivisionFlux {
   /// Operations per face, counted by tests/kernels/ladders/.
-  static constexpr gas::Arithmetic arithmetic{254, 247, 7, 1, 0};
+  static constexpr Arithmetic arithmetic{254, 247, 7, 1, 0};
 
   template <class R>
   KOKKOS_FUNCTION static CellState<R> cell(double gamma, const ConservedVector<R>& u) {

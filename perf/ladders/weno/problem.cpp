@@ -12,7 +12,7 @@ namespace {
 
 constexpr int stages = 3;
 
-Work with_arithmetic(const gas::Arithmetic& sum) {
+Work with_arithmetic(const Arithmetic& sum) {
   Work work;
   work.divisions = static_cast<double>(sum.divisions + sum.roots);
   work.flops = static_cast<double>(sum.additions + sum.multiplications);
@@ -55,7 +55,7 @@ double difference(const WenoProblem& problem, const sod::Fields& got) {
   return worst;
 }
 
-Work stage_work(const WenoProblem& problem, double launches, double traffic, const gas::Arithmetic& face) {
+Work stage_work(const WenoProblem& problem, double launches, double traffic, const Arithmetic& face) {
   const std::int64_t n = problem.cells(), tiles = n / tile_cells;
   Work work = with_arithmetic(stages * (tiles * tile_slots * load_arithmetic +
                                         tiles * (tile_cells + 1) * face + n * combined_arithmetic));
@@ -65,7 +65,7 @@ Work stage_work(const WenoProblem& problem, double launches, double traffic, con
 }
 
 Work library_work(const WenoProblem& problem, double launches) {
-  const gas::StepWork counted = gas::step_work(problem.parameters, {384 - 18, 9, true});
+  const StepWork counted = step_work(problem.parameters, {384 - 18, 9, true});
   Work work = with_arithmetic(counted.arithmetic);
   work.bytes = static_cast<double>(counted.bytes);
   work.launches = launches;

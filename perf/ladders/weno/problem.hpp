@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/gas/step_work.hpp"
 #include "perf/ladders/ladder.hpp"
+#include "perf/models/gas_step.hpp"
 #include "perf/problems/sod.hpp"
 
 namespace drogue::perf::ladder {
@@ -33,7 +33,7 @@ struct WenoProblem {
 /// kernels each, `traffic` doubles per cell and stage between them and memory, and `face` operations per
 /// face. Does not throw.
 [[nodiscard]] Work stage_work(const WenoProblem& problem, double launches, double traffic,
-                              const gas::Arithmetic& face);
+                              const Arithmetic& face);
 
 /// Work per step of the library's solver, which computes all stages of a tile in one kernel. Does not throw.
 [[nodiscard]] Work library_work(const WenoProblem& problem, double launches);

@@ -14,7 +14,7 @@ using drogue::testing::arithmetic_of;
 using drogue::testing::Counted;
 
 template <class Flux>
-gas::Arithmetic counted_face() {
+perf::Arithmetic counted_face() {
   return arithmetic_of([] {
     CellState<Counted> cells[6];
     for (int k = 0; k < 6; ++k) {
@@ -28,7 +28,7 @@ gas::Arithmetic counted_face() {
 
 template <class Flux>
 void expect_counted(const char* name) {
-  const gas::Arithmetic counted = counted_face<Flux>(), stated = Flux::arithmetic;
+  const perf::Arithmetic counted = counted_face<Flux>(), stated = Flux::arithmetic;
   EXPECT_EQ(counted.additions, stated.additions) << name;
   EXPECT_EQ(counted.multiplications, stated.multiplications) << name;
   EXPECT_EQ(counted.divisions, stated.divisions) << name;

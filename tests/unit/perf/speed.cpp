@@ -79,7 +79,7 @@ std::map<SpeedVerdict, int> verdicts(const Machine& machine, int count, double f
     const std::vector<double> before = machine(random, count);
     std::vector<double> after = machine(random, count);
     for (double& sample : after) sample *= factor;
-    ++found[judge_speed({compare_speed({before}, {after})}).front()];
+    ++found[speed_verdict({compare_speed({before}, {after})}).front()];
   }
   return found;
 }
@@ -112,7 +112,7 @@ TEST(SpeedVerdict, FindsOneSlowCaseAmongManyAndNoOther) {
       for (double& sample : after) sample *= 1.3;
     changes.push_back(compare_speed({heavy_tails(random, 30)}, {after}));
   }
-  const std::vector<SpeedVerdict> found = judge_speed(changes);
+  const std::vector<SpeedVerdict> found = speed_verdict(changes);
   for (std::size_t i = 0; i < found.size(); ++i)
     EXPECT_EQ(found[i] == SpeedVerdict::slower || found[i] == SpeedVerdict::faster, i == 41) << i;
 }
@@ -124,7 +124,7 @@ TEST(SpeedVerdict, TrendThatGoesOnIsNoChange) {
   for (int i = 30; i < 60; ++i) after.push_back(1.0 + 0.004 * i + 0.005 * normal(random));
   const SpeedChange change = compare_speed({before}, {after});
   EXPECT_LT(change.probability, 1e-6);
-  EXPECT_EQ(judge_speed({change}).front(), SpeedVerdict::ambiguous);
+  EXPECT_EQ(speed_verdict({change}).front(), SpeedVerdict::ambiguous);
 }
 
 TEST(SpeedVerdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
@@ -137,9 +137,9 @@ TEST(SpeedVerdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
   // Runs of one build that differ by 15 %: to be as fast as one of them is no change, 30 % beyond both is
   // one.
   const Runs before = {run(1.0), run(1.15)};
-  EXPECT_EQ(judge_speed({compare_speed({before[1]}, {run(1.0)})}).front(), SpeedVerdict::faster);
-  EXPECT_NE(judge_speed({compare_speed(before, {run(1.0)})}).front(), SpeedVerdict::faster);
-  EXPECT_EQ(judge_speed({compare_speed(before, {run(1.5), run(1.5)})}).front(), SpeedVerdict::slower);
+  EXPECT_EQ(speed_verdict({compare_speed({before[1]}, {run(1.0)})}).front(), SpeedVerdict::faster);
+  EXPECT_NE(speed_verdict({compare_speed(before, {run(1.0)})}).front(), SpeedVerdict::faster);
+  EXPECT_EQ(speed_verdict({compare_speed(before, {run(1.5), run(1.5)})}).front(), SpeedVerdict::slower);
 }
 
 TEST(SpeedVerdict, MoreRunsFindSmallerChanges) {
@@ -153,7 +153,7 @@ TEST(SpeedVerdict, MoreRunsFindSmallerChanges) {
         after.push_back(quiet(random, 30));
         for (double& sample : after.back()) sample *= 1.06;
       }
-      if (judge_speed({compare_speed(before, after)}).front() == SpeedVerdict::slower) ++slower;
+      if (speed_verdict({compare_speed(before, after)}).front() == SpeedVerdict::slower) ++slower;
     }
     return slower;
   };
@@ -169,12 +169,12 @@ TEST(SpeedVerdict, SmallChangesAreNone) {
     before.push_back(1.0 + 0.001 * normal(random)), after.push_back(1.02 + 0.001 * normal(random));
   const SpeedChange change = compare_speed({before}, {after});
   EXPECT_LT(change.probability, 1e-9);
-  EXPECT_EQ(judge_speed({change}).front(), SpeedVerdict::same);
+  EXPECT_EQ(speed_verdict({change}).front(), SpeedVerdict::same);
 }
 
 TEST(SpeedVerdict, NeedsSamples) {
-  EXPECT_EQ(judge_speed({compare_speed({{1.0}}, {{2.0}})}).front(), SpeedVerdict::ambiguous);
-  EXPECT_EQ(judge_speed({compare_speed({{1.0}}, {{1.0}})}).front(), SpeedVerdict::same);
+  EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{2.0}})}).front(), SpeedVerdict::ambiguous);
+  EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{1.0}})}).front(), SpeedVerdict::same);
 }
 
 }  // namespace
