@@ -127,6 +127,18 @@ TEST(SpeedVerdict, TrendThatGoesOnIsNoChange) {
   EXPECT_EQ(speed_verdict({change}).front(), SpeedVerdict::ambiguous);
 }
 
+TEST(SpeedVerdict, OtherWorkBesideARunIsNoChange) {
+  Random random(17);
+  const std::vector<double> before = quiet(random, 30);
+  std::vector<double> after = quiet(random, 30);
+  // All but two samples share their core with another process.
+  for (std::size_t i = 0; i < after.size(); ++i)
+    if (i != 7 && i != 19) after[i] *= 1.8;
+  const SpeedChange change = compare_speed({before}, {after});
+  EXPECT_LT(change.probability, 1e-6);
+  EXPECT_EQ(judge_speed({change}).front(), SpeedVerdict::ambiguous);
+}
+
 TEST(SpeedVerdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
   Random random(3);
   const auto run = [&](double level) {
