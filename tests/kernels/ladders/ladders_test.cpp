@@ -56,6 +56,22 @@ TEST_P(Ladders, RungsHaveDistinctNamesAndTexts) {
 INSTANTIATE_TEST_SUITE_P(All, Ladders, ::testing::ValuesIn(names()),
                          [](const auto& tested) { return tested.param; });
 
+TEST(Prediction, AddsCopiesAndLaunchesToTheLongerOfMemoryAndArithmetic) {
+  Ceilings machine;
+  machine.launch = machine.copy = 1.0;
+  machine.pageable = machine.pinned = machine.bandwidth = machine.flops = machine.divisions = 10.0;
+  machine.lanes = 4;
+  Work work;
+  work.launches = 2.0, work.copies = 3.0, work.copied_bytes = 40.0, work.bytes = 50.0, work.flops = 60.0;
+  EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 4.0 * 6.0);
+  EXPECT_STREQ(predict(work, machine).bound, "arithmetic");
+  work.packed = true;
+  EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 6.0);
+  EXPECT_STREQ(predict(work, machine).bound, "copies");
+  work.overlapped = true;
+  EXPECT_EQ(predict(work, machine).seconds, 2.0 + 6.0);
+}
+
 // The reference of the options ladder, whose rungs only show that they compute the same. Its error is that of
 // 32 Euler steps: a sixteenth of the step leaves 2e-4 of it.
 TEST(OptionsLadder, ReferenceApproximatesMertonSeries) {
