@@ -7,7 +7,9 @@
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <span>
 
+#include "kernels/fabric/elastic/elongation.hpp"
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/fabric/payload.hpp"
 
@@ -55,6 +57,7 @@ struct RingMesh {
   std::vector<std::array<int, 3>> triangles;
   std::vector<int> ring_begin;  ///< first vertex of each ring
   std::vector<int> ring_size;
+  std::vector<std::size_t> triangles_inside;  ///< number of triangles inside of each ring, which come first
 };
 
 /// Triangles between two rings that share `sectors` aligned vertices, whose edges become edges of the mesh.
@@ -98,7 +101,11 @@ RingMesh make_rings(const Canopy& canopy) {
   if (canopy.vent == 0.0)
     for (int i = 0; i < cloth.ring_size[0]; ++i)
       cloth.triangles.push_back({0, 1 + i, 1 + (i + 1) % cloth.ring_size[0]});
-  for (std::size_t k = 0; k + 1 < distances.size(); ++k) join_rings(cloth, k);
+  cloth.triangles_inside.push_back(cloth.triangles.size());
+  for (std::size_t k = 0; k + 1 < distances.size(); ++k) {
+    join_rings(cloth, k);
+    cloth.triangles_inside.push_back(cloth.triangles.size());
+  }
   return cloth;
 }
 
@@ -153,8 +160,8 @@ std::array<double, 2> ray_angles(const Canopy& canopy) {
 }
 
 /// Place of a vertex on a pleated cone: on the plane between its neighbouring rays, at its distance from the
-/// apex. Lengths within a pleat are those of the flat cloth.
-Vector pleated_place(const Canopy& canopy, const CanopyAxes& axes, const PolarPoint& at) {
+/// apex and a shift, m, towards the skirt. Without it, lengths within a pleat are those of the flat cloth.
+Vector pleated_place(const Canopy& canopy, const CanopyAxes& axes, const PolarPoint& at, double shift) {
   const auto angles = ray_angles(canopy);
   const double between = pi / canopy.gores, turn = at.turn * 2.0 * canopy.gores;
   const double ray = std::floor(turn + 1e-9), part = std::max(0.0, turn - ray);
@@ -167,9 +174,65 @@ Vector pleated_place(const Canopy& canopy, const CanopyAxes& axes, const PolarPo
   const double l = std::sin((1.0 - part) * between) / std::sin(between),
                r = std::sin(part * between) / std::sin(between);
   const double apex = 0.5 * canopy.diameter * std::cos(angles[0]);  // above the skirt
-  return axes.place(canopy.centre, at.distance * (l * left[0] + r * right[0]),
-                    at.distance * (l * left[1] + r * right[1]),
-                    apex + at.distance * (l * left[2] + r * right[2]));
+  if (at.distance == 0.0) return axes.place(canopy.centre, 0.0, 0.0, apex - shift);
+  const double distance = at.distance + shift;
+  return axes.place(canopy.centre, distance * (l * left[0] + r * right[0]),
+                    distance * (l * left[1] + r * right[1]), apex + distance * (l * left[2] + r * right[2]));
+}
+
+/// Least number from `low` to `high` at which a convex function is smallest, where values up to round-off
+/// count as 0.
+template <class Function>
+double least_minimum(double low, double high, const Function& function) {
+  constexpr double round_off = 1e-9;
+  constexpr int steps = 60;
+  const auto value = [&](double at) {
+    const double exact = function(at);
+    return exact <= round_off ? 0.0 : exact;
+  };
+  if (value(low) == 0.0) return low;
+  for (int k = 0; k < steps; ++k) {
+    const double third = (high - low) / 3.0;
+    if (value(low + third) <= value(high - third))
+      high -= third;
+    else
+      low += third;
+  }
+  return high;
+}
+
+/// Lays the cloth as a pleated cone. A triangle that spans a fold, where the mesh is coarser than the pleats,
+/// has a shorter base than at rest and would be stretched across it: what is inside of it lies nearer to the
+/// skirt by as much. Elongation is a convex function of the shift, since places are linear ones.
+void lay_pleats(const Canopy& canopy, const CanopyAxes& axes, const RingMesh& cloth, CanopyMesh& to) {
+  const std::size_t rings = cloth.ring_size.size();
+  const auto lay = [&](std::size_t begin, std::size_t count, double shift) {
+    for (std::size_t i = begin; i < begin + count; ++i)
+      to.positions[i] = pleated_place(canopy, axes, cloth.points[i], shift);
+  };
+  double shift = 0.0, outside = 0.5 * canopy.diameter;
+  for (std::size_t ring = rings; ring-- > 0;) {
+    const auto begin = static_cast<std::size_t>(cloth.ring_begin[ring]),
+               count = static_cast<std::size_t>(cloth.ring_size[ring]);
+    const double distance = cloth.points[begin].distance;
+    if (ring + 1 < rings) {
+      const std::size_t first = cloth.triangles_inside[ring];
+      const std::span band(cloth.triangles.data() + first, cloth.triangles_inside[ring + 1] - first);
+      shift = least_minimum(shift, shift + 0.9 * (outside - distance), [&](double by) {
+        lay(begin, count, by);
+        return fabric::largest_elongation(to.fabric.mesh, band, to.positions);
+      });
+    }
+    lay(begin, count, shift);
+    outside = distance;
+  }
+  if (canopy.vent > 0.0) return;
+  const std::span fan(cloth.triangles.data(), cloth.triangles_inside[0]);
+  shift = least_minimum(shift, shift + 0.9 * outside, [&](double by) {
+    lay(0, 1, by);
+    return fabric::largest_elongation(to.fabric.mesh, fan, to.positions);
+  });
+  lay(0, 1, shift);
 }
 
 /// Place of a vertex in the cloth as constructed.
@@ -323,14 +386,12 @@ CanopyMesh make_canopy(const Canopy& canopy) {
   CanopyMesh result;
   const RingMesh cloth = make_rings(canopy);
   const CanopyAxes axes = axes_of(canopy);
-  const bool is_pleated = canopy.shape == CanopyShape::partly_closed;
   fabric::Parameters& p = result.fabric;
-  for (const PolarPoint& at : cloth.points) {
-    p.mesh.rest.push_back(constructed_place(canopy, axes, at));
-    result.positions.push_back(is_pleated ? pleated_place(canopy, axes, at) : p.mesh.rest.back());
-  }
-  perturb(canopy, axes, result.positions);
+  for (const PolarPoint& at : cloth.points) p.mesh.rest.push_back(constructed_place(canopy, axes, at));
   p.mesh.triangles = cloth.triangles;
+  result.positions = p.mesh.rest;
+  if (canopy.shape == CanopyShape::partly_closed) lay_pleats(canopy, axes, cloth, result);
+  perturb(canopy, axes, result.positions);
   result.cloth_vertices = cloth.points.size();
   p.mass = fabric::lumped_masses(p.mesh, canopy.area_density, 0.0, fabric::Lumping::area);
   if (canopy.kind == CanopyKind::drum) stretch_drum(canopy, axes, cloth, result);

@@ -7,6 +7,8 @@
 
 #include "kernels/mesh/edges.hpp"
 #include "kernels/mesh/topology.hpp"
+#include "kernels/reference/fabric/intersections.hpp"
+#include "kernels/reference/fabric/membrane.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 
 // Meshes of canopies: cloth, lines and payload.
@@ -214,9 +216,11 @@ TEST(Canopy, PleatedConeIsIsometricWithinItsPleats) {
       EXPECT_NEAR(std::hypot(x[0] - 0.5, x[1] + 1.0), 4.267 * closure, 1e-12);
       EXPECT_NEAR(x[2], 2.0, 1e-12);
     }
-    // Meridians keep their length: the vent lies above the skirt.
+    // Meridians keep their length but near the vent, where the mesh is coarser than the pleats.
     const Vector& vent = mesh.positions.front();
-    EXPECT_NEAR(vent[2] - 2.0, (4.267 - 0.2285) * std::sqrt(1.0 - closure * closure), 1e-12);
+    const double height = (4.267 - 0.2285) * std::sqrt(1.0 - closure * closure);
+    EXPECT_LE(vent[2] - 2.0, height + 1e-12);
+    EXPECT_GE(vent[2] - 2.0, height - 0.03);
   }
   // With an even number of edges per gore, each fold has vertices and no edge crosses it.
   Canopy canopy = c9(0.12);
@@ -228,6 +232,29 @@ TEST(Canopy, PleatedConeIsIsometricWithinItsPleats) {
     EXPECT_NEAR(
         distance_of(mesh.positions[static_cast<std::size_t>(a)], mesh.positions[static_cast<std::size_t>(b)]),
         mesh::rest_distance(mesh.fabric.mesh, a, b), 1e-12);
+}
+
+TEST(Canopy, PleatedConeStartsWithoutElasticEnergy) {
+  for (const double closure : {0.125, 0.25, 0.5, 0.95})
+    for (const double edge_length : {0.28, 0.42, 0.7})
+      for (const double vent : {0.0, 0.457})
+        for (const int gores : {28, 29}) {
+          Canopy canopy = c9(edge_length);
+          canopy.shape = CanopyShape::partly_closed;
+          canopy.closure = closure, canopy.vent = vent, canopy.gores = gores;
+          canopy.reinforcement = {5000.0, 5000.0, vent > 0.0 ? 5000.0 : 0.0};
+          const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+          const fabric::Parameters& p = sheets.fabric;
+          const double energy = reference::energy(p.material, p.mesh, sheets.positions);
+          // 1 % of strain in all of the 57 m^2 has 57 J.
+          EXPECT_LT(energy, closure > 0.25 ? 0.3 : 0.004) << closure << ", " << edge_length << ", " << gores;
+        }
+  // The shape of the scene `reefed`.
+  Canopy reefed = c9(0.42);
+  reefed.shape = CanopyShape::partly_closed, reefed.closure = 0.25;
+  const Sheets sheets = make_all_sheets({}, {reefed}, 1.225, 1.8e-5);
+  EXPECT_LT(reference::energy(sheets.fabric.material, sheets.fabric.mesh, sheets.positions), 1e-3);
+  EXPECT_TRUE(reference::intersections(sheets.positions, sheets.fabric.mesh.triangles, {}).empty());
 }
 
 TEST(Canopy, MassIsThatOfClothLinesAndPayload) {
