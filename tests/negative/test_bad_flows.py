@@ -99,7 +99,7 @@ class BadFlows(parachute_program.FlowTest):
         drift = "verify.energy_drift=1e-3"
         self.expect(0, self.scene, "--check", sets=[drift])
         for key, words in {"coupling.contact=true": "contact of cloth", "canopy[0].payload.release=0.1": "lines of canopy[0] are cut",
-                           "canopy[0].reefing={length=5.9,cut=1}": "reefing", "output.history_every=0": "history_every"}.items():
+                           "canopy[0].reefing={length=5.9,cut=0.2}": "reefing", "output.history_every=0": "history_every"}.items():
             self.assertIn(words, self.refusal(drift, key), key)
         self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
         self.assertIn("verify.energy_drift applies only without [fluid]", self.refusal(drift))

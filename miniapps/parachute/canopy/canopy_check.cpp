@@ -94,6 +94,18 @@ void check_reefing(const Table& root, const Canopy& canopy, const std::string& n
                    real_text(open) + " m, the length around the skirt");
 }
 
+/// What lies after the end does not happen.
+void check_cuts(const Table& root, const FlowScene& scene, const Canopy& canopy, const std::string& name) {
+  const auto check = [&](const std::string& key, const std::optional<double>& time) {
+    if (time && *time > scene.end_time)
+      contradict(root, key,
+                 key + " = " + real_text(*time) + " s is later than run.end_time = " +
+                     real_text(scene.end_time) + " s; a run that continues this one may have it");
+  };
+  check(name + ".payload.release", canopy.payload.release);
+  if (canopy.reefing) check(name + ".reefing.cut", canopy.reefing->cut);
+}
+
 void check_edges(const Table& root, const flow::Parameters& p, const Canopy& canopy,
                  const std::string& name) {
   double width = cell_width(p, 0);
@@ -264,6 +276,7 @@ void check_canopies(const Table& root, const FlowScene& scene) {
     const std::string name = name_of(i);
     check_measures(root, canopy, name);
     check_reefing(root, canopy, name);
+    check_cuts(root, scene, canopy, name);
     if (scene.has_fluid()) {
       check_porosity(root, scene, name, canopy.porosity);
       check_edges(root, p, canopy, name);

@@ -99,6 +99,10 @@ std::string scene_fingerprint(FlowScene scene) {
   keep(&flow::Parameters::cfl);
   keep(&flow::Parameters::fixed_dt);
   keep(&flow::Parameters::max_dt);
+  for (Canopy& canopy : scene.canopies) {
+    canopy.payload.release.reset();
+    if (canopy.reefing) canopy.reefing->cut.reset();
+  }
   // The content of a mesh file counts, not its path.
   std::string surfaces;
   for (Body& body : scene.bodies) {

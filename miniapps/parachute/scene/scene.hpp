@@ -227,8 +227,8 @@ FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<s
 /// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself.
 std::string print_flow_scene(const FlowScene& scene);
 
-/// Fingerprint of fluid, grid and scheme for restart files. Output, checks, the end time and the choice of dt
-/// may change between a run and its continuation.
+/// Fingerprint of fluid, grid and scheme for restart files. Output, checks, the end time, the times at which
+/// lines are cut and the choice of dt may change between a run and its continuation.
 std::string scene_fingerprint(FlowScene scene);
 
 /// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.

@@ -242,7 +242,7 @@ void ClothSimulation::describe(run::ResultDocument& result) {
 ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
   check_canopies(_scene.verify, _record, result);
   check_oscillations(_scene.verify, directory, result);
-  check_energy_drift(_scene.verify, directory, result);
+  check_energy_drift(_scene, directory, result);
   return ExitCode::ok;
 }
 
