@@ -73,6 +73,9 @@ struct MeanMotionFunctor {
 /// little. In an interval the speeds are those after the forces, and impulses hardly raise the largest one.
 /// The skin is 16 steps at the present speed, or 5 intervals: a wider one has more pairs to test, a narrower
 /// one is rebuilt too often. Launched for one index.
+///
+/// Crumpled cloth may have more neighbours within the skin than a list holds, though few within reach:
+/// `NarrowSkinFunctor` then takes the least one that is valid for this step.
 template <class ExecutionSpace>
 struct RebuildDecisionFunctor {
   ContactViews<ExecutionSpace> views;
@@ -92,10 +95,13 @@ struct RebuildDecisionFunctor {
                    skin = larger(2.0 * (little + strides * stride), 4.0 * little),
                    least = views.by_interval ? 2.0 * ahead : 8.0 * stride;
       progress.skin = larger(skin < views.widest_skin ? skin : views.widest_skin, least);
+      // For this step alone, in which vertices at rest move by a hundredth of an edge at most.
+      progress.least_skin = (views.by_interval ? 2.5 : 8.0) * stride + 0.2 * little;
+      progress.grid_skin = progress.skin;
       progress.extent = 0;
     }
     progress.moved = progress.fastest = 0;
-    progress.constraints = 0;
+    progress.constraints = progress.crowded = 0;
     for (int& crossing : progress.crossing) crossing = 0;
   }
 };
@@ -127,7 +133,8 @@ struct ClearGridFunctor {
 /// Grid with cells so wide that near parts lie in adjacent cells.
 template <class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION spatial::HashGrid search_grid(const ContactViews<ExecutionSpace>& views) {
-  const double width = value_of_bits(views.progress(0).extent) + views.cutoff_distance();
+  const ContactStatus& progress = views.progress(0);
+  const double width = value_of_bits(progress.extent) + views.thickness + progress.grid_skin;
   return spatial::HashGrid{width};
 }
 
@@ -160,17 +167,38 @@ struct FillGridFunctor {
   }
 };
 
-/// Lists the near triangles of every vertex and the near edges with larger numbers of every edge.
+/// Takes the least skin if a list was too short for its neighbours. Launched for one index.
+template <class ExecutionSpace>
+struct NarrowSkinFunctor {
+  ContactViews<ExecutionSpace> views;
+
+  KOKKOS_FUNCTION void operator()(const int) const {
+    ContactStatus& progress = views.progress(0);
+    if (progress.stale != 0 && progress.crowded != 0) progress.skin = progress.least_skin;
+  }
+};
+
+/// Lists the near triangles of every vertex and the near edges with larger numbers of every edge. With
+/// `narrowed` it repeats that after `NarrowSkinFunctor`, if there was no room.
 template <class ExecutionSpace>
 struct NeighbourListFunctor {
   ContactViews<ExecutionSpace> views;
+  bool narrowed;
 
   KOKKOS_FUNCTION void operator()(const int k) const {
-    if (views.progress(0).stale == 0) return;
+    if (views.progress(0).stale == 0 || (narrowed && views.progress(0).crowded == 0)) return;
     if (k < views.vertices)
       list_triangles(k);
     else
       list_edges(k - views.vertices);
+  }
+
+  /// A list near vertex i has no room.
+  KOKKOS_FUNCTION void overflow(int i) const {
+    if (narrowed)
+      views.raise(views.present_step(), FailureReason::too_dense, i);
+    else
+      device::relaxed_store(&views.progress(0).crowded, 1);
   }
 
   KOKKOS_FUNCTION void list_triangles(int i) const {
@@ -189,7 +217,7 @@ struct NeighbourListFunctor {
       if (count < room)
         views.near_triangle(i, count) = t;
       else
-        views.raise(views.present_step(), FailureReason::too_dense, i);
+        overflow(i);
       ++count;
     });
     views.near_triangles(i) = count < room ? count : room;
@@ -219,7 +247,7 @@ struct NeighbourListFunctor {
       if (count < room)
         views.near_edge(e, count) = f;
       else
-        views.raise(views.present_step(), FailureReason::too_dense, a);
+        overflow(a);
       ++count;
     };
     if (views.is_long(e) != 0) {

@@ -183,7 +183,8 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   allocate(t.edge_sphere, "edge_spheres", layers * sides);
   allocate(t.near_triangles, "near_triangles", layers * n),
       allocate(t.near_edges, "near_edges", layers * sides);
-  const int room = t.by_interval ? max_neighbours_of_interval : max_neighbours;
+  const int room =
+      t.by_interval || sides <= most_edges_of_long_lists ? max_neighbours : max_neighbours_of_large_meshes;
   allocate(t.near_triangle, "near_triangle", layers * n, room),
       allocate(t.near_edge, "near_edge", layers * sides, room);
   allocate(t.constraint, "constraints", 1024 + (t.by_interval ? 16 : 8) * n);
@@ -252,7 +253,9 @@ void ContactImpl<ExecutionSpace>::enqueue_impulses(const Points3& x, const Point
            ClearGridFunctor<Space>{_views});
     launch("drogue::fabric::fill_grid", std::max(_views.triangles, _views.edges),
            FillGridFunctor<Space>{_views});
-    launch("drogue::fabric::neighbour_lists", n + _views.edges, NeighbourListFunctor<Space>{_views});
+    launch("drogue::fabric::neighbour_lists", n + _views.edges, NeighbourListFunctor<Space>{_views, false});
+    launch("drogue::fabric::narrow_skin", 1, NarrowSkinFunctor<Space>{_views});
+    launch("drogue::fabric::neighbour_lists", n + _views.edges, NeighbourListFunctor<Space>{_views, true});
   }
   launch("drogue::fabric::detect_constraints", parts(), DetectConstraintsFunctor<Space>{_views});
   const int items = device::is_host<Space> ? _instance.space().concurrency()

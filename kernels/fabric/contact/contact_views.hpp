@@ -13,8 +13,11 @@ using spatial::BoundingSphere;
 /// Rounds of impulses per step, and of rigid impact zones, which may grow where impulses were not enough.
 inline constexpr int impulse_rounds = 10, zone_rounds = 6;
 
-/// Capacity: neighbours of a vertex or edge, also in an interval of several steps.
-inline constexpr int max_neighbours = 64, max_neighbours_of_interval = 192;
+/// Capacity: neighbours of a vertex or edge. Crumpled cloth needs the larger number, which all but meshes of
+/// so many edges that their lists would take hundreds of megabytes have, and all of them in intervals of
+/// several steps.
+inline constexpr int max_neighbours = 192, max_neighbours_of_large_meshes = 64;
+inline constexpr std::size_t most_edges_of_long_lists = 262144;
 
 /// Number of constraints of a vertex up to which their impulses are added in a fixed order. More are added as
 /// integers (`ImpulseSum`).
@@ -68,9 +71,12 @@ struct ContactStatus {
   std::uint64_t fastest;  ///< bits of the largest speed, m/s
   std::uint64_t extent;   ///< bits of the largest extent of a triangle or edge along an axis, m
   double skin;            ///< m, margin of the neighbour lists beyond the contact distance
+  double least_skin;      ///< m, least margin with which lists are valid in this step
+  double grid_skin;       ///< m, margin for which the cells of the hash grid are wide enough
   double speed;           ///< largest speed in this step, m/s
   double dt;              ///< s, of this step
   int stale;              ///< 1: the neighbour lists must be rebuilt in this step
+  int crowded;            ///< 1: a rebuilt list cannot hold the neighbours within the skin
   int constraints;        ///< number of constraints found in this step
   int crossing[zone_rounds + 1];  ///< 1 if parts would cross before and after each round of zones
   std::uint64_t reason;           ///< minimum of 16 * step + FailureReason

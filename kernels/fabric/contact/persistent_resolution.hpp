@@ -74,9 +74,21 @@ struct PersistentResolutionFunctor {
       phases.each(grid_entries(), ClearGridFunctor<Space>{views});
       phases.each(views.edges > views.triangles ? views.edges : views.triangles,
                   FillGridFunctor<Space>{views});
-      phases.each(views.vertices + views.edges, NeighbourListFunctor<Space>{views});
+      list_neighbours(phases);
     }
     phases.each(parts(), detect);
+  }
+
+  template <class Member>
+  KOKKOS_FUNCTION void list_neighbours(Phases<Member>& phases) const {
+    const ContactViews<ExecutionSpace>& views = detect.views;
+    using Space = ExecutionSpace;
+    for (const bool narrowed : {false, true}) {
+      phases.each(views.vertices + views.edges, NeighbourListFunctor<Space>{views, narrowed});
+      // No phase after the first one changes it.
+      if (narrowed || device::relaxed_load(&views.progress(0).crowded) == 0) break;
+      phases.each(1, NarrowSkinFunctor<Space>{views});
+    }
   }
 
   template <class Member>

@@ -94,7 +94,7 @@ void check_reefing(const Table& root, const Canopy& canopy, const std::string& n
                    real_text(open) + " m, the length around the skirt");
 }
 
-/// What lies after the end does not happen.
+/// Cuts after the end of the run would not happen.
 void check_cuts(const Table& root, const FlowScene& scene, const Canopy& canopy, const std::string& name) {
   const auto check = [&](const std::string& key, const std::optional<double>& time) {
     if (time && *time > scene.end_time)

@@ -133,9 +133,12 @@ const char* cloth_failure_text(fabric::FailureReason reason) {
     case fabric::FailureReason::too_fast:
       return "the cloth moves farther than the search distance of contact";
     case fabric::FailureReason::too_dense:
-      return "the lists of contact cannot hold all neighbours";
+      return "more cloth lies within reach than the lists of contact hold, which a smaller "
+             "coupling.thickness "
+             "may prevent,";
     case fabric::FailureReason::too_many_constraints:
-      return "the lists of contact cannot hold all constraints";
+      return "more parts of the cloth are in contact than its lists hold, which a smaller coupling.thickness "
+             "may prevent,";
     default:
       return "the positions of the cloth are not finite";
   }

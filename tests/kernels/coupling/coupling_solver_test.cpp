@@ -554,7 +554,7 @@ TEST(CoupledLedger, ContactIsResolvedOncePerInterval) {
   // impulses, continuous detection, 6 rounds of zones and their end; on a device all but the first are
   // one launch, as are the steps of each interval.
   EXPECT_EQ(launches(true) - launches(false),
-            8 * on_device(4 * 2 + 3, 4 * (1 + 1 + 4 + 1 + 20 + 1 + 24 + 1)));
+            8 * on_device(4 * 2 + 3, 4 * (1 + 1 + 6 + 1 + 20 + 1 + 24 + 1)));
 }
 
 }  // namespace

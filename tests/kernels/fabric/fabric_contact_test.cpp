@@ -166,6 +166,34 @@ TEST(FabricContact, VerticesMayHaveAnyNumberOfConstraints) {
   }
 }
 
+/// Layers closer than the margin of the lists of neighbours: some 24 of them lie within half an edge, so that
+/// no list holds all of it, but few within reach. The two uppermost ones fall.
+Sheets stack_of_dense_layers() {
+  Sheets s;
+  for (int layer = 0; layer < 24; ++layer)
+    s.add(4, 0.3, level(0.003 * layer, 0.002 * layer, 0.003 * layer), {0.0, 0.0, layer < 22 ? 0.0 : -0.5});
+  s.p.contact.thickness = 0.002;
+  s.p.integrator = Integrator::symplectic_euler;
+  return s;
+}
+
+TEST(FabricContact, DenseLayersNarrowTheMarginOfTheLists) {
+  for (const int interval : {1, 2}) {
+    Sheets s = stack_of_dense_layers();
+    s.p.contact.interval = interval;
+    const ContactRun o = run_with_contact(s, 60, 60);
+    EXPECT_FALSE(o.failure) << interval;
+    EXPECT_EQ(o.crossings, 0U) << interval;
+    EXPECT_LT(o.work, -0.1 * o.start_kinetic) << interval << ": they never touched";
+  }
+  // Layers within the thickness itself are too many.
+  Sheets s = stack_of_dense_layers();
+  s.p.contact.thickness = 0.06;
+  const ContactRun o = run_with_contact(s, 1, 1);
+  ASSERT_TRUE(o.failure);
+  EXPECT_EQ(o.failure->reason, FailureReason::too_dense);
+}
+
 TEST(FabricContact, SheetsCrossWithoutContact) {
   Sheets s = edge_on(3.0);
   s.p.contact = {};
