@@ -13,6 +13,7 @@
 #include "kernels/coupling/sheet/moving_frame.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/coupling/total_force.hpp"
+#include "kernels/device/stopwatch.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
@@ -100,6 +101,8 @@ class CoupledSolver {
   using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
 
   static constexpr std::int64_t block_steps = 16;
+  /// Time of a batch of steps, s, beyond which the next one has fewer: `advance` polls after each of them.
+  static constexpr double longest_batch_s = 0.4;
 
   /// Fluid at rest and cloth at rest in its mesh; set other states by `flow` and `fabric`, then call `start`.
   /// `instance` must outlive the solver. Each rank gives the same parameters. Blocks. Throws
@@ -166,7 +169,7 @@ class CoupledSolver {
       throw std::invalid_argument("coupled solver: the number of substeps must not be negative");
     if (!(p.flow.fixed_dt > 0.0 || p.flow.max_dt > 0.0))
       throw std::invalid_argument("coupled solver: either fixed_dt or max_dt must be positive");
-    if (p.flow.cfl == 0.0) p.flow.cfl = 0.5;
+    if (p.flow.cfl == 0.0) p.flow.cfl = default_cfl;
     p.flow.external_force = true;
     return p;
   }
@@ -178,13 +181,14 @@ class CoupledSolver {
     _fabric.set_line_stiffness(stiffness);
     _strength.set_stiffness(_space, stiffness);
   }
-  void plan_block(const flow::Progress& now, double target);
+  [[nodiscard]] bool plan_block(const flow::Progress& now, double target);
   void set_cloth_time();
   /// Counts the time of the cloth from now on, s, which a change of dt makes necessary. Does not throw.
   void count_cloth_time_from(double now) { _block.since = _block.cloth_step, _block.start = now; }
   void move_frame(const flow::Progress& now);
   void end_block_at(double target, const flow::Progress& now);
   void enqueue_step(double dt, bool is_first);
+  void adapt_batch(std::int64_t steps, const device::Stopwatch& stopwatch);
   [[nodiscard]] bool needs_shorter_steps(const flow::Progress& now);
   void return_to_last_step(const flow::Progress& now);
 
@@ -204,6 +208,7 @@ class CoupledSolver {
   LineStrength<ExecutionSpace> _strength;
   /// Steps of the flow and of the cloth at which the steps enqueued last began.
   std::int64_t _enqueued_step = 0, _enqueued_cloth_step = 0;
+  std::int64_t _batch = 1;  ///< largest number of steps of the flow until the next poll
   std::optional<fabric::StepFailure> _cloth_failure;  ///< of the last step that failed by its cloth
 };
 
@@ -258,21 +263,30 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
 /// Chooses dt and the number of substeps of the block that begins with the present step. Unless dt is fixed,
 /// a whole number of steps reaches a target within two blocks: a step of the flow changes the velocity at the
 /// sheet by itself, and the impulse that follows would be a large mean force in a far shorter last step.
+/// Returns false, without a block, if the cloth is too stiff.
 template <class ExecutionSpace>
-void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double target) {
+bool CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double target) {
   const flow::Parameters& p = _parameters.flow;
-  _block.dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now);
-  const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / _block.dt);
-  if (!(p.fixed_dt > 0.0) && needed <= 2.0 * block_steps) _block.dt = left / std::max(1.0, needed);
-  _block.substeps = _parameters.substeps;
-  if (_block.substeps == 0) {
+  double dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now);
+  const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / dt);
+  if (!(p.fixed_dt > 0.0) && needed <= 2.0 * block_steps) dt = left / std::max(1.0, needed);
+  std::int64_t substeps = _parameters.substeps;
+  if (substeps == 0) {
     const double limit = 0.5 * fabric::stable_dt(fabric::Integrator::symplectic_euler,
-                                                 _fabric.fastest_frequency(), _fabric.fastest_decay());
-    _block.substeps =
-        std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(std::min(_block.dt / limit, 1e9))));
+                                                 _fabric.fastest_frequency(), _fabric.fastest_decay()),
+                 steps = std::max(1.0, std::ceil(dt / limit));
+    if (!(steps <= static_cast<double>(most_substeps))) {
+      Kokkos::deep_copy(_space, _reason, FailureReason::too_stiff);
+      _space.fence("drogue::coupling::plan_block");
+      return false;
+    }
+    substeps = static_cast<std::int64_t>(steps);
   }
+  _block.dt = dt;
+  _block.substeps = substeps;
   _block.end = now.step + block_steps;
   count_cloth_time_from(now.time);
+  return true;
 }
 
 /// Gives the cloth the step, the time and dt of the present block.
@@ -315,17 +329,18 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
       if (!needs_shorter_steps(now)) return _flow.advance(target, pause_step, {});
       _flow.forget_long_step();
       _cloth_failure.reset();
-      plan_block(now, target);
+      if (!plan_block(now, target)) return flow::Stop::failed;
     }
     if (!_group.all(!poll || poll(_flow.status()))) return flow::Stop::interrupted;
     if (now.step >= _block.end) {
       if (_frame.follows()) move_frame(now);
-      plan_block(_frame.follows() ? _flow.progress() : now, target);
+      if (!plan_block(_frame.follows() ? _flow.progress() : now, target)) return flow::Stop::failed;
     }
     end_block_at(target, now);
-    std::int64_t steps = std::min(_block.end, _parameters.flow.max_steps) - now.step;
+    std::int64_t steps = std::min({_block.end - now.step, _parameters.flow.max_steps - now.step, _batch});
     if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);
     const double dt = _block.dt;
+    const device::Stopwatch stopwatch;
     _flow.set_fixed_dt(dt);
     set_cloth_time();
     _enqueued_step = now.step, _enqueued_cloth_step = _block.cloth_step;
@@ -333,7 +348,20 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
     for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt, now.step + k == 0);
     _block.cloth_step = _fabric.time_state().step;
     _flow.enqueue_end();
+    adapt_batch(steps, stopwatch);
   }
+}
+
+/// Waits for a number of steps and chooses how many to take before the next poll, the same on all ranks. It
+/// changes no result, as pauses do not.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::adapt_batch(std::int64_t steps, const device::Stopwatch& stopwatch) {
+  _space.fence("drogue::coupling::adapt_batch");
+  std::array<double, 1> seconds = {stopwatch.seconds()};
+  _group.sum(seconds);
+  const double mean = seconds[0] / _group.size();
+  if (mean > longest_batch_s) _batch = std::max<std::int64_t>(1, _batch / 2);
+  if (mean < 0.25 * longest_batch_s && steps == _batch) _batch = std::min(2 * _batch, block_steps);
 }
 
 template <class ExecutionSpace>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "kernels/coupling/parameters.hpp"
@@ -56,6 +57,13 @@ struct LineCut {
   std::vector<int> lines;  ///< numbers in the mesh of the cloth
 };
 
+/// Courant number of the flow unless `flow::Parameters::cfl` is given.
+inline constexpr double default_cfl = 0.5;
+
+/// Largest number of steps of the cloth in a step of the flow that follows from the frequency of the cloth.
+/// Steps of parachutes hold some hundred; a step of the flow is the shortest work that can be interrupted.
+inline constexpr std::int64_t most_substeps = 4096;
+
 /// Parameters of cloth in air.
 struct Parameters {
   /// `external_force` is set by the coupling. With `fixed_dt` = 0, dt follows from `cfl`, by
@@ -66,7 +74,8 @@ struct Parameters {
   SheetParameters sheet;
   FollowParameters follow;
   /// Steps of the cloth in each step of the flow; 0: as many as keep the product of their dt and the largest
-  /// angular frequency of the cloth below 1 at the beginning of each block.
+  /// angular frequency of the cloth below 1 at the beginning of each block. More than `most_substeps` are a
+  /// failure.
   int substeps = 0;
   /// Steps of the cloth between resolutions of contact, >= 1 (`fabric::Contact::interval`). Each step of the
   /// flow ends with one.

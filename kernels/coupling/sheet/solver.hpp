@@ -18,6 +18,7 @@ enum class FailureReason {
   cloth,        ///< the state of the cloth is not finite, or its contact failed
   left_domain,  ///< the air around a vertex extends beyond a side of the domain
   not_spread,   ///< a force on the air is not finite or larger than 1e270 N
+  too_stiff,    ///< the cloth needs more than `most_substeps` steps in a step of the flow
   line,         ///< a line carries more than its strength: `Solver::failed_line` has its number
 };
 

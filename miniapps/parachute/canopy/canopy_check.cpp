@@ -10,6 +10,7 @@
 #include "common/scene/read.hpp"
 #include "kernels/fabric/contact/features.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
+#include "miniapps/parachute/canopy/stiffness.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -130,6 +131,36 @@ void check_size(const Table& root, const Canopy& canopy, const std::string& name
   if (edges * edges > most_canopy_vertices)
     contradict(root, key,
                key + " = " + real_text(canopy.edge_length) + " m: the vertices are more than 2^20");
+}
+
+/// Duration of the first step of the flow, s; 0 if it is not known.
+double first_dt(const FlowScene& scene) {
+  const flow::Parameters& p = scene.parameters;
+  if (p.fixed_dt > 0.0) return p.fixed_dt;
+  double rate = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto speed = SpaceTimeFunction(scene.initial_velocity()[axis]).constant();
+    if (!speed) return 0.0;
+    rate += std::abs(*speed) / cell_width(p, axis);
+  }
+  const double cfl = p.cfl > 0.0 ? p.cfl : coupling::default_cfl;
+  return rate > 0.0 ? std::min(p.max_dt, cfl / rate) : p.max_dt;
+}
+
+/// Signals are answered between steps of the flow: one must not hold more steps of the cloth than pass within
+/// a second or so.
+void check_stiffness(const Table& root, const FlowScene& scene, const Canopy& canopy, const CanopyMesh& mesh,
+                     const std::string& name) {
+  const StiffPart part = stiffest_part(canopy, mesh);
+  const double dt = first_dt(scene), steps = part.frequency * dt;
+  if (steps <= static_cast<double>(coupling::most_substeps)) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << name << "." << part.key << ": " << part.stiffness << " " << part.unit << " needs some " << steps
+       << " steps of the cloth in each step of the flow, of " << dt << " s; at most "
+       << coupling::most_substeps << ", with a lower stiffness or a smaller "
+       << (scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.max_dt");
+  contradict(root, name + "." + part.key, text.str());
 }
 
 /// The forces of cloth act up to one cell beyond it.
@@ -290,7 +321,10 @@ void check_canopies(const Table& root, const FlowScene& scene) {
       contradict(root, name + ".poisson",
                  name + ".poisson differs from that of canopy[0]; all canopies have the same one");
     CanopyMesh mesh = make_canopy(canopy);
-    if (scene.has_fluid()) check_inside(root, p, mesh.positions, place_key(canopy, name), name);
+    if (scene.has_fluid()) {
+      check_stiffness(root, scene, canopy, mesh, name);
+      check_inside(root, p, mesh.positions, place_key(canopy, name), name);
+    }
     mesh.positions.resize(mesh.cloth_vertices);
     cloths.push_back(sorted_by_x(std::move(mesh.positions)));
     check_overlaps(root, scene, cloths, bodies);

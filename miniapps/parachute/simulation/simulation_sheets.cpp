@@ -2,9 +2,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <string>
 
+#include "miniapps/parachute/canopy/stiffness.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
@@ -170,6 +172,20 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
   const double time = now().time;
   if (reason == coupling::FailureReason::not_spread) {
     text << "a force on a sheet is not finite at t = " << time << " s";
+    return text.str();
+  }
+  if (reason == coupling::FailureReason::too_stiff) {
+    text << "the cloth needs more than " << coupling::most_substeps
+         << " steps in the step of the flow after t = " << time << " s";
+    std::optional<StiffPart> stiffest;
+    std::string canopy;
+    for (std::size_t i = 0; i < _scene.canopies.size(); ++i) {
+      const StiffPart part = stiffest_part(_scene.canopies[i], make_canopy(_scene.canopies[i]));
+      if (stiffest && part.frequency <= stiffest->frequency) continue;
+      stiffest = part;
+      canopy = "canopy[" + std::to_string(i) + "].";
+    }
+    if (stiffest) text << "; a smaller " << canopy << stiffest->key << " or run.cfl may save the run";
     return text.str();
   }
   if (reason == coupling::FailureReason::cloth) {

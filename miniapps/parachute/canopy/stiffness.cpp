@@ -1,0 +1,37 @@
+#include "miniapps/parachute/canopy/stiffness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/mesh/edges.hpp"
+
+namespace drogue::parachute_app {
+
+StiffPart stiffest_part(const Canopy& canopy, const CanopyMesh& mesh) {
+  const fabric::Parameters& p = mesh.fabric;
+  StiffPart stiffest = {"membrane_modulus", canopy.membrane_modulus, "N/m",
+                        std::sqrt(canopy.membrane_modulus / canopy.area_density) / canopy.edge_length};
+  const auto compare = [&](const std::string& key, double stiffness, int line) {
+    const auto k = static_cast<std::size_t>(line);
+    const auto [a, b] = p.mesh.lines[k];
+    const double given = p.mesh.line_length.empty() ? 0.0 : p.mesh.line_length[k],
+                 length = given > 0.0 ? given : mesh::rest_distance(p.mesh, a, b);
+    double inverse_mass = 0.0;
+    for (const int i : {a, b})
+      if (const auto end = static_cast<std::size_t>(i); p.pinned[end] != 7) inverse_mass += 1.0 / p.mass[end];
+    const double frequency = std::sqrt(stiffness / length * inverse_mass);
+    if (frequency > stiffest.frequency) stiffest = {key, stiffness, "N", frequency};
+  };
+  for (const int line : mesh.suspension) compare("lines.stiffness", canopy.lines.stiffness, line);
+  if (canopy.reefing)
+    for (const int line : mesh.reefing) compare("reefing.stiffness", canopy.reefing->stiffness, line);
+  if (canopy.riser && mesh.riser) compare("riser.stiffness", canopy.riser->stiffness, *mesh.riser);
+  // Bands come before all other lines.
+  const int bands = static_cast<int>(p.mesh.lines.size() - mesh.suspension.size() - mesh.reefing.size()) -
+                    (mesh.riser ? 1 : 0);
+  for (int line = 0; line < bands; ++line)
+    compare("reinforcement", p.mesh.line_stiffness[static_cast<std::size_t>(line)], line);
+  return stiffest;
+}
+
+}  // namespace drogue::parachute_app

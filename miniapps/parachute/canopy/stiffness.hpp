@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "miniapps/parachute/canopy/canopy.hpp"
+
+namespace drogue::parachute_app {
+
+/// Part of a canopy that oscillates faster than all others.
+struct StiffPart {
+  std::string key;         ///< below the canopy
+  double stiffness = 0.0;  ///< in `unit`
+  std::string unit;
+  double frequency = 0.0;  ///< lower bound of its angular frequency, rad/s
+};
+
+/// Stiffest part of the mesh of a canopy: its cloth, or a line with the masses at its ends. Throws only
+/// std::bad_alloc.
+[[nodiscard]] StiffPart stiffest_part(const Canopy& canopy, const CanopyMesh& mesh);
+
+}  // namespace drogue::parachute_app
