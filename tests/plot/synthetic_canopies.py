@@ -93,6 +93,28 @@ def write_canopies(folder, fields=("velocity", "position", "von_mises"), payload
     return folder
 
 
+def write_drum(folder):
+    """Writes a run of a drum beside a sphere at the origin; returns its path."""
+    run = write_canopies(folder, payload_speed=0.5)
+    scene = (run / "scene.toml").read_text().replace('"flat-circular"', '"drum"')
+    body = '[[body]]\nkind = "sphere"\ncentre = [0.0, 0.0, 0.0]\nradius = 0.8\n'
+    (run / "scene.toml").write_text(scene[:scene.index("[verify]")] + body)
+    return run
+
+
+def write_springs_and_flags(folder):
+    """Writes a history of a plate on a spring and of a flag; returns its path."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text('app = "parachute"\n[[body]]\nkind = "plate"\n[[flag]]\n')
+    columns = {f"body_0_force_{axis} [N]": [1.0, 2.0, 3.0] for axis in "xyz"}
+    columns |= {f"flag_0_force_{axis} [N]": [1.0, 0.5, 1.5] for axis in "xy"}
+    columns |= {"flag_0_tip_x [m]": [1.0, 0.9, 1.0], "flag_0_tip_y [m]": [0.3, -0.3, 0.2]}
+    write_history(folder / "history.csv", {
+        "time [s]": [0.0, 1.0, 2.0], "kinetic_energy [J]": [1.0] * 3, "body_0_displacement [m]": [0.0, 0.01, -0.02], **columns,
+    })  # fmt: skip
+    return folder
+
+
 def write_cloth_drop(folder):
     """Writes a run of such a cone without a fluid; returns its path."""
     write_canopies(folder, ("position", "von_mises"))

@@ -8,6 +8,7 @@ from pathlib import Path
 import packages  # before modules that need the packages  isort: skip
 import h5py
 import numpy as np
+from matplotlib.patches import Circle
 from matplotlib.text import Text
 from PIL import Image
 from plot import cli, shading, style
@@ -19,7 +20,7 @@ from plot.parachute.canopy_figure import CanopyFigure, View, canopy_figure
 from plot.parachute.forces_history import forces_history_figure, mean_from
 from plot.parachute.time_figure import Panel
 from plot.run_directory import read_run
-from synthetic_canopies import GORES, write_bodies, write_canopies, write_cloth_drop
+from synthetic_canopies import GORES, write_bodies, write_canopies, write_cloth_drop, write_drum, write_springs_and_flags
 
 assert packages.SOURCE
 
@@ -231,6 +232,33 @@ class CanopyPictures(unittest.TestCase):
         self.assertEqual((3, 0), (len(sphere.lines), len(sphere.patches)))
         self.assertEqual(0, cli.main([str(run.path), "--quiet"]))
         self.assertTrue((run.path / "forces.png").is_file())
+
+    def test_drums_have_no_panels_of_lines_and_payloads(self):
+        run = read_run(write_drum(self.folder / "run"))
+        figure = canopies_history_figure(run)
+        titles = [axes.get_title(loc="left") for axes in figure.axes]
+        self.assertEqual([], [title for title in titles if any(word in title for word in ("line", "payload", "drag"))])
+        self.assertIn("height of the centre of mass, z (m)", titles)
+        self.assertTrue(all(axes.lines for axes in figure.axes))
+        self.assert_no_text_overlaps_or_leaves(figure)
+
+    def test_spheres_stand_beside_canopies(self):
+        run = read_run(write_drum(self.folder / "run"))
+        figure = canopy_figure(self.view(run), run.snapshots[-1])
+        view, plane = self.view(run), panel_of(figure, "speed")
+        circles = [[patch for patch in axes.patches if isinstance(patch, Circle)] for axes in (figure.axes[0], plane)]
+        (beside,), (cut,) = circles
+        self.assertEqual(0.8, beside.radius)
+        self.assertAlmostEqual(np.sqrt(0.8**2 - view.place**2), cut.radius)
+
+    def test_plates_on_springs_and_flags_are_drawn(self):
+        run = read_run(write_springs_and_flags(self.folder / "run"))
+        figure = forces_history_figure(run)
+        (plate,) = panel_of(figure, "displacement of plate 0").lines
+        np.testing.assert_allclose(plate.get_ydata(), [0, 0.01, -0.02])
+        self.assertEqual({"x", "y"}, {text.get_text() for text in panel_of(figure, "tip of flag 0").texts})
+        self.assertEqual(2, len(panel_of(figure, "force on flag 0").lines))
+        self.assert_no_text_overlaps_or_leaves(figure)
 
     def test_mean_is_that_of_trapezoidal_rule(self):
         time, values = np.array([0, 1, 2, 4.0]), np.array([9, 1, 2, 3.0])

@@ -52,6 +52,11 @@ def nominal_area(run: Run, canopy: int) -> float:
     return area
 
 
+def _has_lines(run: Run, canopy: int) -> bool:
+    """Whether a canopy has lines and a payload: a sheet or drum has its centre of mass in their columns."""
+    return run.scene["canopy"][canopy].get("kind") not in ("sheet", "drum")
+
+
 def _checks(run: Run, key: str) -> list[Band]:
     """Bands of relative deviations from a value over an interval of time."""
     return [
@@ -81,23 +86,27 @@ def _panels(run: Run) -> list[Panel]:
         for check in run.scene.get("verify", {}).get("peak_force", [])
     ]
     has_fluid = "fluid" in run.scene
-    line_forces = of_all("lines", lambda canopy: np.linalg.norm(_vector(run, canopy, "line_force"), axis=1))
+    line_forces = {
+        label("lines", canopy): np.linalg.norm(_vector(run, canopy, "line_force"), axis=1)
+        for canopy in canopies
+        if _has_lines(run, canopy)
+    }
+    panels = []
     if has_fluid:
-        panels = [
+        panels += [
             Panel(
-                "force of the air along z, and of the lines on the payload (N)",
+                "force of the air along z" + (", and of the lines on the payload" if line_forces else "") + " (N)",
                 of_all("air", lambda canopy: history(f"canopy_{canopy}_force_z")) | line_forces,
                 peaks,
-                dashed=frozenset(label("lines", canopy) for canopy in canopies),
-            ),
-            Panel(
-                "drag coefficient",
-                of_all("", lambda canopy: drag_coefficient(run, canopy)),
-                _checks(run, "drag"),
-            ),
+                dashed=frozenset(line_forces),
+            )
         ]
-    else:
-        panels = [Panel("force of the lines on the payload (N)", line_forces, peaks)]
+        # The flow past a sheet or drum changes its direction as they move.
+        drags = {label("", k): drag_coefficient(run, k) for k in canopies if _has_lines(run, k)}
+        if drags:
+            panels += [Panel("drag coefficient", drags, _checks(run, "drag"))]
+    elif line_forces:
+        panels += [Panel("force of the lines on the payload (N)", line_forces, peaks)]
     panels += [
         Panel(
             style.axis_label("projected area", "m^2"),
@@ -109,14 +118,15 @@ def _panels(run: Run) -> list[Panel]:
             },
         ),
     ]
+    what, own = ("payload", "of the payload") if line_forces else ("centre of mass", "of the cloth")
     free = [
         canopy for canopy in canopies if np.ptp(_vector(run, canopy, "payload"), axis=0).max() > 0
     ]
     if free:
         panels += [
             Panel(
-                "speed of the payload (m/s)",
-                {label("of the payload", k): np.linalg.norm(_vector(run, k, "payload_velocity"), axis=1) for k in free}
+                f"speed of the {what} (m/s)",
+                {label(own, k): np.linalg.norm(_vector(run, k, "payload_velocity"), axis=1) for k in free}
                 | {
                     label("in the stream", k): np.linalg.norm(relative_velocity(run, k), axis=1)
                     for k in free
@@ -125,13 +135,13 @@ def _panels(run: Run) -> list[Panel]:
                 _checks(run, "terminal_speed"),
             ),
             Panel(
-                "height of the payload, z (m)", {label("", k): history(f"canopy_{k}_payload_z") for k in free}
+                f"height of the {what}, z (m)", {label("", k): history(f"canopy_{k}_payload_z") for k in free}
             ),
         ]
     energies = {"kinetic": history("cloth_kinetic_energy"), "elastic": history("cloth_elastic_energy")}
     if "potential_energy" in run.history:
         energies["potential"] = history("potential_energy") - history("potential_energy")[0]
-    return [*panels, Panel("energy of cloth, lines and payloads (J)", energies)]
+    return [*panels, Panel(f"energy of cloth{', lines and payloads' if line_forces else ''} (J)", energies)]
 
 
 def canopies_history_figure(run: Run):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize, to_rgba
+from matplotlib.patches import Circle
 
 from .. import shading, style
 from ..flow.plane import AXES, Plane
@@ -22,7 +23,7 @@ _BRIGHT = 99.0  # percentile of the stresses at the upper end of the colour scal
 _DARKEST = 0.7  # brightness of cloth along the light
 _PLAIN = np.array([0.80, 0.47, 0.28, 1.0])  # cloth without stress
 _LINE_PARTS = 6  # of a suspension line, each with its own depth
-_LINE, _CUT = "#4A4A4A", "#D55E00"
+_LINE, _CUT, _BODY = "#4A4A4A", "#D55E00", "#B8B8B8"
 # Inches.
 _HEIGHT, _LONG = 4.4, 4.4
 _LEFT, _KEY, _KEY_GAP, _KEY_LABELS, _CLOTH_LEFT = 0.62, 0.11, 0.08, 0.62, 0.15
@@ -126,8 +127,11 @@ class CanopyFigure:
 
     def _cloth_range(self, snapshots: list[Snapshot]) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner of the view of the canopies, m."""
-        every = np.concatenate([self._projected(snapshot)[:, :2] for snapshot in snapshots])
-        low, high = every.min(axis=0), every.max(axis=0)
+        every = [self._projected(snapshot)[:, :2] for snapshot in snapshots]
+        for centre, radius in self._spheres():
+            place = (self._view.projection @ centre)[:2]
+            every.append(np.stack((place - radius, place + radius)))
+        low, high = np.concatenate(every).min(axis=0), np.concatenate(every).max(axis=0)
         margin = 0.04 * np.max(high - low)
         return low - margin, high + margin
 
@@ -135,7 +139,14 @@ class CanopyFigure:
         """View coordinates (n, 3) of all vertices: to the right, up, and towards the viewer, m."""
         return self._view.canopies.positions(snapshot) @ self._view.projection.T
 
+    def _spheres(self) -> list[tuple[np.ndarray, float]]:
+        """Centres and radii, m, of the spheres beside the canopies; other bodies are not drawn."""
+        bodies = self._view.canopies.run.scene.get("body", [])
+        return [(np.array(body["centre"]), body["radius"]) for body in bodies if body["kind"] == "sphere"]
+
     def _add_cloth(self, axes, low: np.ndarray, high: np.ndarray) -> None:
+        for centre, radius in self._spheres():
+            axes.add_patch(Circle((self._view.projection @ centre)[:2], radius, facecolor=_BODY, zorder=0.5))
         self._parts = PolyCollection([], joinstyle="round")
         axes.add_collection(self._parts)
         (self._payloads,) = axes.plot([], [], "o", color=style.INK, markersize=5, zorder=3)
@@ -157,6 +168,12 @@ class CanopyFigure:
     def _add_slice(self, axes, key, quantity: Quantity, snapshots: list[Snapshot]):
         image = draw_slice(axes, key, self._view.plane, quantity, snapshots, self._colours.flow)
         lines = LineCollection([], colors="black", linewidth=0.4, alpha=0.6, zorder=3)
+        plane = self._view.plane
+        for centre, radius in self._spheres():
+            squared = radius**2 - (centre[plane.normal] - self._view.place) ** 2
+            if squared > 0:
+                where = tuple(centre[list(plane.across)])
+                axes.add_patch(Circle(where, np.sqrt(squared), facecolor=_BODY, edgecolor=style.INK, zorder=2.5))
         cut = LineCollection([], colors=_CUT, linewidth=2.0, zorder=4, capstyle="round")
         axes.add_collection(lines, autolim=False)
         axes.add_collection(cut, autolim=False)

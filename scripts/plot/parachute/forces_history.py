@@ -1,4 +1,4 @@
-"""Figure of the forces of the flow on bodies over time, with their means and the expected ones."""
+"""Figure of bodies and flags over time: forces of the flow, their means and the expected ones, and displacements."""
 
 import numpy as np
 
@@ -38,10 +38,38 @@ def _panel(run: Run, body: int, time: np.ndarray) -> Panel:
     return Panel(title, curves, bands, settled=time[shown][0])
 
 
+def _count(run: Run, kind: str) -> int:
+    return sum(name.startswith(kind + "_") and name.endswith("_force_x") for name in run.history)
+
+
+def _displacement_panels(run: Run, body: int) -> list[Panel]:
+    """Displacement of a plate on a spring along its normal."""
+    displacement = run.history.get(f"body_{body}_displacement")
+    if displacement is None:
+        return []
+    return [Panel(style.axis_label(f"displacement of plate {body}", "m"), {"": displacement.values})]
+
+
+def _flag_panels(run: Run, flag: int, time: np.ndarray) -> list[Panel]:
+    """Force of the fluid on a flag, and the place of its tip."""
+    shown = time >= time[0] + _START * (time[-1] - time[0])
+    settled = time[shown][0]
+    return [
+        Panel(
+            style.axis_label(f"{words} flag {flag}", unit),
+            {axis: run.history[f"flag_{flag}_{quantity}_{axis}"].values for axis in "xy"},
+            settled=settled,
+        )
+        for words, quantity, unit in (("force on", "force", "N"), ("tip of", "tip", "m"))
+    ]
+
+
 def forces_history_figure(run: Run):
-    """Figure; None without forces on bodies in the history, or with fewer than two rows."""
+    """Figure; None without forces on bodies or flags in the history, or with fewer than two rows."""
     time = run.history.get("time")
-    count = sum(name.startswith("body_") and name.endswith("_force_x") for name in run.history)
-    if time is None or len(time.values) < 2 or not count:
+    bodies, flags = range(_count(run, "body")), range(_count(run, "flag"))
+    if time is None or len(time.values) < 2 or not (bodies or flags):
         return None
-    return time_figure(run.name, time.values, [_panel(run, body, time.values) for body in range(count)])
+    panels = [panel for k in bodies for panel in (_panel(run, k, time.values), *_displacement_panels(run, k))]
+    panels += [panel for k in flags for panel in _flag_panels(run, k, time.values)]
+    return time_figure(run.name, time.values, panels)
