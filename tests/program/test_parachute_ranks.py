@@ -142,6 +142,17 @@ class Sheets(RanksTest):
         self.compare(free, 1e-8, (*self.SETS, "coupling.gravity=[0, 0, -9.81]"), several=(4,))
         self.assertGreater(abs(self.history("4")["frame_velocity_z"][-1]), 1e-3)
 
+    def test_reefing_lines_are_cut_in_contact_as_on_one_rank(self):
+        reefed = CANOPY.replace("vent = 0.3", 'vent = 0.3\nshape = "partly-closed"\nclosure = 0.4\n'
+                                "reefing = { length = 2.5, stiffness = 2000, cut = 0.005 }")
+        # Thicker than the distance of neighbouring pleats at the vent.
+        contact = ("coupling.contact=true", "coupling.thickness=0.04", "verify.intersections=0")
+        self.compare(reefed, 1e-8, (*self.SETS, *contact), several=(2,))
+        self.assertIn(0.005, self.history("2")["time"])
+        without = [*self.SETS, "coupling.contact=true", "coupling.thickness=0.001"]
+        self.run_on(0, 2, self.write(reefed), *QUIET, "--out", "thin", sets=without)
+        self.assertNotEqual(self.history("thin")["cloth_kinetic_energy"], self.history("2")["cloth_kinetic_energy"])
+
     def test_ranks_may_differ_after_a_restart(self):
         for name, text in (("bodies", PLATE), ("canopy", CANOPY)):
             with self.subTest(name):
