@@ -16,7 +16,10 @@ namespace drogue::testing {
 class EmulatedGrid {
  public:
   EmulatedGrid(int teams, int team_size, std::size_t scratch_bytes, std::size_t places)
-      : _team_size(team_size), _boards(2 * places), _places(places) {
+      : _team_size(team_size),
+        _published(static_cast<std::size_t>(teams)),
+        _boards(2 * places),
+        _places(places) {
     for (int team = 0; team < teams; ++team) {
       _scratch.emplace_back((scratch_bytes + sizeof(double) - 1) / sizeof(double));
       _barriers.push_back(std::make_unique<std::barrier<>>(team_size));
@@ -40,6 +43,12 @@ class EmulatedGrid {
       _used += bytes;
       if (_used > scratch.size() * sizeof(double)) throw std::logic_error("a team has too little memory");
       return place;
+    }
+
+    [[nodiscard]] std::uint64_t epoch() const { return _grid._published[_team]; }
+    void publish(std::uint64_t epoch) const { _grid._published[_team] = epoch; }
+    void await(int other, std::uint64_t epoch) const {
+      while (_grid._published[static_cast<std::size_t>(other)] < epoch) std::this_thread::yield();
     }
 
     void put(std::uint64_t epoch, std::size_t place, const device::HaloValue& numbers) const {
@@ -83,6 +92,7 @@ class EmulatedGrid {
   Place& at(std::uint64_t epoch, std::size_t place) { return _boards[epoch % 2 * _places + place]; }
 
   int _team_size;
+  std::vector<std::atomic<std::uint64_t>> _published;  ///< last epoch that each team has completed
   std::vector<std::vector<double>> _scratch;
   std::vector<std::unique_ptr<std::barrier<>>> _barriers;
   std::vector<Place> _boards;

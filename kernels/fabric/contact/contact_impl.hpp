@@ -50,6 +50,8 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   [[nodiscard]] FailureReason reason(std::int64_t step) const override;
   void work(std::span<ContactWork> of_vertices) const override;
   void set_work(std::span<const ContactWork> of_vertices) override;
+  /// Data of the kernels.
+  [[nodiscard]] const ContactViews<ExecutionSpace>& views() const { return _views; }
 
  private:
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
