@@ -48,6 +48,32 @@ class ShippedParachutes(parachute_program.FlowTest):
         self.assertLess(porous[1], 0.6 * cloth[1])
         self.assertLess(porous[2], 0.1 * closed[2])
 
+    def test_breathing_in_terminal_descent_neither_drifts_nor_dies(self):
+        """210 s of flight in 10 500 steps on cells of 2 m; the canopy glides through periodic sides."""
+        self.expect(0, "c9-drop", "--quiet", "--backend", "serial", "--out", "out", "--overwrite",
+                    sets=["run.end_time=210", "output={history_every=20,times=[210]}", "verify={}", "grid.cells=[16,16,16]",
+                          "grid.domain=[[-16,16],[-16,16],[-12,20]]", "canopy[0].edge_length=1.2",
+                          'grid.boundary={x="periodic",y="periodic",z=["inflow","outflow"]}'])
+        rows = self.history("out")
+        self.assertGreaterEqual(rows["step"][-1], 10000)
+        windows = [[k for k, time in enumerate(rows["time"]) if start <= time < start + 60] for start in (30, 90, 150)]
+
+        def mean(name, window):
+            return sum(rows[name][k] for k in window) / len(window)
+
+        energies = [mean("cloth_elastic_energy", window) for window in windows]
+        for window, energy in zip(windows, energies):
+            # The air carries payload and cloth.
+            self.assertAlmostEqual(1.0, mean("canopy_0_force_z", window) / (890 + 0.0373 * 57 * 9.81), delta=0.01)
+            self.assertAlmostEqual(1.0, energy / energies[0], delta=0.25)
+            area = mean("canopy_0_projected_area", window)
+            breathing = math.sqrt(sum((rows["canopy_0_projected_area"][k] / area - 1)**2 for k in window) / len(window))
+            self.assertGreater(breathing, 0.05)
+            self.assertLess(breathing, 0.4)
+        self.assertLess(max(rows["cloth_elastic_energy"][k] for k in windows[2]),
+                        1.5 * max(rows["cloth_elastic_energy"][k] for k in windows[0]))
+        self.assertLess(max(rows["force_balance"]), 1e-14)
+
 
 if __name__ == "__main__":
     unittest.main()
