@@ -23,7 +23,7 @@ class RunLoop {
 
   /// However the run ends, the result shows how far it came.
   ~RunLoop() {
-    const TimeState now = _simulation.now();
+    const SimulationTime now = _simulation.now();
     _result.steps = now.step;
     _result.time = now.time;
     _simulation.describe(_result);
@@ -68,7 +68,7 @@ class RunLoop {
   void take_interval() {
     const AdvanceLimits limits = next_limits();
     const RowSink rows = [this](const HistoryRow& row) { _output->write_row(row); };
-    const Poll poll = [this](const TimeState& now) {
+    const Poll poll = [this](const SimulationTime& now) {
       _progress.update(now.step, now.time, _end);
       return !interrupted();
     };
@@ -102,7 +102,7 @@ class RunLoop {
   run::ResultDocument& _result;
   const OutputRequest& _wanted;
   const double _end;
-  TimeState _now;
+  SimulationTime _now;
   ProgressLine _progress;
   std::optional<RunOutput> _output;
   Stop _stop = Stop::target;

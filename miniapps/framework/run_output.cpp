@@ -62,7 +62,7 @@ void RunOutput::write_row(const HistoryRow& row) {
 
 void RunOutput::write_fields() {
   if (!_fields) return;
-  const TimeState now = _simulation.now();
+  const SimulationTime now = _simulation.now();
   {
     const ScopedStopwatch stopwatch(_waited);
     _writer.wait_for_slot();

@@ -22,7 +22,7 @@
 namespace drogue::framework {
 
 /// Progress of a simulation.
-struct TimeState {
+struct SimulationTime {
   std::int64_t step = 0;  ///< steps taken since the start of the first run
   double time = 0.0;      ///< simulated, s
 };
@@ -51,7 +51,7 @@ struct AdvanceLimits {
 using RowSink = std::function<void(const HistoryRow&)>;
 
 /// Reports progress. Returns false once the run shall end after the current step.
-using Poll = std::function<bool(const TimeState&)>;
+using Poll = std::function<bool(const SimulationTime&)>;
 
 /// Writes the fields of one output between `begin_step` and `end_step` of the writer. It runs on the writer's
 /// thread while the simulation takes further steps, unless `Simulation::writes_on_calling_thread`.
@@ -81,7 +81,7 @@ class Simulation {
   /// Writes the state for `restore`.
   virtual void write_restart(run::RestartWriter& writer) = 0;
 
-  [[nodiscard]] virtual TimeState now() = 0;
+  [[nodiscard]] virtual SimulationTime now() = 0;
 
   /// Takes steps until a limit is reached, and passes a row to `rows` every `limits.row_every` steps. Calls
   /// `poll` at least ten times per second.

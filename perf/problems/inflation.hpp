@@ -9,7 +9,7 @@
 #include "perf/measure/measurement.hpp"
 
 /// Benchmark problem of cloth in air: a C-9 parachute opens from its flat cloth in a stream of 10 m/s, its
-/// payload held, in a box of 12 m by 12 m by 24 m with slip sides. Functions throw only what the solver
+/// payload fixed, in a box of 12 m by 12 m by 24 m with slip sides. Functions throw only what the solver
 /// throws, unless stated otherwise.
 namespace drogue::perf::inflation {
 

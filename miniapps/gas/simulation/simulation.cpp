@@ -77,7 +77,7 @@ void Simulation::allocate_snapshot() {
   _solver->finish_snapshot();
 }
 
-framework::TimeState Simulation::now() {
+framework::SimulationTime Simulation::now() {
   const gas::RestartState now = _solver->restart_state();
   return {now.step, now.time};
 }

@@ -63,7 +63,7 @@ void ClothSimulation::allocate_buffers() {
   static_cast<void>(snapshot());
 }
 
-framework::TimeState ClothSimulation::now() {
+framework::SimulationTime ClothSimulation::now() {
   const fabric::TimeState now = _solver->time_state();
   // At the end of a block the time equals that of an output or a cut bit for bit.
   return {now.step, now.step == _block.end ? _block.time : now.time()};

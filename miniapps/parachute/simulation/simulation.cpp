@@ -128,7 +128,7 @@ void Simulation::start() {
   sample_fields(_snapshots[0]);  // allocates what all outputs need
 }
 
-framework::TimeState Simulation::now() {
+framework::SimulationTime Simulation::now() {
   const flow::Progress progress = _solver->progress();
   return {progress.step, progress.time};
 }

@@ -50,7 +50,7 @@ double Simulation::time() const {
   return now.step == _stop_step ? _stop_time : now.time();
 }
 
-framework::TimeState Simulation::now() { return {_solver->time_state().step, time()}; }
+framework::SimulationTime Simulation::now() { return {_solver->time_state().step, time()}; }
 
 std::vector<Vector> Simulation::positions() {
   std::vector<Vector> x(_problem.x.size()), v(x.size());
@@ -76,7 +76,7 @@ std::vector<run::Column> Simulation::history_columns() const { return springs_ap
 
 framework::HistoryRow Simulation::row() {
   const StateTotals totals = this->totals();
-  const framework::TimeState now = this->now();
+  const framework::SimulationTime now = this->now();
   framework::HistoryRow row{now.time,
                             {static_cast<double>(now.step), totals.kinetic, totals.elastic, totals.potential,
                              totals.kinetic + totals.elastic + totals.potential}};

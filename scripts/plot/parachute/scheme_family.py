@@ -23,7 +23,7 @@ FAMILY = SchemeFamily(
         "rk3 0.5": "RK3 at CFL 0.5", "rk3 1.0": "RK3 at CFL 1",
         "0.7": "edges of 0.7 cells", "0.35": "edges of 0.35 cells",
     },
-    note="A C-9 opens from its flat cloth in a stream of 10 m/s, its payload held, in a box of 12 m by 12 m by 24 m. "
+    note="A C-9 opens from its flat cloth in a stream of 10 m/s, its payload fixed, in a box of 12 m by 12 m by 24 m. "
     "Impulse: momentum that it gives the air in the first second. Errors are relative to a solution on twice the cells "
     "per axis of the finest grid with half the time step.",
     target_errors=(1e-1, 3e-2, 1e-2),

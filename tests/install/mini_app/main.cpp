@@ -38,7 +38,7 @@ struct Heat final : framework::Simulation {
     writer.array("u", _u.size());
     writer.write("u", 0, _u);
   }
-  framework::TimeState now() override { return _now; }
+  framework::SimulationTime now() override { return _now; }
   framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
                           const framework::Poll& poll) override {
     while (_now.time < limits.target_time) {
@@ -77,7 +77,7 @@ struct Heat final : framework::Simulation {
   }
   const HeatData& _data;
   std::vector<double> _x, _u;  // cell centres, m; temperature
-  framework::TimeState _now;
+  framework::SimulationTime _now;
 };
 
 struct HeatScene final : framework::Scene {

@@ -136,7 +136,7 @@ TEST(SpeedVerdict, OtherWorkBesideARunIsNoChange) {
     if (i != 7 && i != 19) after[i] *= 1.8;
   const SpeedChange change = compare_speed({before}, {after});
   EXPECT_LT(change.probability, 1e-6);
-  EXPECT_EQ(judge_speed({change}).front(), SpeedVerdict::ambiguous);
+  EXPECT_EQ(speed_verdict({change}).front(), SpeedVerdict::ambiguous);
 }
 
 TEST(SpeedVerdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
