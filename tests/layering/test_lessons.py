@@ -1,12 +1,13 @@
 """The tables of the lessons are those of their records."""
 
 import os
-import pathlib
 import subprocess
 import sys
 import unittest
 
-ROOT = pathlib.Path(os.environ["DROGUE_SOURCE"])
+import layers
+
+ROOT = layers.repository(os.environ)
 SCRIPT = ROOT / "scripts/lesson_tables.py"
 
 
