@@ -27,6 +27,9 @@ def microseconds(seconds):
 def table(file):
     """Heading and table of a file of records."""
     records = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+    for record in records:
+        if record["check"] != "passed":
+            sys.exit(f"{file}: {record['case']} failed its check")
     facts, here = records[0]["facts"], records[0]["provenance"]
     machine = here["gpu"] if facts["backend"] == "cuda" else here["cpu"]
     lines = [f"\n## `{facts['ladder']}` on {facts['backend']}\n",

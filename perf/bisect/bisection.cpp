@@ -149,12 +149,22 @@ class Search {
     return records;
   }
 
+  /// Without records too if the program of a commit cannot start, or writes invalid ones.
+  std::vector<MeasuredCase> records_or_none(const fs::path& tree) {
+    try {
+      return records_of(tree);
+    } catch (const Failure& failure) {
+      if (failure.code() == ExitCode::interrupted) throw;
+      return {};
+    }
+  }
+
   Change measure() {
     std::vector<MeasuredCase> before, after;
     Change change;
     for (int turn = 1; turn <= most_turns && !change.verdict; ++turn) {
       for (auto& [tree, records] : {std::tie(_reference, before), std::tie(_candidate, after)}) {
-        const std::vector<MeasuredCase> more = records_of(tree);
+        const std::vector<MeasuredCase> more = records_or_none(tree);
         if (more.empty()) return {{}, "does not run"};
         records.insert(records.end(), more.begin(), more.end());
       }

@@ -1,11 +1,21 @@
 #include "perf/command/command.hpp"
 
+#include "common/program/program.hpp"
+#include "common/program/signals.hpp"
 #include "common/scene/nearest.hpp"
 
 namespace drogue::perf {
 
 void require(device::Backend backend) {
   if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
+}
+
+ExitCode code_of(bool passed) {
+  if (interrupted()) {
+    print_notice("drogue-perf", "interrupted by a signal; the records hold the samples until then");
+    return ExitCode::interrupted;
+  }
+  return passed ? ExitCode::ok : ExitCode::verification_failed;
 }
 
 namespace {

@@ -26,6 +26,9 @@ Command bisect_command(CLI::App& program);
 Command report_command(CLI::App& program);
 Command ladder_command(CLI::App& program);
 
+/// Code of a finished measurement. After a signal, prints a notice and returns `interrupted`.
+ExitCode code_of(bool passed);
+
 /// Throws Failure(no_backend) with the reason if `backend` cannot run here. Call it before Kokkos is
 /// initialised.
 void require(device::Backend backend);

@@ -82,6 +82,9 @@ ExitCode compare_files(const CompareOptions& options, const std::regex& filter) 
     for (const ComparedCase& row : rows)
       std::fputs(annotation(row, options.fails(row.verdict)).c_str(), stdout);
   if (!failed.empty()) throw failure(failed);
+  if (std::ranges::all_of(rows,
+                          [](const ComparedCase& row) { return row.verdict == Verdict::not_comparable; }))
+    std::printf("no case could be compared\n");
   return ExitCode::ok;
 }
 

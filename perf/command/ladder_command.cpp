@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "common/program/command_line.hpp"
+#include "common/program/failure.hpp"
+#include "common/program/signals.hpp"
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/command/command.hpp"
@@ -62,6 +64,24 @@ void print_ceilings(const ladder::Ceilings& c) {
       1e-9 * c.divisions, c.lanes, c.lanes == 1 ? "" : "s");
 }
 
+/// Prints the predictions, before any rung is timed: a reader can compare them with his own.
+std::vector<ladder::Prediction> print_predictions(const ladder::Ladder& ladder,
+                                                  const ladder::Ceilings& ceilings) {
+  std::printf("predicted, us per %s:\n", ladder.unit.c_str());
+  std::vector<ladder::Prediction> predictions;
+  for (const ladder::Rung& rung : ladder.rungs) {
+    predictions.push_back(ladder::predict(rung.work, ceilings));
+    if (rung.available)
+      std::printf("  %-18s %12.2f  by %s\n", rung.text.name, 1e6 * predictions.back().seconds,
+                  predictions.back().bound);
+    else
+      std::printf("  %-18s %12s\n", rung.text.name, "GPU only");
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+  return predictions;
+}
+
 /// Predictions precede the measurement: they come from the work of a rung and the ceilings alone.
 ExitCode climb(const LadderOptions& options, device::Backend backend) {
   const nlohmann::json here = provenance(device::device_facts());
@@ -71,6 +91,7 @@ ExitCode climb(const LadderOptions& options, device::Backend backend) {
               ladder.units == 1 ? "" : "s", text(backend).c_str());
   const ladder::Ceilings ceilings = ladder::measure_ceilings(backend);
   print_ceilings(ceilings);
+  const std::vector<ladder::Prediction> predictions = print_predictions(ladder, ceilings);
   std::vector<Case> cases;
   for (const ladder::Rung& rung : ladder.rungs)
     if (rung.available) cases.push_back(case_of(ladder, rung, backend));
@@ -82,11 +103,17 @@ ExitCode climb(const LadderOptions& options, device::Backend backend) {
   bool passed = true;
   double first = 0.0, last = 0.0;
   auto record = records.begin();
-  for (const ladder::Rung& rung : ladder.rungs) {
-    const ladder::Prediction predicted = ladder::predict(rung.work, ceilings);
+  for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
+    const ladder::Rung& rung = ladder.rungs[k];
+    const ladder::Prediction& predicted = predictions[k];
+    if (!rung.available) continue;
     std::printf("%-18s %12.2f  %-10s ", rung.text.name, 1e6 * predicted.seconds, predicted.bound);
-    if (!rung.available) {
-      std::printf("%12s\n", "GPU only");
+    passed = passed && record->passed();
+    lines.push_back(to_json(*record, here, facts_of(ladder, rung, predicted, backend)));
+    // A wrong result has no time.
+    if (!record->passed()) {
+      std::printf("%12s  %-22s %9s %9s  %9.2g  %s\n", "", "", "", "", record->error, verdict(*record));
+      ++record;
       continue;
     }
     const run::MedianInterval time = run::median_interval(record->samples);
@@ -96,8 +123,6 @@ ExitCode climb(const LadderOptions& options, device::Backend backend) {
     std::printf("%12.2f  %-22s %8.2fx %8.2fx  %9.2g  %s\n", 1e6 * time.median, interval, first / time.median,
                 last / time.median, record->error, verdict(*record));
     last = time.median;
-    passed = passed && record->passed();
-    lines.push_back(to_json(*record, here, facts_of(ladder, rung, predicted, backend)));
     ++record;
   }
   if (options.explain) {
@@ -107,7 +132,7 @@ ExitCode climb(const LadderOptions& options, device::Backend backend) {
       std::printf("\n%s: %s\n  %s\n", rung.text.name, rung.text.idea, rung.text.hindsight);
   }
   write_records(options.out, lines);
-  return passed ? ExitCode::ok : ExitCode::verification_failed;
+  return code_of(passed);
 }
 
 /// Runs the exercises. Throws Failure(verification_failed) unless all are mended.
@@ -149,10 +174,13 @@ Command ladder_command(CLI::App& program) {
             std::vector<std::string> valid = ladder::names();
             valid.push_back("check");
             require_name("ladder", options->ladder, valid);
+            if (options->ladder == "check" && (!options->out.empty() || options->quick || options->explain))
+              throw Failure(ExitCode::usage, "ladder check has the option --backend alone");
             run::require_writable(options->out);
             const device::Backend backend = device::wanted_backend(options->backend);
             require(backend);
             const device::Runtime runtime(kokkos);
+            install_signal_handlers();
             return options->ladder == "check" ? check_exercises(backend) : climb(*options, backend);
           }};
 }

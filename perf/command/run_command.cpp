@@ -4,6 +4,7 @@
 #include <memory>
 #include <regex>
 
+#include "common/program/signals.hpp"
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
 #include "common/scene/nearest.hpp"
@@ -61,6 +62,7 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
   const double overhead = timer_overhead();
   std::printf("timer: %.3f us per work; a sample repeats works of less than %.0f ms\n", 1e6 * overhead,
               1e3 * shortest_sample);
+  std::fflush(stdout);
   std::vector<nlohmann::json> lines;
   bool passed = true;
   const GpuClocks clocks(device_address());
@@ -77,7 +79,7 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
     for (const std::string& reason : seen.throttled) std::printf("  throttled: %s\n", reason.c_str());
   }
   write_records(options.out, lines);
-  return passed ? ExitCode::ok : ExitCode::verification_failed;
+  return code_of(passed);
 }
 
 }  // namespace
@@ -103,6 +105,7 @@ Command run_command(CLI::App& program) {
             run::require_writable(options->out);
             require(device::fastest_backend());
             const device::Runtime runtime(kokkos);
+            install_signal_handlers();
             return run_cases(*options, filter);
           }};
 }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "common/program/command_line.hpp"
+#include "common/program/signals.hpp"
 #include "common/run/files/atomic_file.hpp"
 #include "perf/command/command.hpp"
 #include "perf/measure/record.hpp"
@@ -35,6 +36,7 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
                                        std::string(device::name(backend)) +
                                        "', whose teams are single threads; give --backend cuda");
   const device::Runtime runtime(kokkos);
+  install_signal_handlers();
   const nlohmann::json here = provenance(device::device_facts());
   if (block_size) return print_block_sizes(backend, options.quick, here);
   const auto print = options.table == "pressure" ? print_flow_pressure
@@ -65,7 +67,7 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
   else
     table = timed_table(options, kokkos);
   write_records(options.out, table.records);
-  return table.passed ? ExitCode::ok : ExitCode::verification_failed;
+  return code_of(table.passed);
 }
 
 }  // namespace

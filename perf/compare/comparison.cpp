@@ -41,8 +41,8 @@ const CaseRuns* find(const std::vector<CaseRuns>& groups, const std::string& nam
   return found == groups.end() ? nullptr : &*found;
 }
 
-std::string lonely(const std::string& where, const std::string& elsewhere, const std::string& name,
-                   const std::vector<CaseRuns>& others) {
+std::string describe_missing(const std::string& where, const std::string& elsewhere, const std::string& name,
+                             const std::vector<CaseRuns>& others) {
   std::vector<std::string> names;
   for (const CaseRuns& other : others) names.push_back(other.name);
   const auto nearest = scene::nearest(name, names);
@@ -102,14 +102,16 @@ std::vector<ComparedCase> compare_records(const std::vector<MeasuredCase>& befor
   std::vector<ComparedCase> rows;
   for (const CaseRuns& group : new_cases) {
     const CaseRuns* old_case = find(old_cases, group.name);
-    rows.push_back(
-        old_case ? compare_case(*old_case, group)
-                 : ComparedCase{
-                       group.name, Verdict::not_comparable, lonely("new", "old", group.name, old_cases), {}});
+    rows.push_back(old_case ? compare_case(*old_case, group)
+                            : ComparedCase{group.name,
+                                           Verdict::not_comparable,
+                                           describe_missing("new", "old", group.name, old_cases),
+                                           {}});
   }
   for (const CaseRuns& group : old_cases)
     if (!find(new_cases, group.name))
-      rows.push_back({group.name, Verdict::not_comparable, lonely("old", "new", group.name, new_cases), {}});
+      rows.push_back(
+          {group.name, Verdict::not_comparable, describe_missing("old", "new", group.name, new_cases), {}});
   std::vector<SpeedChange> changes;
   for (const ComparedCase& row : rows)
     if (row.speed) changes.push_back(*row.speed);

@@ -1,5 +1,6 @@
 #include "perf/compare/record_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -95,6 +96,8 @@ MeasuredCase parse_record(const std::string& line, const std::string& place) {
   require_schema(json, place);
   found.place = place;
   found.name = text_member(json, "case", place);
+  if (std::ranges::any_of(found.name, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+    throw invalid(place, "'case' holds a control character");
   found.unit = text_member(json, "unit", place);
   found.samples = sample_times(json, found.name, place);
   const std::string check = text_member(json, "check", place);

@@ -15,9 +15,21 @@ struct Blocks {
   std::size_t least_length, most;
 };
 constexpr Blocks short_blocks = {5, 6}, long_blocks = {5, 3};
-/// Gap between the long blocks of two sides over the spread of those of one side: a drift that goes on from
-/// one side to the other gives at most a half.
-constexpr double least_gap = 0.8;
+/// Quantile of blocks, with the gap between the long blocks of two sides over the spread of those of one side
+/// that it needs: a drift that goes on from one side to the other gives at most a half. Disturbances prolong
+/// a time, so the lower quartile outlasts bursts that a median does not; where a minority of the samples is
+/// fast, the median is the steadier one, but it follows a clock of two states.
+struct BlockRule {
+  double level, least_gap;
+};
+constexpr BlockRule block_rules[] = {{0.25, 0.8}, {0.5, 1.1}};
+/// Correlation of the ranks of a run with their order or with their predecessors, below which the samples
+/// count as independent; and the number of samples that show it.
+constexpr double most_dependence = 0.3;
+constexpr std::size_t least_independent = 15;
+/// Logarithm of a change that needs no agreement of blocks, if the fastest sample moves by half of it at
+/// least.
+const double large_change = std::log(1.25);
 
 /// Quantile by linear interpolation between order statistics.
 double quantile(std::vector<double> values, double level) {
@@ -28,11 +40,10 @@ double quantile(std::vector<double> values, double level) {
   return std::lerp(values[below], values[above], place - static_cast<double>(below));
 }
 
-/// Lower quartiles of blocks of successive samples of a run. A single run of four samples or more has two
-/// blocks at least. Several runs share the blocks, so that more samples make them longer. Disturbances
-/// prolong a time, so the lower quartile outlasts bursts that a median does not.
-std::vector<double> quartiles_of(const Blocks& kind, const Runs& runs) {
-  std::vector<double> quartiles;
+/// Quantiles of blocks of successive samples of a run. A single run of four samples or more has two blocks at
+/// least. Several runs share the blocks, so that more samples make them longer.
+std::vector<double> quantiles_of(const Blocks& kind, const Runs& runs, double level) {
+  std::vector<double> quantiles;
   const std::size_t most = std::max<std::size_t>(kind.most / runs.size(), 1);
   for (const std::vector<double>& run : runs) {
     const std::size_t n = run.size(), least = n >= 4 ? 2 : 1;
@@ -40,9 +51,9 @@ std::vector<double> quartiles_of(const Blocks& kind, const Runs& runs) {
     const auto start = [&](std::size_t k) {
       return run.begin() + static_cast<std::ptrdiff_t>(k * n / count);
     };
-    for (std::size_t k = 0; k < count; ++k) quartiles.push_back(quantile({start(k), start(k + 1)}, 0.25));
+    for (std::size_t k = 0; k < count; ++k) quantiles.push_back(quantile({start(k), start(k + 1)}, level));
   }
-  return quartiles;
+  return quantiles;
 }
 
 Runs logarithms_of(Runs runs) {
@@ -75,27 +86,77 @@ double spread(const std::vector<double>& values) {
   return *high - *low;
 }
 
+/// Change of the blocks of two sides by a rule; zero if they do not agree on its sign, or are no further
+/// apart than those of one side.
+double change_of_blocks(const BlockRule& rule, const Runs& before, const Runs& after) {
+  const std::vector<double> old_parts = quantiles_of(long_blocks, before, rule.level);
+  const std::vector<double> new_parts = quantiles_of(long_blocks, after, rule.level);
+  if (std::abs(gap(old_parts, new_parts)) <= rule.least_gap * std::max(spread(old_parts), spread(new_parts)))
+    return 0.0;
+  // Quantiles of short blocks are uncertain: of their gap a third of a change suffices.
+  return agreement({quantile(joined(after), rule.level) - quantile(joined(before), rule.level),
+                    3.0 * gap(quantiles_of(short_blocks, before, rule.level),
+                              quantiles_of(short_blocks, after, rule.level))});
+}
+
+/// Ranks of values less their mean; equal values share a rank.
+std::vector<double> centred_ranks(const std::vector<double>& values) {
+  std::vector<double> ranks;
+  for (const double value : values) {
+    double rank = -0.5 * static_cast<double>(values.size());
+    for (const double other : values) rank += other < value ? 1.0 : other == value ? 0.5 : 0.0;
+    ranks.push_back(rank);
+  }
+  return ranks;
+}
+
+/// True if the samples of each run neither follow their order nor their predecessors, so that a test by ranks
+/// is valid. False for short runs.
+bool are_independent(const Runs& runs) {
+  for (const std::vector<double>& run : runs) {
+    if (run.size() < least_independent) return false;
+    const std::vector<double> ranks = centred_ranks(run);
+    const double middle = 0.5 * static_cast<double>(run.size() - 1);
+    double squares = 0.0, trend = 0.0, order_squares = 0.0;
+    for (std::size_t i = 0; i < ranks.size(); ++i) {
+      const double order = static_cast<double>(i) - middle;
+      squares += ranks[i] * ranks[i], trend += ranks[i] * order, order_squares += order * order;
+    }
+    if (std::abs(trend) >= most_dependence * std::sqrt(squares * order_squares) && squares > 0.0)
+      return false;
+    for (std::size_t lag = 1; lag <= 2; ++lag) {
+      double products = 0.0;
+      for (std::size_t i = lag; i < ranks.size(); ++i) products += ranks[i] * ranks[i - lag];
+      if (products >= most_dependence * squares && squares > 0.0) return false;
+    }
+  }
+  return true;
+}
+
+double larger(double a, double b) { return std::abs(a) > std::abs(b) ? a : b; }
+
 }  // namespace
 
 SpeedChange compare_speed(const Runs& before, const Runs& after) {
   const Runs old_runs = logarithms_of(before), new_runs = logarithms_of(after);
   const std::vector<double> old_all = joined(old_runs), new_all = joined(new_runs);
   const Shift shift = rank_shift(old_all, new_all);
-  std::vector<double> changes = {shift.estimate};
-  for (const double level : {0.25, 0.5})
-    changes.push_back(quantile(new_all, level) - quantile(old_all, level));
+  double agreed = 0.0;
+  for (const BlockRule& rule : block_rules)
+    agreed = larger(agreed, change_of_blocks(rule, old_runs, new_runs));
   // Other work on the machine prolongs most samples of a run, but seldom all: a change moves the fastest one
   // too.
   const double fastest = std::ranges::min(new_all) - std::ranges::min(old_all);
-  if (3.0 * fastest * shift.estimate <= shift.estimate * shift.estimate) changes.push_back(0.0);
-  // Quartiles of blocks are uncertain: of their gap a third of a change suffices.
-  changes.push_back(3.0 * gap(quartiles_of(short_blocks, old_runs), quartiles_of(short_blocks, new_runs)));
-  const std::vector<double> old_parts = quartiles_of(long_blocks, old_runs);
-  const std::vector<double> new_parts = quartiles_of(long_blocks, new_runs);
-  const double within = least_gap * std::max(spread(old_parts), spread(new_parts));
-  if (std::abs(gap(old_parts, new_parts)) <= within) changes.push_back(0.0);
-  return {std::exp(shift.estimate),    std::exp(shift.low), std::exp(shift.high),
-          rank_test(old_all, new_all), agreement(changes),  before == after};
+  const double near_end = shift.low > 0.0 ? shift.low : shift.high < 0.0 ? shift.high : 0.0;
+  const bool is_large = std::abs(near_end) >= large_change && 2.0 * fastest * near_end >= near_end * near_end;
+  if (is_large || (are_independent(old_runs) && are_independent(new_runs))) agreed = larger(agreed, near_end);
+  if (3.0 * fastest * shift.estimate <= shift.estimate * shift.estimate) agreed = 0.0;
+  return {std::exp(shift.estimate),
+          std::exp(shift.low),
+          std::exp(shift.high),
+          rank_test(old_all, new_all),
+          agreement({shift.estimate, agreed}),
+          before == after};
 }
 
 std::vector<SpeedVerdict> speed_verdict(const std::vector<SpeedChange>& changes) {

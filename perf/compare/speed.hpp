@@ -13,8 +13,8 @@ struct SpeedChange {
   double low = 1.0;    ///< interval that holds the ratio with a probability of at least 95 %
   double high = 1.0;
   double probability = 1.0;  ///< of such ranks without any change, for this case alone
-  /// Shortest change that quartiles, medians and all blocks of the samples agree on: the logarithm of a
-  /// ratio, zero if they disagree on its sign.
+  /// Change that is no drift and no jump of a clock: the logarithm of a ratio. Blocks of the samples agree on
+  /// it, or the samples are independent, or it is large; zero otherwise.
   double agreed = 0.0;
   bool identical = false;  ///< both sides hold the same samples
 };
@@ -32,8 +32,9 @@ inline constexpr double largest_unseen = 0.1;
 inline constexpr double false_alarm = 0.05;
 
 /// Verdicts of all cases of a comparison, whose probabilities are corrected for their number. "faster" and
-/// "slower" also need the smallest effect, and blocks that agree on it: a clock that drifts or jumps moves
-/// blocks of one side as far apart as those of both sides, so ranks alone would err. Does not throw.
+/// "slower" also need the smallest effect and one of three: blocks that agree on it, since a clock that
+/// drifts or jumps moves blocks of one side as far apart as those of both sides; samples without dependence
+/// on their order; or a change of a quarter that moves the fastest sample too. Does not throw.
 std::vector<SpeedVerdict> speed_verdict(const std::vector<SpeedChange>& changes);
 
 }  // namespace drogue::perf

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "common/program/failure.hpp"
+#include "common/program/signals.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/measure/warm_up.hpp"
 
@@ -61,9 +63,9 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
   }
   std::vector<long> repeats(cases.size(), 1);
   WarmUp warmth;
-  for (int round = -warm_up; round < rounds; ++round) {
+  for (int round = -warm_up; round < rounds && !interrupted(); ++round) {
     if (round == 0 && warm_up > 0 && !warmth.has_reached(warm_up_seconds)) round = -1;
-    for (std::size_t i = 0; i < cases.size(); ++i) {
+    for (std::size_t i = 0; i < cases.size() && !interrupted(); ++i) {
       const TimedSample taken = take(samples[i], repeats[i]);
       if (round < 0) {
         warmth.add(cases[i].on_device, taken.seconds);
@@ -79,6 +81,8 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       records[i].units = taken.units;
     }
   }
+  if (interrupted() && std::ranges::any_of(records, [](const Record& r) { return r.samples.empty(); }))
+    throw Failure(ExitCode::interrupted, "interrupted by a signal before every case had a sample");
   for (std::size_t i = 0; i < cases.size(); ++i) {
     records[i].error = cases[i].error();
     if (cases[i].facts) records[i].facts = cases[i].facts();

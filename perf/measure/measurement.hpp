@@ -77,7 +77,9 @@ double timer_overhead();
 /// Discards the first `warm_up` rounds, and more until cases on a device and those on a host have each worked
 /// for `warm_up_seconds`, unless `warm_up` is 0. The warm-up also determines how often a sample repeats its
 /// work, to last for `shortest_sample`; each work starts from the initial state. Reads `clocks`, if
-/// given, after each sample of a case on a device. Blocking; passes on exceptions of the cases.
+/// given, after each sample of a case on a device. Blocking; passes on exceptions of the cases. After a
+/// signal
+/// (`interrupted`) it ends with the samples that there are; throws Failure(interrupted) if a case has none.
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds,
                             const GpuClocks* clocks = nullptr);
 

@@ -30,7 +30,8 @@ def format_number(value: float | None) -> str:
     """Number with three significant digits, an integer from 1000 on; powers of ten as HTML markup."""
     if value is None:
         return "not a number"
-    if 1e3 <= abs(value) < 1e5:
+    # A value that rounds to 1000 with three digits is written as an integer too.
+    if 999.5 <= abs(value) < 1e5:
         return format_grouped(round(value))
     if value == 0 or 1e-2 <= abs(value) < 1e5:
         return f"{value:.3g}"

@@ -171,6 +171,15 @@ class WorkPrecision(perf_program.PerfTest):
                 self.assertAlmostEqual(1.0, error / errors[problem, scheme, "double", cells], places=3)
 
 
+    def test_reports_an_interruption_of_a_run(self):
+        process = subprocess.Popen([perf_program.PROGRAM, "run", "--quick", "--filter", "^gas-step/serial", "--out", "run.jsonl"],
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process.stdout.readline()  # the warm-up, which follows, lasts a second
+        process.send_signal(signal.SIGTERM)
+        message = process.communicate(timeout=300)[1]
+        self.assertEqual(130, process.returncode, message)
+        self.assertRegex(message, "drogue-perf: interrupted by a signal")
+
     def test_reports_an_interruption(self):
         process = subprocess.Popen([perf_program.PROGRAM, "work-precision", "--backend", "serial", "--out", "runs.jsonl"],
                                    cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

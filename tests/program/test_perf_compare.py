@@ -54,6 +54,11 @@ class Compare(perf_program.PerfTest):
         self.assertEqual({"SAME"}, set(self.verdicts(self.compare(0, [record(case) for case in CASES],
                                                                   "--fail-on", "slower,error").stdout).values()))
 
+    def test_says_that_no_case_could_be_compared(self):
+        process = self.compare(0, [record("new")], "--fail-on", "slower,error")
+        self.assertEqual({"NOT-COMPARABLE"}, set(self.verdicts(process.stdout).values()))
+        self.assertTrue(process.stdout.endswith("\nno case could be compared\n"), process.stdout)
+
     def test_exit_code_is_5_for_a_named_verdict_alone(self):
         slow, wrong = [record(CASES[0], 1.3)], [record(CASES[0], error=2e-3)]
         for code, new, words in ((0, slow, []), (5, slow, ["--fail-on", "slower"]), (0, slow, ["--fail-on", "error"]),
@@ -103,6 +108,7 @@ class Compare(perf_program.PerfTest):
             (3, good + "\n" + good.replace("perf/1", "perf/2"), 'new.jsonl:2: the schema is "drogue.perf/2"'),
             (3, '{"time": 1}\n', "new.jsonl:1: no record of drogue-perf"),
             (3, "", "new.jsonl: the file holds no records"),
+            (3, json.dumps(record("a\nSLOWER b")), "new.jsonl:1: 'case' holds a control character"),
             (3, json.dumps(record(CASES[0], samples=[float("nan")])), "new.jsonl:1: NaN at column"),
             (3, json.dumps(record(CASES[0], samples=[None])), f"new.jsonl:1: samples[0] of {CASES[0]} is no positive"),
             (2, None, "there is no file 'new.jsonl'"),

@@ -6,15 +6,13 @@
 namespace drogue::reference {
 namespace {
 
-using Values = std::vector<double>;
-
 /// Solves -side u[i-1] + diagonal u[i] - side u[i+1] = right[i] at the inner nodes, with the values that `u`
 /// has at both ends (Thomas).
-void solve_diffusion(double diagonal, double side, Values right, Values& u) {
+void solve_diffusion(double diagonal, double side, std::vector<double> right, std::vector<double>& u) {
   const std::size_t last = u.size() - 1;
   right[1] += side * u[0];
   right[last - 1] += side * u[last];
-  Values pivot(u.size(), diagonal);
+  std::vector<double> pivot(u.size(), diagonal);
   for (std::size_t i = 2; i < last; ++i) {
     const double factor = side / pivot[i - 1];
     pivot[i] -= factor * side;
@@ -30,7 +28,7 @@ std::vector<double> solve_printed_put(const PrintedPut& put) {
   const auto n = static_cast<std::size_t>(put.mesh);
   const double h = 2.0 * put.half_width / put.mesh, dt = put.maturity / put.steps, end = (put.mesh + 0.5) * h;
   const auto x = [&](std::size_t i) { return static_cast<double>(i) * h - put.half_width; };
-  Values up(n + 1), down(n + 1), exit_mass(n + 1), exit_price(n + 1), payoff(n + 1);
+  std::vector<double> up(n + 1), down(n + 1), exit_mass(n + 1), exit_price(n + 1), payoff(n + 1);
   double rate = 0.0, compensator = 0.0;
   for (std::size_t k = 1; k <= n; ++k) {
     const double y = static_cast<double>(k) * h, part = k == 1 ? 0.5 * h : h;
@@ -48,13 +46,13 @@ std::vector<double> solve_printed_put(const PrintedPut& put) {
   const double diffusion = (put.variance + levy_variance(put.jumps) - levy_tail_variance(put.jumps, h)) / 2.0;
   const double drift = put.rate - put.dividend - diffusion - compensator;
   for (std::size_t i = 0; i <= n; ++i) payoff[i] = std::max(0.0, -std::expm1(x(i)));
-  Values f = payoff;
+  std::vector<double> f = payoff;
   for (int step = 1; step <= put.steps; ++step) {
     const auto discount = [&](double yield, int time) {
       return put.american ? 1.0 : std::exp(-yield * time * dt);
     };
     const double strike = discount(put.rate, step - 1), asset = discount(put.dividend, step - 1);
-    Values right(n + 1);
+    std::vector<double> right(n + 1);
     for (std::size_t i = 1; i < n; ++i) {
       double sum = strike * exit_mass[i] - asset * exit_price[i];
       for (std::size_t j = 0; j <= n; ++j)

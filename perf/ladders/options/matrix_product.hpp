@@ -5,7 +5,7 @@
 
 namespace drogue::perf::ladder {
 
-/// A step of option k after its sums of jumps, which `jumped` holds.
+/// A step of option k after its sums of jumps, which `arrays.right` holds.
 template <class Arrays>
 struct AfterProductFunctor {
   Arrays arrays;

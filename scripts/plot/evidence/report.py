@@ -39,7 +39,8 @@ def strip(samples: tuple[float, ...]) -> str:
 
 
 def _row(record: Record, drawn: bool) -> list[Cell | str]:
-    timed = record.samples
+    # A wrong result has no time.
+    timed = [] if record.check == "failed" else record.samples
     interval = record.interval or (min(timed), max(timed)) if timed else None
     return [
         record.case,
