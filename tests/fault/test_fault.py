@@ -58,7 +58,7 @@ class Fault(gas_program.GasTest):
         self.assert_fails("lax", "conservation", 0.0, sets=["verify.conservation=0.0"])
 
     def test_detects_a_wrong_density_peak(self):
-        self.assert_fails("sedov", "max_density", 0.02, sets=["mesh.cells=101"])  # 4.83 is not 5.30
+        self.assert_fails("sedov", "max_density", 0.002, sets=["mesh.cells=101"])  # 4.83 is not 5.30
         self.assert_fails("sedov", "max_density", 1e-6, sets=["verify.max_density.tolerance=1e-6"])
 
     def test_detects_a_wrong_scheme(self):

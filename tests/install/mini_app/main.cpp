@@ -103,8 +103,7 @@ struct HeatScene final : framework::Scene {
 };
 
 int main(int argc, char** argv) {
-  framework::MiniApp app{
-      .name = "heat", .description = "Heat equation on a line.", .scene_folder = HEAT_SCENES};
+  framework::MiniApp app{.name = "heat", .description = "Heat on a line.", .scene_folder = HEAT_SCENES};
   app.read = [](const auto& file, const auto& sets, bool) { return std::make_unique<HeatScene>(file, sets); };
   return framework::run_mini_app(app, argc, argv);
 }
