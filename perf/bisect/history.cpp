@@ -1,6 +1,5 @@
 #include "perf/bisect/history.hpp"
 
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
@@ -23,26 +22,15 @@ std::string last_line(const fs::path& file) {
   return last;
 }
 
-fs::path make_folder() {
-  std::string name = (fs::temp_directory_path() / "drogue-bisect-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr)
-    throw Failure(ExitCode::io_error,
-                  "no temporary folder can be made in '" + fs::temp_directory_path().string() + "'");
-  return name;
-}
-
 }  // namespace
 
-History::History(const fs::path& repository) : _repository(repository), _folder(make_folder()) {
-  if (!fs::is_directory(repository) || git(repository, {"rev-parse", "--git-dir"}).status != 0) {
-    fs::remove_all(_folder);
+History::History(const fs::path& repository) : _repository(repository), _folder("drogue-bisect") {
+  if (!fs::is_directory(repository) || git(repository, {"rev-parse", "--git-dir"}).status != 0)
     throw Failure(ExitCode::usage, "'" + repository.string() + "' is in no git repository");
-  }
 }
 
 History::~History() {
-  std::error_code error;
-  fs::remove_all(_folder, error);
+  _folder.remove();
   try {
     run_child({"git", "worktree", "prune"}, _repository, "/dev/null");
   } catch (const Failure&) {
@@ -53,13 +41,14 @@ History::~History() {
 
 ChildResult History::git(const fs::path& tree, std::vector<std::string> words) {
   words.insert(words.begin(), "git");
-  return run_child(words, tree, _folder / "git.log");
+  return run_child(words, tree, _folder.path() / "git.log");
 }
 
 std::string History::required(const fs::path& tree, const std::vector<std::string>& words) {
   const ChildResult result = git(tree, words);
   if (result.status != 0)
-    throw Failure(ExitCode::io_error, "git " + words.front() + " failed: " + last_line(_folder / "git.log"));
+    throw Failure(ExitCode::io_error,
+                  "git " + words.front() + " failed: " + last_line(_folder.path() / "git.log"));
   return first_line(result.output);
 }
 
@@ -83,7 +72,7 @@ std::string History::describe(const std::string& commit) {
 }
 
 fs::path History::add_tree(const std::string& commit, const std::string& name) {
-  const fs::path tree = _folder / name;
+  const fs::path tree = _folder.path() / name;
   required(_repository, {"worktree", "add", "--quiet", "--detach", tree.string(), commit});
   return tree;
 }
@@ -111,7 +100,7 @@ History::Step History::step_of(const fs::path& tree, const ChildResult& result) 
   }
   if (!step.suspects.empty()) return step;
   if (result.status != 0)
-    throw Failure(ExitCode::io_error, "git bisect failed: " + last_line(_folder / "git.log"));
+    throw Failure(ExitCode::io_error, "git bisect failed: " + last_line(_folder.path() / "git.log"));
   step.commit = required(tree, {"rev-parse", "HEAD"});
   return step;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/run/files/temporary_folder.hpp"
 #include "perf/bisect/child_process.hpp"
 
 namespace drogue::perf {
@@ -45,14 +46,15 @@ class History {
   Step judge(const std::filesystem::path& tree, const std::string& word);
 
   /// Temporary folder for files of the caller, removed with the working trees.
-  [[nodiscard]] const std::filesystem::path& folder() const { return _folder; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return _folder.path(); }
 
  private:
   ChildResult git(const std::filesystem::path& tree, std::vector<std::string> words);
   std::string required(const std::filesystem::path& tree, const std::vector<std::string>& words);
   Step step_of(const std::filesystem::path& tree, const ChildResult& result);
 
-  std::filesystem::path _repository, _folder;
+  std::filesystem::path _repository;
+  run::TemporaryFolder _folder;
 };
 
 }  // namespace drogue::perf

@@ -10,6 +10,16 @@ void require(device::Backend backend) {
   if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
 }
 
+std::vector<device::Backend> backends_of(const std::string& name) {
+  const device::Backend wanted = device::wanted_backend(name);
+  require(wanted);
+  if (name != "auto") return {wanted};
+  std::vector<device::Backend> present;
+  for (const device::Backend backend : device::compiled_backends())
+    if (device::is_present(backend)) present.push_back(backend);
+  return present;
+}
+
 ExitCode code_of(bool passed) {
   if (interrupted()) {
     print_notice("drogue-perf", "interrupted by a signal; the records hold the samples until then");

@@ -26,6 +26,10 @@ Command bisect_command(CLI::App& program);
 Command report_command(CLI::App& program);
 Command ladder_command(CLI::App& program);
 
+/// The backend of a name, or with `auto` all that are present. Throws Failure(no_backend) with the reason if
+/// the named one cannot run here. Call it before Kokkos is initialised.
+std::vector<device::Backend> backends_of(const std::string& name);
+
 /// Code of a finished measurement. After a signal, prints a notice and returns `interrupted`.
 ExitCode code_of(bool passed);
 

@@ -21,9 +21,9 @@ struct TableOptions {
 
 /// Tables of a mini-app.
 std::vector<std::string> tables_of(const std::string& app) {
-  if (app == "gas") return {"occupancy", "block-size", "transfers"};
-  if (app == "flow") return {"pressure", "memory"};
-  return {"transfers"};
+  if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling"};
+  if (app == "flow") return {"pressure", "memory", "scaling"};
+  return {"transfers", "scaling"};
 }
 
 /// Tables that need a backend and Kokkos.
@@ -36,7 +36,6 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
                                        std::string(device::name(backend)) +
                                        "', whose teams are single threads; give --backend cuda");
   const device::Runtime runtime(kokkos);
-  install_signal_handlers();
   const nlohmann::json here = provenance(device::device_facts());
   if (block_size) return print_block_sizes(backend, options.quick, here);
   const auto print = options.table == "pressure" ? print_flow_pressure
@@ -48,7 +47,8 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
 }
 
 ExitCode print_table(TableOptions options, const std::vector<std::string>& kokkos) {
-  require_name("table", options.table, {"occupancy", "block-size", "transfers", "pressure", "memory"});
+  require_name("table", options.table,
+               {"occupancy", "block-size", "transfers", "scaling", "pressure", "memory"});
   if (options.app.empty())
     options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
   require_app(options.app);
@@ -60,10 +60,13 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
   require_name("table of " + options.app, options.table, tables_of(options.app));
   run::require_writable(options.out);
+  install_signal_handlers();
   Table table;
   if (options.table == "occupancy")
     table =
         print_occupancy(provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
+  else if (options.table == "scaling")
+    table = print_scaling(options.app, backends_of(options.backend), options.quick);
   else
     table = timed_table(options, kokkos);
   write_records(options.out, table.records);
@@ -77,7 +80,8 @@ Command table_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "table", "Print a table, most of them of [Shi] (README.md cites it) beside our own numbers");
   app->add_option("TABLE", options->table,
-                  "occupancy (computed); block-size or transfers; pressure or memory of flow")
+                  "occupancy (computed); block-size or transfers; scaling with size and threads; pressure or "
+                  "memory of flow")
       ->required();
   app->add_option("--app", options->app, app_help("Kernels that are measured"));
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")

@@ -28,16 +28,6 @@ struct WorkPrecisionOptions {
   bool quick = false;
 };
 
-std::vector<device::Backend> backends_of(const std::string& name) {
-  const device::Backend wanted = device::wanted_backend(name);
-  require(wanted);
-  if (name != "auto") return {wanted};
-  std::vector<device::Backend> present;
-  for (const device::Backend backend : device::compiled_backends())
-    if (device::is_present(backend)) present.push_back(backend);
-  return present;
-}
-
 /// Benchmark of a mini-app: its function, and the unit and bound in its records.
 struct WorkPrecision {
   const char* app;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "kernels/device/backend.hpp"
@@ -42,6 +43,11 @@ Table print_flow_pressure(device::Backend backend, bool quick, const nlohmann::j
 /// Memory of flow solvers by grid: bytes of all Views, and, on a GPU, by the count of the driver. The records
 /// have no samples.
 Table print_flow_memory(device::Backend backend, bool quick, const nlohmann::json& provenance);
+
+/// Strong scaling: times of the plain cases of `run` for gas, springs, options or flow by size and, on
+/// OpenMP, by number of threads, each in a process of its own. Call it without an initialised runtime. Throws
+/// Failure as `run` does, and interrupted after a signal.
+Table print_scaling(const std::string& app, const std::vector<device::Backend>& backends, bool quick);
 
 /// Figure 4.4: time per step against block size and mesh, for the baseline solver and for the fused step.
 /// `backend` must be a GPU.

@@ -239,6 +239,21 @@ class PressureTable(perf_program.PerfTest):
             self.assertLess(iterations[1e-6], iterations[1e-10])
 
 
+class Scaling(perf_program.PerfTest):
+    def test_runs_each_size_with_each_number_of_threads(self):
+        text = self.expect(0, "table", "scaling", "--app", "options", "--quick", "--out", "scaling.jsonl").stdout
+        records = self.records("scaling.jsonl")
+        self.assertEqual(len(records), len(text.splitlines()) - 1)
+        threads = {}
+        for record in records:
+            self.assertEqual(record["facts"]["threads"], record["provenance"]["threads"], record["case"])
+            self.assertEqual(("passed", str(record["facts"]["threads"])), (record["check"], record["case"].rpartition("/")[2]))
+            threads.setdefault(record["facts"]["backend"], set()).add(record["facts"]["threads"])
+        self.assertEqual({1}, threads["serial"])
+        if "openmp" in threads:
+            self.assertEqual({1, os.cpu_count()} | {2**k for k in range(16) if 2**k < os.cpu_count()}, threads["openmp"])
+
+
 class WorkPrecisionOfCanopies(perf_program.PerfTest):
     def test_records_are_valid(self):
         self.expect(0, "work-precision", "--app", "parachute", "--quick", "--backend", "serial", "--out", "runs.jsonl")
@@ -329,11 +344,11 @@ class Refusals(perf_program.PerfTest):
     def test_reports_usage_errors(self):
         for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
-                            (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
+                            (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["table", "transfers", "--app", "parachute"], "have --app flow"),
-                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers"),
-                            (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory"),
+                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling"),
+                            (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory, scaling"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
                              "no problem matches 'day$'; with --quick there are thesis, merton"),
                             (["work-precision", "--app", "options", "--filter", "("], "is not a valid regular expression"),
