@@ -96,7 +96,6 @@ class Record(perf_program.PerfTest):
             self.assert_timed(record, 7)
             self.assertEqual({"cpu_us": 223565, "h2d_us": 171, "compute_us": 41328, "d2h_us": 644, "total_us": 42143},
                              record["facts"]["thesis"])
-        self.assertLess(3 * records[0]["facts"]["compute_s"], records[1]["facts"]["compute_s"])
 
     def test_options_transfers_compare_both_schemes(self):
         text = self.expect(0, "table", "transfers", "--app", "options", "--quick", "--backend", "serial", "--out",

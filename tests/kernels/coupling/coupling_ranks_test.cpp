@@ -357,7 +357,9 @@ TEST_F(CoupledRanks, KeepTheStepsEqualIfOneRankIsInterrupted) {
   EXPECT_EQ(Stop::interrupted, shared->advance(endless, -1, [&](const flow::Status& now) {
     return world.rank() != 3 || now.step < 20;
   }));
-  EXPECT_EQ(32, shared->progress().step);  // whole blocks
+  // Between two polls lie a few steps, the same on all ranks.
+  EXPECT_GE(shared->progress().step, 20);
+  EXPECT_LE(shared->progress().step, 32);
   EXPECT_EQ(Stop::pause, shared->advance(endless, 33, [](const flow::Status&) { return true; }));
   expect_one_cloth(shared, "after an interrupt");
 }

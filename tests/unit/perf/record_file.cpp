@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/program/failure.hpp"
+#include "common/run/files/temporary_folder.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -15,8 +16,6 @@ const std::string good_record =
 
 class RecordFile : public testing::Test {
  protected:
-  ~RecordFile() override { std::filesystem::remove(_file); }
-
   std::vector<MeasuredCase> read(const std::string& content) {
     std::ofstream(_file) << content;
     return read_records(_file);
@@ -39,7 +38,8 @@ class RecordFile : public testing::Test {
   }
 
  private:
-  std::string _file = testing::TempDir() + "x.jsonl";
+  const run::TemporaryFolder _folder{"drogue-test"};
+  std::string _file = (_folder.path() / "x.jsonl").string();
 };
 
 TEST_F(RecordFile, ReadsLinesWithOrWithoutALastLineEnd) {
