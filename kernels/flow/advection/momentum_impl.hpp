@@ -107,7 +107,8 @@ struct MomentumRowsFunctor {
            sizeof(double);
   }
 
-  KOKKOS_FUNCTION void operator()(const Member& member) const {
+  /// For hosts alone, as the functions that it calls: a compiler of device code refuses calls of those.
+  void operator()(const Member& member) const {
     const MacGrid& g = setup.grid;
     if (setup.control().trial.stop != stepping::Stop::running) return;
     const StageFactors factors = stage_factors(setup, setup.control());
