@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 #include "common/program/failure.hpp"
 
@@ -78,6 +79,14 @@ ChildResult run_child(const std::vector<std::string>& words, const std::filesyst
   if (error != 0)
     throw Failure(ExitCode::io_error, "'" + words[0] + "' cannot be started: " + std::strerror(error));
   return result;
+}
+
+std::string last_line(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string last;
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) last = line;
+  return last;
 }
 
 }  // namespace drogue::perf

@@ -18,4 +18,8 @@ struct ChildResult {
 ChildResult run_child(const std::vector<std::string>& words, const std::filesystem::path& folder,
                       const std::filesystem::path& log, bool log_output = false);
 
+/// Last line of a file that is not empty, such as the reason of a failure in a log; empty without one. Throws
+/// only std::bad_alloc.
+std::string last_line(const std::filesystem::path& file);
+
 }  // namespace drogue::perf

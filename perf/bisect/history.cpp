@@ -1,6 +1,5 @@
 #include "perf/bisect/history.hpp"
 
-#include <fstream>
 #include <sstream>
 
 #include "common/program/failure.hpp"
@@ -12,15 +11,6 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-/// Last line of a file that is not empty.
-std::string last_line(const fs::path& file) {
-  std::ifstream in(file);
-  std::string last;
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty()) last = line;
-  return last;
-}
 
 }  // namespace
 

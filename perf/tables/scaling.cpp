@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <thread>
@@ -51,12 +51,9 @@ std::vector<MeasuredCase> run_with_threads(const std::string& pattern, int threa
   if (quick) words.emplace_back("--quick");
   const int status = run_child(words, folder.path(), log).status;
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
-  if (status != 0 && status != static_cast<int>(ExitCode::verification_failed)) {
-    std::string line, last;
-    for (std::ifstream lines(log); std::getline(lines, line);) last = line;
+  if (status != 0 && status != static_cast<int>(ExitCode::verification_failed))
     throw Failure(static_cast<ExitCode>(status),
-                  "a run with " + std::to_string(threads) + " threads failed: " + last);
-  }
+                  "a run with " + std::to_string(threads) + " threads failed: " + last_line(log));
   return read_records(file);
 }
 

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "miniapps/parachute/scene/scene.hpp"
+
 namespace drogue::perf {
 
 namespace {
@@ -10,12 +12,6 @@ const char* name_of(flow::Advection advection) {
   return advection == flow::Advection::central   ? "central"
          : advection == flow::Advection::weno_js ? "weno-js"
                                                  : "weno-z";
-}
-
-const char* name_of(flow::PressureSolver pressure) {
-  return pressure == flow::PressureSolver::fft               ? "fft"
-         : pressure == flow::PressureSolver::diagonalization ? "diagonalization"
-                                                             : "hypre-pfmg";
 }
 
 }  // namespace
@@ -30,11 +26,11 @@ void FlowScheme::apply(flow::Parameters& p) const {
 void FlowScheme::describe(Solution& s) const {
   const std::string time_name = time == flow::TimeScheme::ab2 ? "ab2" : "rk3";
   const bool is_implicit = diffusion == flow::Diffusion::crank_nicolson;
-  s.label = std::string(name_of(advection)) + " " + time_name + " " + name_of(pressure) +
-            (is_implicit ? " crank-nicolson" : "");
+  s.label = std::string(name_of(advection)) + " " + time_name + " " +
+            parachute_app::pressure_solver_name(pressure) + (is_implicit ? " crank-nicolson" : "");
   s.scheme = {{"advection", name_of(advection)},
               {"time_scheme", time_name},
-              {"pressure", name_of(pressure)},
+              {"pressure", parachute_app::pressure_solver_name(pressure)},
               {"diffusion", is_implicit ? "crank-nicolson" : "explicit"}};
 }
 

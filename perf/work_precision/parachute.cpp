@@ -83,7 +83,8 @@ Solution described(device::Backend backend, const Discretization& d) {
   return s;
 }
 
-/// Opening with the least duration of one or, with `repeated`, several runs; nothing after a signal.
+/// Opening, whose runs are equal, and in `samples` the durations of one run or, with `repeated`, of several;
+/// nothing after a signal.
 std::optional<inflation::Opening> run_opening(device::Backend backend, const Discretization& d,
                                               double end_time, std::vector<double>& samples, bool repeated) {
   const inflation::Problem problem = inflation::problem(d);

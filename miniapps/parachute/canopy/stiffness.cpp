@@ -13,13 +13,10 @@ StiffPart stiffest_part(const Canopy& canopy, const CanopyMesh& mesh) {
                         std::sqrt(canopy.membrane_modulus / canopy.area_density) / canopy.edge_length};
   const auto compare = [&](const std::string& key, double stiffness, int line) {
     const auto k = static_cast<std::size_t>(line);
-    const auto [a, b] = p.mesh.lines[k];
-    const double given = p.mesh.line_length.empty() ? 0.0 : p.mesh.line_length[k],
-                 length = given > 0.0 ? given : mesh::rest_distance(p.mesh, a, b);
     double inverse_mass = 0.0;
-    for (const int i : {a, b})
+    for (const int i : p.mesh.lines[k])
       if (const auto end = static_cast<std::size_t>(i); p.pinned[end] != 7) inverse_mass += 1.0 / p.mass[end];
-    const double frequency = std::sqrt(stiffness / length * inverse_mass);
+    const double frequency = std::sqrt(stiffness / mesh::rest_length(p.mesh, k) * inverse_mass);
     if (frequency > stiffest.frequency) stiffest = {key, stiffness, "N", frequency};
   };
   for (const int line : mesh.suspension) compare("lines.stiffness", canopy.lines.stiffness, line);
