@@ -310,7 +310,8 @@ void FlowSolver<ExecutionSpace>::make_poisson() {
     _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem,
                      unknown().data() == _divergence.data());
   else
-    _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem);
+    _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem,
+                     linear::InvertedOperators::laplacian);
 }
 
 template <class ExecutionSpace>

@@ -10,9 +10,9 @@ inline constexpr int tile_x = 32, tile_y = 4;
 using device::launch_cells;
 
 /// Planes of a march along z of a tile of columns on a device: at most `longest`, a power of two, and fewer
-/// if that would leave multiprocessors without work. Does not throw.
-inline int march_planes(int tiles, int nz, int longest) {
-  constexpr int enough_teams = 1024;  // about two waves of a large device
+/// if there would be less than `enough_teams` teams; the default is about two waves of a large device. Does
+/// not throw.
+inline int march_planes(int tiles, int nz, int longest, int enough_teams = 1024) {
   int planes = longest;
   while (planes > 2 && tiles * ((nz + planes - 1) / planes) < enough_teams) planes /= 2;
   return planes;

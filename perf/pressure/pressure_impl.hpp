@@ -84,7 +84,8 @@ std::unique_ptr<Solver> make_solver(const linear::PoissonProblem& problem, flow:
     return std::make_unique<SolverOf<ExecutionSpace, linear::HyprePfmgSolver<ExecutionSpace>>>(problem,
                                                                                                tolerance);
 #endif
-  return std::make_unique<SolverOf<ExecutionSpace, linear::DiagonalizationSolver<ExecutionSpace>>>(problem);
+  return std::make_unique<SolverOf<ExecutionSpace, linear::DiagonalizationSolver<ExecutionSpace>>>(
+      problem, linear::InvertedOperators::laplacian);
 }
 
 }  // namespace drogue::perf::pressure

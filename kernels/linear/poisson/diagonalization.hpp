@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "kernels/linear/dense_product.hpp"
 #include "kernels/linear/poisson/spectral_scaling.hpp"
+#include "kernels/linear/poisson/tridiagonal_lines.hpp"
 
 namespace drogue::linear {
 
@@ -26,32 +28,49 @@ Kokkos::View<double*, typename ExecutionSpace::memory_space> eigenvector_matrix(
   return to_device(space, "drogue::linear::eigenvectors", basis);
 }
 
+/// Operators that a direct solver can invert.
+enum class InvertedOperators {
+  any,        ///< the Laplacian and operators of implicit diffusion
+  laplacian,  ///< the Laplacian alone, for which more can be prepared
+};
+
 /// Direct solver by diagonalization of the second differences along each axis (Lynch, Rice and Thomas 1964):
 /// six products with dense matrices of eigenvectors, 4 (nx + ny + nz) floating-point operations per cell, for
-/// any combination of boundary conditions and any size.
+/// any combination of boundary conditions and any size. If only the Laplacian is inverted and z has ends,
+/// tridiagonal systems along z take the place of two products.
 template <class ExecutionSpace>
 class DiagonalizationSolver {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
-  /// Allocates the matrices and one work array; blocks. Throws std::runtime_error if memory runs out.
-  DiagonalizationSolver(const ExecutionSpace& space, const PoissonProblem& problem)
-      : _space(space), _problem(problem), _product(space) {
+  /// Allocates the matrices and one work array, and one more for the tridiagonal systems; blocks. Throws
+  /// std::runtime_error if memory runs out.
+  DiagonalizationSolver(const ExecutionSpace& space, const PoissonProblem& problem,
+                        InvertedOperators operators = InvertedOperators::any)
+      : _space(space), _problem(problem), _operators(operators), _product(space) {
+    // The first product copies the right-hand side, which a solver of lines overwrites.
+    const bool has_lines = operators == InvertedOperators::laplacian &&
+                           (problem.varies_along(0) || problem.varies_along(1)) &&
+                           TridiagonalLines<ExecutionSpace>::supports(problem);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", axis_eigenvalues(problem, axis));
-      if (problem.varies_along(axis)) _basis[axis] = eigenvector_matrix(space, problem, axis);
+      if (problem.varies_along(axis) && !(axis == 2 && has_lines))
+        _basis[axis] = eigenvector_matrix(space, problem, axis);
     }
+    if (has_lines) _lines.emplace(space, problem, _eigenvalues[0], _eigenvalues[1]);
     _work =
         List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::work"), _problem.size());
   }
 
   /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
   /// the unit of the solution per m^2. Asynchronous; neither fences nor allocates. Throws
-  /// std::invalid_argument for an array of the wrong size.
+  /// std::invalid_argument for an array of the wrong size or an operator that the solver was not made for.
   void enqueue_solve(const List& right_hand_side, const List& solution,
                      const SpectralOperator& spectral_operator = {}) const {
     if (right_hand_side.extent(0) != _problem.size() || solution.extent(0) != _problem.size())
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
+    if (_operators == InvertedOperators::laplacian && spectral_operator.dt != nullptr)
+      throw std::invalid_argument("Poisson solver: made for the Laplacian alone");
     // An even number of products leaves the result in the solution.
     List from = right_hand_side, to = _work, other = solution;
     const auto transform = [&](std::size_t axis, bool forward) {
@@ -60,17 +79,27 @@ class DiagonalizationSolver {
       from = to;
       std::swap(to, other);
     };
-    for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, true);
-    scale_spectrum(_space,
-                   SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0], _eigenvalues[1],
-                                                          _eigenvalues[2], 1, 1.0, spectral_operator});
-    for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, false);
+    transform(0, true);
+    transform(1, true);
+    if (_lines) {
+      _lines->solve(from);
+    } else {
+      transform(2, true);
+      scale_spectrum(_space,
+                     SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0], _eigenvalues[1],
+                                                            _eigenvalues[2], 1, 1.0, spectral_operator});
+      transform(2, false);
+    }
+    transform(0, false);
+    transform(1, false);
   }
 
  private:
   ExecutionSpace _space;
   PoissonProblem _problem;
+  InvertedOperators _operators;
   DenseProduct<ExecutionSpace> _product;
+  std::optional<TridiagonalLines<ExecutionSpace>> _lines;
   List _basis[3], _eigenvalues[3], _work;
 };
 
