@@ -51,8 +51,9 @@ class Solver {
   /// Sums over the present state. The order of summation does not depend on the backend.
   [[nodiscard]] virtual Totals totals() = 0;
 
-  /// Field at the cell centres, in the order of an array of shape (nx, ny, nz) or (nx, ny, nz, 3) whose last
-  /// index varies fastest. Throws std::invalid_argument for a span of the wrong length.
+  /// Field at the cell centres, in the SI unit that `CellField` states, in the order of an array of shape
+  /// (nx, ny, nz) or (nx, ny, nz, 3) whose last index varies fastest. Throws std::invalid_argument for a span
+  /// of the wrong length.
   virtual void sample(CellField field, std::span<double> values) = 0;
 
   /// Launch strategy: "graph" or "plain". Does not throw.
