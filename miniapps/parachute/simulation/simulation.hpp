@@ -51,7 +51,6 @@ class Simulation final : public framework::Simulation {
   /// Values of the fields of one output, in the order of the scene.
   using Snapshot = std::vector<std::vector<double>>;
 
-  [[nodiscard]] std::vector<flow::StateField> state_fields() const;
   void sample_fields(Snapshot& snapshot);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
