@@ -7,7 +7,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
-#include "kernels/coupling/sheet/sheet_state.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 
@@ -21,7 +21,7 @@ constexpr double speed = 10.0;  // m/s
 struct State {
   std::vector<std::vector<double>> flow;  ///< arrays of `flow::state_fields`
   flow::Progress progress;
-  coupling::SheetState sheets;
+  coupling::RestartState sheets;
 };
 
 State save(coupling::Solver& solver, const coupling::Parameters& p) {
@@ -31,7 +31,7 @@ State save(coupling::Solver& solver, const coupling::Parameters& p) {
     solver.download(field, state.flow.back());
   }
   state.progress = solver.progress();
-  state.sheets = coupling::download_sheets(solver, p.fabric.mass.size());
+  state.sheets = coupling::download_restart_state(solver, p.fabric.mass.size());
   return state;
 }
 
@@ -39,7 +39,7 @@ void restore(coupling::Solver& solver, const coupling::Parameters& p, const Stat
   std::size_t k = 0;
   for (const flow::StateField field : flow::state_fields(p.flow)) solver.upload(field, state.flow[k++]);
   solver.restore(state.progress);
-  coupling::upload_sheets(solver, state.sheets);
+  coupling::upload_restart_state(solver, state.sheets);
 }
 
 /// Puts the flat cloth into the uniform stream.

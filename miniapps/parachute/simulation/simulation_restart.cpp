@@ -2,7 +2,7 @@
 #include <string>
 
 #include "common/program/stopwatch.hpp"
-#include "kernels/coupling/sheet/sheet_state.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
@@ -30,7 +30,7 @@ void visit(Progress& progress, const Number& number, const Integer& integer) {
 
 void Simulation::write_coupling(run::RestartWriter& writer) {
   const std::size_t vertices = _sheets.positions.size();
-  const coupling::SheetState state = coupling::download_sheets(*_coupled, vertices);
+  const coupling::RestartState state = coupling::download_restart_state(*_coupled, vertices);
   const auto write = [&](const char* name, const std::vector<fabric::Vector>& values) {
     writer.array(name, 3 * vertices);
     writer.write(name, 0, {values.front().data(), 3 * vertices});
@@ -61,7 +61,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
 }
 
 void Simulation::read_coupling(const run::RestartReader& reader) {
-  coupling::SheetState state = coupling::download_sheets(*_coupled, _sheets.positions.size());
+  coupling::RestartState state = coupling::download_restart_state(*_coupled, _sheets.positions.size());
   const auto read = [&](const char* name, std::vector<fabric::Vector>& values) {
     reader.read(name, 0, {values.front().data(), 3 * values.size()});
   };
@@ -81,7 +81,7 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
     }
     state.frame.since = reader.number("frame_since");
   }
-  coupling::upload_sheets(*_coupled, state);
+  coupling::upload_restart_state(*_coupled, state);
 }
 
 void Simulation::write_restart(run::RestartWriter& writer) {

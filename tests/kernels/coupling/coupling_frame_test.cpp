@@ -8,7 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "kernels/coupling/sheet/sheet_state.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/expression_program.hpp"
 
@@ -150,7 +150,7 @@ TEST(MovingFrame, ContinuesBitForBit) {
     const std::vector<StateField> fields = flow::state_fields(c.p.flow);
     for (const StateField field : fields) second->upload(field, array_of(c, *first.solver, field));
     second->restore(first.solver->progress());
-    upload_sheets(*second, download_sheets(*first.solver, c.x.size()));
+    upload_restart_state(*second, download_restart_state(*first.solver, c.x.size()));
     ASSERT_EQ(second->advance(1e9, 71, {}), flow::Stop::pause);
     for (const StateField field : fields)
       EXPECT_EQ(array_of(c, *second, field), array_of(c, *whole.solver, field));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/coupling/sheet/sheet_state.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/flow/halo/decomposition.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/ranks.hpp"
@@ -33,7 +33,7 @@ struct Case {
   std::vector<Vector> x, v;
 };
 
-struct State : SheetState {
+struct State : RestartState {
   std::vector<std::vector<double>> flow;
   std::array<double, 3> total_force{};
   flow::Progress progress;
@@ -70,10 +70,11 @@ class SharedRun {
     for (const StateField field : flow::state_fields(_p))
       _solver->upload(field, cut(state.flow[k++], extents(_p, field), flow::part_of(_p, _ranks, field)));
     _solver->restore(state.progress);
-    upload_sheets(*_solver, state);
+    upload_restart_state(*_solver, state);
   }
   [[nodiscard]] State state() {
-    State s{download_sheets(*_solver, _vertices), {}, _solver->total_force_on_air(), _solver->progress()};
+    State s{
+        download_restart_state(*_solver, _vertices), {}, _solver->total_force_on_air(), _solver->progress()};
     for (const StateField field : flow::state_fields(_p)) {
       const linear::CellBox part = flow::part_of(_p, _ranks, field);
       std::vector<double> own(part.size());

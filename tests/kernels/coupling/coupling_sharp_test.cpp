@@ -5,7 +5,7 @@
 #include <random>
 
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
-#include "kernels/coupling/sheet/sheet_state.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/points_transfer.hpp"
 #include "kernels/reference/coupling/sharp_sheet.hpp"
@@ -211,9 +211,9 @@ TEST(SharpSheet, ContinuesBitForBitAndBackendsAgree) {
     second.solver->upload(field, values);
   }
   second.solver->restore(first.solver->progress());
-  const SheetState sheets = download_sheets(*first.solver, c.x.size());
+  const RestartState sheets = download_restart_state(*first.solver, c.x.size());
   EXPECT_EQ(sheets.face_acceleration.size(), 3 * 16U * 8U);
-  upload_sheets(*second.solver, sheets);
+  upload_restart_state(*second.solver, sheets);
   EXPECT_THROW(second.solver->upload_face_acceleration(std::vector<double>(7)), std::invalid_argument);
   ASSERT_TRUE(second.advance(20));
   EXPECT_EQ(second.force(), whole.force());

@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "kernels/coupling/sheet/sheet_state.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "tests/support/coupled_case.hpp"
@@ -54,14 +54,14 @@ CoupledCase meeting_strips(bool with_contact) {
   return c;
 }
 
-struct State : SheetState {
+struct State : RestartState {
   std::vector<std::vector<double>> flow;
   Vector total_force;
   flow::Progress progress;
 };
 
 State state_of(const CoupledCase& c, Solver& solver) {
-  State s{download_sheets(solver, c.x.size()), {}, solver.total_force_on_air(), solver.progress()};
+  State s{download_restart_state(solver, c.x.size()), {}, solver.total_force_on_air(), solver.progress()};
   for (const flow::StateField field : flow::state_fields(c.p.flow)) {
     s.flow.emplace_back(flow::state_size(c.p.flow, field));
     solver.download(field, s.flow.back());
@@ -73,7 +73,7 @@ void restore(const CoupledCase& c, const State& s, Solver& solver) {
   std::size_t k = 0;
   for (const flow::StateField field : flow::state_fields(c.p.flow)) solver.upload(field, s.flow[k++]);
   solver.restore(s.progress);
-  upload_sheets(solver, s);
+  upload_restart_state(solver, s);
 }
 
 double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {

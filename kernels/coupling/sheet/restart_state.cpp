@@ -1,9 +1,9 @@
-#include "kernels/coupling/sheet/sheet_state.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 
 namespace drogue::coupling {
 
-SheetState download_sheets(Solver& solver, std::size_t vertices) {
-  SheetState state;
+RestartState download_restart_state(Solver& solver, std::size_t vertices) {
+  RestartState state;
   for (auto* values : {&state.positions, &state.velocities, &state.air_acceleration, &state.forces})
     values->resize(vertices);
   solver.download_cloth(state.positions, state.velocities);
@@ -15,7 +15,7 @@ SheetState download_sheets(Solver& solver, std::size_t vertices) {
   return state;
 }
 
-void upload_sheets(Solver& solver, const SheetState& state) {
+void upload_restart_state(Solver& solver, const RestartState& state) {
   solver.upload_cloth(state.positions, state.velocities);
   solver.upload_air_acceleration(state.air_acceleration);
   solver.upload_forces(state.forces);
