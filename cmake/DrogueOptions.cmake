@@ -40,8 +40,15 @@ endfunction()
 add_library(drogue_arithmetic INTERFACE)
 # Neither flag changes a rounding: without errno and traps loops vectorise.
 drogue_host_option(drogue_arithmetic INTERFACE -fno-math-errno -fno-trapping-math)
+# Options of the host compiler without fused operations. In spite of the first, gcc 12.2 fuses products of complex numbers where it
+# vectorises code outside of loops; tests/exact/test_unfused.py reads the machine code.
+set(_unfused -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND _unfused -fno-tree-slp-vectorize)
+endif()
+set(DROGUE_UNFUSED_OPTIONS "${_unfused}" CACHE INTERNAL "options of the host compiler in the preset exact")
 if(DROGUE_EXACT)
-  drogue_host_option(drogue_arithmetic INTERFACE -ffp-contract=off)
+  drogue_host_option(drogue_arithmetic INTERFACE ${DROGUE_UNFUSED_OPTIONS})
   target_compile_options(drogue_arithmetic INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:--fmad=false>)
   target_compile_definitions(drogue_arithmetic INTERFACE DROGUE_EXACT=1)
 endif()

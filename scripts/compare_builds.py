@@ -2,14 +2,15 @@
 """Compares two builds of the programs: the bits of their results, or their speed in alternating runs.
 
     scripts/compare_builds.py OLD NEW [--backend serial] [--only REGEX]
-    scripts/compare_builds.py OLD NEW --speed FILTER [--rounds 5]
+    scripts/compare_builds.py OLD NEW --speed FILTER [--rounds 5] [--quick] [--keep FOLDER]
 
 OLD and NEW are folders of programs, such as build/exact/bin. Without --speed, both builds run every shipped scene and
 batch, and datasets, histories and prices are compared byte for byte; needs h5py and builds of the preset `exact`, since
 the compiler chooses fused operations differently. A scene that fails, or writes neither fields nor history, counts as
-different: its bits are unknown. With --speed, both builds alternately run `drogue-perf run --filter FILTER`, and
-the exit code is that of `drogue-perf compare --fail-on slower`. Otherwise it is 1 if a result differs, 2 if nothing was
-compared.
+different: its bits are unknown; a program that neither build has is left out. With --speed, both builds alternately
+run `drogue-perf run --filter FILTER` (with --quick, its shorter form) and NEW's `drogue-perf compare` prints a verdict per
+case; --keep writes the records, old.jsonl and new.jsonl, and the verdicts, compare.txt, into FOLDER. The exit code is
+then that of `compare --fail-on slower`. Otherwise it is 1 if a result differs, 2 if nothing was compared.
 """
 
 import argparse
@@ -87,6 +88,11 @@ def compare_bits(old, new, backend, only):
         work = pathlib.Path(folder)
         for name in (*SCENE_PROGRAMS, "drogue-options"):
             programs = [old / name, new / name]
+            missing = [program for program in programs if not program.exists()]
+            if len(missing) == 2:
+                continue
+            if missing:
+                raise SystemExit(f"{missing[0]} does not exist, but the other build has this program")
             for case, (difference, argument) in cases_of(programs[1]).items():
                 if not re.search(only, f"{name}/{case}"):
                     continue
@@ -98,23 +104,35 @@ def compare_bits(old, new, backend, only):
     return compared, count
 
 
-def compare_speed(old, new, pattern, rounds):
-    """Prints the verdicts of `drogue-perf compare`; returns its exit code, 0 if no case takes longer."""
-    with tempfile.TemporaryDirectory() as folder:
-        work = pathlib.Path(folder)
-        sides = {"old": old, "new": new}
-        for turn in range(rounds):
-            for side in sides if turn % 2 == 0 else reversed(sides):
-                file = work / "records.jsonl"
-                file.unlink(missing_ok=True)
-                # Exit code 5: a case failed its check, which the comparison reports.
-                words = [sides[side] / "drogue-perf", "run", "--filter", pattern, "--out", file]
-                if subprocess.run(words, stdout=subprocess.DEVNULL, check=False).returncode not in (0, 5):
-                    raise SystemExit(f"drogue-perf of {sides[side]} failed")
-                with (work / f"{side}.jsonl").open("a") as records:
-                    records.write(file.read_text())
-        words = [new / "drogue-perf", "compare", work / "old.jsonl", work / "new.jsonl", "--fail-on", "slower"]
-        return subprocess.run(words, check=False).returncode
+def compare_speed(programs, words, rounds, work):
+    """Prints the verdicts of `drogue-perf compare`, which stay in `work`; returns its exit code, 0 if no case takes longer.
+
+    `programs`: drogue-perf of both builds; `words`: arguments of its subcommand `run`.
+    """
+    sides = dict(zip(("old", "new"), programs, strict=True))
+    for side in sides:
+        (work / f"{side}.jsonl").write_text("")
+    for turn in range(rounds):
+        for side in sides if turn % 2 == 0 else reversed(sides):
+            file = work / "run.jsonl"
+            # Exit code 5: a case failed its check, which the comparison reports.
+            done = subprocess.run(
+                [sides[side], "run", *words, "--out", file], stdout=subprocess.DEVNULL, check=False
+            )
+            if done.returncode not in (0, 5):
+                raise SystemExit(f"{sides[side]} run failed")
+            with (work / f"{side}.jsonl").open("a") as records:
+                records.write(file.read_text())
+            file.unlink()
+    done = subprocess.run(
+        [sides["new"], "compare", work / "old.jsonl", work / "new.jsonl", "--fail-on", "slower"],
+        stdout=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    (work / "compare.txt").write_text(done.stdout)
+    print(done.stdout, end="")
+    return done.returncode
 
 
 def main():
@@ -129,10 +147,19 @@ def main():
         "--speed", metavar="FILTER", help="compare the speed of these cases of drogue-perf instead"
     )
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--quick", action="store_true", help="as in drogue-perf run")
+    parser.add_argument(
+        "--keep", type=pathlib.Path, metavar="FOLDER", help="folder for the records and verdicts of --speed"
+    )
     arguments = parser.parse_args()
     old, new = arguments.old.resolve(), arguments.new.resolve()
     if arguments.speed is not None:
-        return compare_speed(old, new, arguments.speed, arguments.rounds)
+        words = ["--filter", arguments.speed, *(["--quick"] if arguments.quick else [])]
+        programs = [build / "drogue-perf" for build in (old, new)]
+        with tempfile.TemporaryDirectory() as temporary:
+            work = arguments.keep or pathlib.Path(temporary)
+            work.mkdir(parents=True, exist_ok=True)
+            return compare_speed(programs, words, arguments.rounds, work)
     compared, different = compare_bits(old, new, arguments.backend, arguments.only)
     if compared == 0:
         print("nothing was compared: no case has such a name", file=sys.stderr)

@@ -21,7 +21,7 @@ struct FixedPointScale {
   double inverse;  ///< numbers per unit
 };
 
-/// Least power of two that is at least `count`, the number of summands. Does not throw.
+/// Least power of two that is at least `count`, the number of summands. Dimensionless. Does not throw.
 [[nodiscard]] inline double summand_bound(int count) {
   double bound = 1.0;
   while (bound < count) bound *= 2.0;
@@ -39,7 +39,7 @@ KOKKOS_INLINE_FUNCTION FixedPointScale fixed_point_scale(double largest, double 
   return {to_one * (two_61 * device::binary_reciprocal(summands)), from_one * (inverse_two_61 * summands)};
 }
 
-/// Nearest integer to a number of magnitude below 2^62. Half-way cases round up.
+/// Nearest integer to a dimensionless number of magnitude below 2^62. Half-way cases round up.
 KOKKOS_INLINE_FUNCTION std::int64_t to_fixed_point(double scaled) {
   return static_cast<std::int64_t>(Kokkos::floor(scaled + 0.5));
 }

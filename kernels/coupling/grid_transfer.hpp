@@ -69,8 +69,8 @@ struct GridTransfer {
   Kokkos::View<TransferCounts, Memory> counts;
 };
 
-/// Throws std::invalid_argument unless the number of rows of a View is at least that of points of the
-/// transfer.
+/// Throws std::invalid_argument unless the number of rows of a View, in any unit, is at least that of points
+/// of the transfer.
 template <class ExecutionSpace, class View>
 void require_points(const GridTransfer<ExecutionSpace>& transfer, const View& view) {
   if (view.extent(0) < static_cast<std::size_t>(transfer.points))

@@ -8,7 +8,6 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "kernels/device/copy.hpp"
@@ -19,38 +18,16 @@
 #include "kernels/flow/halo/halo.hpp"
 #include "kernels/flow/observables/sample.hpp"
 #include "kernels/flow/observables/totals.hpp"
+#include "kernels/flow/projection/pressure_equation.hpp"
 #include "kernels/flow/projection/projection.hpp"
 #include "kernels/flow/shift_frame.hpp"
 #include "kernels/flow/solver.hpp"
 #include "kernels/flow/step_constants.hpp"
 #include "kernels/flow/step_control.hpp"
 #include "kernels/flow/turbulence/eddy_viscosity.hpp"
-#include "kernels/linear/poisson/diagonalization.hpp"
-#include "kernels/linear/poisson/fourier.hpp"
-#include "kernels/linear/poisson/pencil_solver.hpp"
-#if defined(DROGUE_HAVE_HYPRE)
-#include "kernels/linear/poisson/hypre_pfmg.hpp"
-#endif
 #include "kernels/stepping/step_launcher.hpp"
 
 namespace drogue::flow {
-
-/// Pressure equation of a flow: zero normal derivative of the pressure on sides with a prescribed normal
-/// velocity, zero pressure on outflows. Does not throw.
-inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
-  linear::PoissonProblem problem;
-  problem.cells = parameters.cells;
-  const auto end = [&](std::size_t side) {
-    return parameters.boundary[side].kind == BoundaryKind::outflow ? linear::EndCondition::dirichlet
-                                                                   : linear::EndCondition::neumann;
-  };
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    problem.spacing[axis] = (parameters.high[axis] - parameters.low[axis]) / parameters.cells[axis];
-    problem.axes[axis] = {parameters.boundary[2 * axis].kind == BoundaryKind::periodic, end(2 * axis),
-                          end(2 * axis + 1)};
-  }
-  return problem;
-}
 
 /// Sides of the cells of a rank: those of the domain, or towards other ranks. Values as in
 /// `Parameters::boundary`, SI units. Does not throw.
@@ -120,7 +97,7 @@ class FlowSolver {
   void set_frame(const std::array<double, 3>& velocity);
   /// Throws std::invalid_argument if the grid cannot move along the marked axes: along axes of one cell,
   /// towards walls or slip sides, and with sides whose velocity is an expression.
-  void check_frame(const std::array<bool, 3>& axes) const;
+  void check_frame(const std::array<bool, 3>& axes) const { flow::check_frame(_parameters, axes); }
   /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
   /// a bound, NaN without a finite velocity. Does not throw.
   [[nodiscard]] double largest_dt(const Progress& now) const;
@@ -143,19 +120,12 @@ class FlowSolver {
   [[nodiscard]] Totals totals();
   void sample(CellField field, std::span<double> values);
   [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
-  [[nodiscard]] const char* pressure_solver() const;
-  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const;
+  [[nodiscard]] const char* pressure_solver() const { return _pressure_equation->name(); }
+  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const {
+    return _pressure_equation->last_solve();
+  }
 
  private:
-#if defined(DROGUE_HAVE_HYPRE)
-  using Poisson =
-      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
-                   linear::PencilSolver<ExecutionSpace>, linear::HyprePfmgSolver<ExecutionSpace>>;
-#else
-  using Poisson =
-      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
-                   linear::PencilSolver<ExecutionSpace>>;
-#endif
   struct Steps;
 
   [[nodiscard]] static auto one_thread(const ExecutionSpace& space) {
@@ -169,7 +139,6 @@ class FlowSolver {
   [[nodiscard]] double rate_of_sides(Control control, double dt);
   void solve_present_pressure();
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
-  void make_poisson();
   Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
   void finish_ghosts(const ExecutionSpace& space, const Values& velocity) const;
@@ -211,30 +180,15 @@ class FlowSolver {
   Values _pressure;
   Values _pressure_increment;                  ///< empty with explicit diffusion, which needs no increments
   Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
-  /// Scratch of `totals`. The columns stand in the predicted velocity, which is free between steps, if that
-  /// is large enough.
-  TotalsView<ExecutionSpace> _column_totals, _plane_totals;
-  Values _outflow_rows;
+  std::optional<TotalsSum<ExecutionSpace>> _totals_sum;
   ControlView<ExecutionSpace> _control;
   mutable std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
-  mutable std::optional<Poisson> _poisson;  ///< an iterative solver keeps its last solution and residual
+  mutable std::optional<PressureEquation<ExecutionSpace>> _pressure_equation;
   /// False if the last solve was not that of the last step.
   mutable bool _last_solution_is_pressure = false;
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
 };
-
-/// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization. Throws
-/// std::invalid_argument if `parameters` request transforms that the backend lacks for them.
-template <class ExecutionSpace>
-bool uses_transforms(const Parameters& parameters, int ranks) {
-  const bool can = linear::FourierSolver<ExecutionSpace>::supports(pressure_problem(parameters)) &&
-                   (device::is_host<ExecutionSpace> || ranks == 1);
-  if (parameters.pressure_solver == PressureSolver::fft && !can)
-    throw std::invalid_argument(
-        "flow solver: this backend has fast transforms for periodic axes on one rank only");
-  return can && parameters.pressure_solver != PressureSolver::diagonalization;
-}
 
 template <class ExecutionSpace>
 FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& instance,
@@ -266,14 +220,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
     _pressure_increment = Values("drogue::flow::pressure_increment", cells);
     _diffusion.emplace(space(), parameters, group, _ranks);
   }
-  const auto nx = static_cast<std::size_t>(_grid.n[0]), columns = nx * static_cast<std::size_t>(_grid.n[1]);
-  if (_predicted.size() >= total_count * columns)
-    _column_totals = TotalsView<ExecutionSpace>(_predicted.data(), columns);
-  else
-    _column_totals = TotalsView<ExecutionSpace>("drogue::flow::column_totals", columns);
-  _plane_totals = TotalsView<ExecutionSpace>("drogue::flow::plane_totals", nx);
-  _outflow_rows =
-      Values("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(std::max(_grid.n[1], _grid.n[2])));
+  _totals_sum.emplace(_grid, _predicted);
   if (parameters.turbulence != Turbulence::none) {
     _eddy_model = make_eddy_model(parameters, _grid);
     _eddy_cells = make_eddy_cells(_grid, _boundary.conditions().kind);
@@ -281,7 +228,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
     _eddy_acceleration = field("drogue::flow::eddy_acceleration");
   }
   _control = ControlView<ExecutionSpace>("drogue::flow::control");
-  make_poisson();
+  _pressure_equation.emplace(space(), parameters, _halo ? group : linear::RankGroup(), _ranks, !is_implicit);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = parameters.high[axis] - parameters.low[axis];
     _acceleration[axis] =
@@ -289,47 +236,6 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   }
   _constants = step_constants(parameters, _grid);
   space().fence("drogue::flow::solver: allocated");
-}
-
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::make_poisson() {
-  const linear::PoissonProblem problem = pressure_problem(_parameters);
-  const linear::RankGroup group = _halo ? _halo->group() : linear::RankGroup();
-#if defined(DROGUE_HAVE_HYPRE)
-  if (_parameters.pressure_solver == PressureSolver::hypre_pfmg) {
-    _poisson.emplace(std::in_place_type<linear::HyprePfmgSolver<ExecutionSpace>>, space(), problem, group,
-                     _ranks, _parameters.pressure_tolerance);
-    return;
-  }
-#endif
-  const bool transforms = uses_transforms<ExecutionSpace>(_parameters, group.size());
-  if (group.size() > 1)
-    _poisson.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space(), problem, group,
-                     _ranks, transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization);
-  else if (transforms)
-    _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem,
-                     unknown().data() == _divergence.data());
-  else
-    _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem,
-                     linear::InvertedOperators::laplacian);
-}
-
-template <class ExecutionSpace>
-const char* FlowSolver<ExecutionSpace>::pressure_solver() const {
-  if (_parameters.pressure_solver == PressureSolver::hypre_pfmg) return "hypre-pfmg";
-  return uses_transforms<ExecutionSpace>(_parameters, _halo ? _halo->group().size() : 1) ? "fft"
-                                                                                         : "diagonalization";
-}
-
-template <class ExecutionSpace>
-std::optional<PressureSolve> FlowSolver<ExecutionSpace>::last_pressure_solve() const {
-  return std::visit(
-      [](const auto& poisson) -> std::optional<PressureSolve> {
-        if constexpr (requires { poisson.converged(); })
-          return PressureSolve{poisson.iterations(), poisson.residual()};
-        return std::nullopt;
-      },
-      *_poisson);
 }
 
 template <class ExecutionSpace>
@@ -415,16 +321,10 @@ void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> value
 /// bit; with zero if its unknown is an increment.
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::set_guess() const {
-  std::visit(
-      [&](auto& poisson) {
-        if constexpr (requires { poisson.set_guess(_pressure); }) {
-          if (_diffusion)
-            poisson.set_guess(Values());
-          else if (!_last_solution_is_pressure)
-            poisson.set_guess(_pressure);
-        }
-      },
-      *_poisson);
+  if (_diffusion)
+    _pressure_equation->set_guess(Values());
+  else if (!_last_solution_is_pressure)
+    _pressure_equation->set_guess(_pressure);
 }
 
 /// Solves for the pressure of the present velocity in `unknown`: that which keeps the velocity of an explicit
@@ -452,47 +352,14 @@ void FlowSolver<ExecutionSpace>::solve_present_pressure() {
 
 template <class ExecutionSpace>
 Totals FlowSolver<ExecutionSpace>::totals() {
-  const int nx = _grid.n[0], ny = _grid.n[1], nz = _grid.n[2];
-  device::launch_each(space(), "drogue::flow::column_totals", nx * ny,
-                      ColumnTotalsFunctor<ExecutionSpace>{_grid, _velocity, _column_totals});
-  device::launch_each(space(), "drogue::flow::plane_totals", nx,
-                      PlaneTotalsFunctor<ExecutionSpace>{nx, ny, _column_totals, _plane_totals});
-  const int longest = std::max(ny, nz);
-  device::launch_each(space(), "drogue::flow::outflow_rows", 6 * longest,
-                      OutflowRowsFunctor<ExecutionSpace>{_grid, _velocity, _outflow_rows, longest});
-  const auto on_host = Kokkos::create_mirror_view(_plane_totals);
-  const auto rows_on_host = Kokkos::create_mirror_view(_outflow_rows);
-  device::copy_out(space(), on_host.data(), _plane_totals, _plane_totals.size());
-  device::copy_out(space(), rows_on_host.data(), _outflow_rows, _outflow_rows.size());
-  const Control control = read_control();
-  double sum[total_count] = {};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(nx); ++i) {
-    double own[total_count];
-    for (std::size_t q = 0; q < total_count; ++q) own[q] = on_host(i, q);
-    combine_totals(sum, own);
-  }
-  double outflow[6];
-  for (int side = 0; side < 6; ++side) {
-    outflow[side] = 0.0;
-    if (_boundary.conditions().kind[side] == BoundaryKind::neighbour) continue;
-    for (int row = 0; row < longest; ++row)
-      outflow[side] += rows_on_host(static_cast<std::size_t>(side * longest + row));
-  }
-  if (_halo) _halo->combine(sum, outflow);
-  const double volume = _grid.h[0] * _grid.h[1] * _grid.h[2], mass = _parameters.density * volume;
-  const double cells = static_cast<double>(_grid.whole[0]) * _grid.whole[1] * _grid.whole[2];
-  Totals totals;
+  _totals_sum->enqueue(space(), _velocity);
+  const Control control = read_control();  // waits
+  PartTotals part = _totals_sum->result(_boundary.conditions().kind);
+  if (_halo) _halo->combine(part);
+  Totals totals = make_totals(part, _parameters, _grid);
   totals.step = control.now.step;
   totals.time = control.now.time;
   totals.dt = control.trial.dt;
-  totals.kinetic_energy = mass * sum[total_energy];
-  totals.enstrophy = volume * sum[total_enstrophy];
-  totals.dissipation = _parameters.viscosity * volume * sum[total_dissipation];
-  for (int c = 0; c < 3; ++c) totals.momentum[c] = mass * sum[total_momentum_x + c];
-  totals.max_speed = std::sqrt(sum[total_squared_speed]);
-  totals.divergence_rms = std::sqrt(sum[total_squared_divergence] / cells);
-  totals.divergence_max = sum[total_divergence];
-  for (int side = 0; side < 6; ++side) totals.outflow[side] = outflow[side] * volume / _grid.h[side / 2];
   return totals;
 }
 
@@ -682,20 +549,6 @@ void FlowSolver<ExecutionSpace>::set_fixed_dt(double dt) {
 }
 
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::check_frame(const std::array<bool, 3>& axes) const {
-  for (std::size_t side = 0; side < 6; ++side) {
-    const Boundary& boundary = _parameters.boundary[side];
-    if (!boundary.velocity_expressions.empty())
-      throw std::invalid_argument("flow solver: a moving frame needs sides with constant velocities");
-    if (!axes[side / 2]) continue;
-    if (_grid.n[side / 2] == 1)
-      throw std::invalid_argument("flow solver: a frame cannot move along an axis of one cell");
-    if (boundary.kind == BoundaryKind::wall || boundary.kind == BoundaryKind::slip)
-      throw std::invalid_argument("flow solver: a frame cannot move towards a wall or a slip side");
-  }
-}
-
-template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::set_frame(const std::array<double, 3>& velocity) {
   check_frame({velocity[0] != 0.0, velocity[1] != 0.0, velocity[2] != 0.0});
   _frame_velocity = velocity;
@@ -718,13 +571,8 @@ void FlowSolver<ExecutionSpace>::change_frame(const std::array<double, 3>& veloc
     shift[c] = velocity[c] - _frame_velocity[c];
     rate += std::abs(shift[c]) * _grid.inverse_h[c];
   }
-  if (_parameters.time_scheme == TimeScheme::ab2)
-    launch_cells(space(), "drogue::flow::shift_rates", _grid.n,
-                 ShiftRatesFunctor<ExecutionSpace>{
-                     _grid, _boundary.conditions(), _velocity, _rate, {shift[0], shift[1], shift[2]}});
-  device::launch_each(
-      space(), "drogue::flow::shift_velocity", static_cast<int>(_grid.component),
-      ShiftVelocityFunctor<ExecutionSpace>{_velocity, _grid.component, {shift[0], shift[1], shift[2]}});
+  const bool has_rates = _parameters.time_scheme == TimeScheme::ab2;
+  launch_frame_shift(space(), _grid, _boundary.conditions(), _velocity, has_rates ? _rate : Values(), shift);
   // An upper bound until the next step.
   Control control = read_control();
   control.now.rate = Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(control.now.rate) + rate);
@@ -910,15 +758,9 @@ void FlowSolver<ExecutionSpace>::enqueue_pressure(const ExecutionSpace& space,
                                                   const ProjectionSetup<ExecutionSpace>& setup) const {
   if (_halo) _halo->exchange_high_faces(space, _predicted);
   launch_divergence(space, setup);
-  std::visit(
-      [&](auto& poisson) {
-        poisson.enqueue_solve(_divergence, unknown());
-        if constexpr (requires { poisson.converged(); })
-          if (!poisson.converged())
-            device::launch_each(space, "drogue::flow::pressure_failure", 1,
-                                PressureFailureFunctor<ExecutionSpace>{_control});
-      },
-      *_poisson);
+  if (!_pressure_equation->enqueue_solve(_divergence, unknown()))
+    device::launch_each(space, "drogue::flow::pressure_failure", 1,
+                        PressureFailureFunctor<ExecutionSpace>{_control});
 }
 
 template <class ExecutionSpace>

@@ -1,8 +1,30 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+
+#include "kernels/device/launch.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
+#include "kernels/flow/launch.hpp"
+#include "kernels/flow/parameters.hpp"
 
 namespace drogue::flow {
+
+/// Throws std::invalid_argument if the grid of a flow cannot move along the marked axes: along axes of one
+/// cell, towards walls or slip sides, and with sides whose velocity is an expression.
+inline void check_frame(const Parameters& parameters, const std::array<bool, 3>& axes) {
+  for (std::size_t side = 0; side < 6; ++side) {
+    const Boundary& boundary = parameters.boundary[side];
+    if (!boundary.velocity_expressions.empty())
+      throw std::invalid_argument("flow solver: a moving frame needs sides with constant velocities");
+    if (!axes[side / 2]) continue;
+    if (parameters.cells[side / 2] == 1)
+      throw std::invalid_argument("flow solver: a frame cannot move along an axis of one cell");
+    if (boundary.kind == BoundaryKind::wall || boundary.kind == BoundaryKind::slip)
+      throw std::invalid_argument("flow solver: a frame cannot move towards a wall or a slip side");
+  }
+}
 
 /// Subtracts a uniform velocity from all components, ghost cells included: the discrete divergence of the
 /// cells does not change.
@@ -53,5 +75,21 @@ struct ShiftRatesFunctor {
     }
   }
 };
+
+/// Enqueues the change of a velocity, m/s, and of its rates, m/s^2, unless `rate` is empty, to those in a
+/// frame that moves faster by `shift`, m/s. Asynchronous. Throws only after a failed launch.
+template <class ExecutionSpace>
+void launch_frame_shift(const ExecutionSpace& space, const MacGrid& grid,
+                        const BoundaryConditions<ExecutionSpace>& boundary,
+                        const List<ExecutionSpace>& velocity, const List<ExecutionSpace>& rate,
+                        const double (&shift)[3]) {
+  if (rate.size() > 0)
+    launch_cells(
+        space, "drogue::flow::shift_rates", grid.n,
+        ShiftRatesFunctor<ExecutionSpace>{grid, boundary, velocity, rate, {shift[0], shift[1], shift[2]}});
+  device::launch_each(
+      space, "drogue::flow::shift_velocity", static_cast<int>(grid.component),
+      ShiftVelocityFunctor<ExecutionSpace>{velocity, grid.component, {shift[0], shift[1], shift[2]}});
+}
 
 }  // namespace drogue::flow

@@ -49,6 +49,18 @@ std::array<int, 3> extents(const Parameters& p, StateField field) {
   return shape;
 }
 
+std::vector<StateField> state_fields(const Parameters& p) {
+  using enum StateField;
+  std::vector<StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
+  if (p.time_scheme == TimeScheme::ab2) fields.insert(fields.end(), {rate_x, rate_y, rate_z});
+  return fields;
+}
+
+std::size_t state_size(const Parameters& p, StateField field) {
+  const std::array<int, 3> n = extents(p, field);
+  return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
+}
+
 void check_parameters(const Parameters& p) {
   constexpr int most_cells = 1 << 14;
   double cells = 1.0;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "kernels/device/backend.hpp"
 #include "kernels/flow/parameters.hpp"
@@ -51,8 +53,9 @@ class Solver {
   /// Sums over the present state. The order of summation does not depend on the backend.
   [[nodiscard]] virtual Totals totals() = 0;
 
-  /// Field at the cell centres, in the order of an array of shape (nx, ny, nz) or (nx, ny, nz, 3) whose last
-  /// index varies fastest. Throws std::invalid_argument for a span of the wrong length.
+  /// Field at the cell centres, in the SI unit that `CellField` states, in the order of an array of shape
+  /// (nx, ny, nz) or (nx, ny, nz, 3) whose last index varies fastest. Throws std::invalid_argument for a span
+  /// of the wrong length.
   virtual void sample(CellField field, std::span<double> values) = 0;
 
   /// Launch strategy: "graph" or "plain". Does not throw.
@@ -68,6 +71,13 @@ class Solver {
 /// Shape of an array of the state, x first: the cells, with one more along axis c for component c of the
 /// velocity or rate if axis c is not periodic and has more than one cell. Does not throw.
 [[nodiscard]] std::array<int, 3> extents(const Parameters& parameters, StateField field);
+
+/// Arrays of the state with which, and with `Progress`, a restart continues bit for bit. Throws
+/// std::bad_alloc.
+[[nodiscard]] std::vector<StateField> state_fields(const Parameters& parameters);
+
+/// Number of entries of an array of the state on all ranks. Does not throw.
+[[nodiscard]] std::size_t state_size(const Parameters& parameters, StateField field);
 
 /// Throws std::invalid_argument, with one sentence that names the fault, for parameters out of range or
 /// boundary conditions that admit no solution.

@@ -18,8 +18,9 @@ struct Indicators {
 };
 
 /// Smoothness indicators b_k + epsilon of Jiang and Shu 1996, eq. (3.2)-(3.4), times 3/4, from the four
-/// differences of the five stencil values. Completing the squares, 13 (a - b)^2 + 3 (a - 3 b)^2 = 16 ((a -
-/// 11/8 b)^2 + 39/64 b^2) and so on, takes ten operations instead of eighteen.
+/// differences of the five stencil values; in the square of the unit of those. Completing the squares, 13 (a
+/// - b)^2 + 3 (a - 3 b)^2 = 16 ((a - 11/8 b)^2 + 39/64 b^2) and so on, takes ten operations instead of
+/// eighteen.
 template <class R>
 KOKKOS_INLINE_FUNCTION Indicators<R> smoothness(R a, R b, R c, R d, R epsilon) {
   using S = typename device::Access<R>::Element;

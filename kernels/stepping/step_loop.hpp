@@ -166,9 +166,10 @@ class StepLoop {
     const auto read_outputs = [&] {
       if constexpr (StepsWithOutputs<Steps>) steps.read_outputs();
     };
-    const auto is_written = [&](const Status& now) {
-      if constexpr (StepsWithOutputs<Steps>) return steps.last_output() == now.step;
-      return true;
+    const auto lacks_output = [&](const Status& now) {
+      if constexpr (StepsWithOutputs<Steps>)
+        return every > 0 && now.step % every == 0 && steps.last_output() != now.step;
+      return false;
     };
     // The first poll precedes the loop because a short advance may end before the next time-based poll.
     if (poll && !poll(status())) return Stop::interrupted;
@@ -186,8 +187,7 @@ class StepLoop {
     while (true) {
       const Status now = status();
       read_outputs();
-      const bool output_due =
-          now.stop == Stop::pause && every > 0 && now.step % every == 0 && !is_written(now);
+      const bool output_due = now.stop == Stop::pause && lacks_output(now);
       if (now.stop != Stop::running && !output_due) {
         if (now.stop != Stop::pause || now.step == request.pause_step) break;
       }
@@ -233,8 +233,7 @@ class StepLoop {
     const Status last = status();
     read_outputs();
     if constexpr (StepsWithOutputs<Steps>)
-      if (every > 0 && last.step % every == 0 && last.step > first_step && !is_written(last))
-        steps.write_output();
+      if (last.step > first_step && lacks_output(last)) steps.write_output();
     const bool between_stops =
         last.stop == Stop::running || (last.stop == Stop::pause && last.step != request.pause_step);
     return interrupted && between_stops ? Stop::interrupted : last.stop;

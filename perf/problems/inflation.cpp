@@ -7,6 +7,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 
@@ -15,48 +16,36 @@ namespace drogue::perf::inflation {
 namespace {
 
 constexpr double speed = 10.0;  // m/s
-constexpr std::array<flow::StateField, 7> saved_fields = {
-    flow::StateField::velocity_x, flow::StateField::velocity_y, flow::StateField::velocity_z,
-    flow::StateField::rate_x,     flow::StateField::rate_y,     flow::StateField::rate_z,
-    flow::StateField::pressure};
 
 /// State that a sample begins from.
 struct State {
-  std::array<std::vector<double>, saved_fields.size()> fields;
-  std::vector<fabric::Vector> x, v, acceleration;
+  std::vector<std::vector<double>> flow;  ///< arrays of `flow::state_fields`
   flow::Progress progress;
-  coupling::BlockProgress block;
+  coupling::RestartState sheets;
 };
 
-std::size_t values_of(const flow::Parameters& p, flow::StateField field) {
-  std::size_t count = 1;
-  for (const int n : flow::extents(p, field)) count *= static_cast<std::size_t>(n);
-  return count;
-}
-
-void save(coupling::Solver& solver, const coupling::Parameters& p, State& state) {
-  for (std::size_t k = 0; k < saved_fields.size(); ++k) {
-    state.fields[k].resize(values_of(p.flow, saved_fields[k]));
-    solver.download(saved_fields[k], state.fields[k]);
+State save(coupling::Solver& solver, const coupling::Parameters& p) {
+  State state;
+  for (const flow::StateField field : flow::state_fields(p.flow)) {
+    state.flow.emplace_back(flow::state_size(p.flow, field));
+    solver.download(field, state.flow.back());
   }
-  for (auto* values : {&state.x, &state.v, &state.acceleration}) values->resize(p.fabric.mass.size());
-  solver.download_cloth(state.x, state.v);
-  solver.download_air_acceleration(state.acceleration);
   state.progress = solver.progress();
-  state.block = solver.block();
+  state.sheets = coupling::download_restart_state(solver, p.fabric.mass.size());
+  return state;
 }
 
-void restore(coupling::Solver& solver, const State& state) {
-  for (std::size_t k = 0; k < saved_fields.size(); ++k) solver.upload(saved_fields[k], state.fields[k]);
-  solver.upload_cloth(state.x, state.v);
+void restore(coupling::Solver& solver, const coupling::Parameters& p, const State& state) {
+  std::size_t k = 0;
+  for (const flow::StateField field : flow::state_fields(p.flow)) solver.upload(field, state.flow[k++]);
   solver.restore(state.progress);
-  solver.upload_air_acceleration(state.acceleration);
-  solver.set_block(state.block);
+  coupling::upload_restart_state(solver, state.sheets);
 }
 
 /// Puts the flat cloth into the uniform stream.
 void start(coupling::Solver& solver, const Problem& problem) {
-  const std::vector<double> stream(values_of(problem.parameters.flow, flow::StateField::velocity_z), speed);
+  const std::vector<double> stream(flow::state_size(problem.parameters.flow, flow::StateField::velocity_z),
+                                   speed);
   solver.upload(flow::StateField::velocity_z, stream);
   solver.upload_cloth(problem.positions, std::vector<fabric::Vector>(problem.positions.size()));
   solver.start();
@@ -99,10 +88,10 @@ Problem problem(const Discretization& d) {
 Sample flight(const Problem& problem, coupling::Solver& solver, double lead, long milliseconds) {
   const auto state = std::make_shared<State>();
   return {[=, &problem, &solver] {
-            if (!state->x.empty()) return restore(solver, *state);
+            if (!state->flow.empty()) return restore(solver, problem.parameters, *state);
             start(solver, problem);
             fly_to(solver, lead);
-            save(solver, problem.parameters, *state);
+            *state = save(solver, problem.parameters);
           },
           [=, &solver] {
             fly_to(solver, state->progress.time + 1e-3 * static_cast<double>(milliseconds));

@@ -6,16 +6,6 @@
 
 namespace drogue::perf {
 
-namespace {
-
-const char* name_of(flow::Advection advection) {
-  return advection == flow::Advection::central   ? "central"
-         : advection == flow::Advection::weno_js ? "weno-js"
-                                                 : "weno-z";
-}
-
-}  // namespace
-
 void FlowScheme::apply(flow::Parameters& p) const {
   p.advection = advection;
   p.time_scheme = time;
@@ -24,14 +14,16 @@ void FlowScheme::apply(flow::Parameters& p) const {
 }
 
 void FlowScheme::describe(Solution& s) const {
-  const std::string time_name = time == flow::TimeScheme::ab2 ? "ab2" : "rk3";
-  const bool is_implicit = diffusion == flow::Diffusion::crank_nicolson;
-  s.label = std::string(name_of(advection)) + " " + time_name + " " +
-            parachute_app::pressure_solver_name(pressure) + (is_implicit ? " crank-nicolson" : "");
-  s.scheme = {{"advection", name_of(advection)},
+  const std::string advection_name = parachute_app::advection_name(advection),
+                    time_name = parachute_app::time_scheme_name(time),
+                    diffusion_name = parachute_app::diffusion_name(diffusion),
+                    pressure_name = parachute_app::pressure_solver_name(pressure);
+  s.label = advection_name + " " + time_name + " " + pressure_name;
+  if (diffusion_name != "explicit") s.label += " " + diffusion_name;
+  s.scheme = {{"advection", advection_name},
               {"time_scheme", time_name},
-              {"pressure", parachute_app::pressure_solver_name(pressure)},
-              {"diffusion", is_implicit ? "crank-nicolson" : "explicit"}};
+              {"pressure", pressure_name},
+              {"diffusion", diffusion_name}};
 }
 
 std::vector<FlowScheme> flow_schemes(bool quick) {

@@ -12,10 +12,11 @@ from .failure import IO_ERROR, Failure
 from .style import plt
 
 
-def evenly_spaced(snapshots, most: int) -> list:
-    """At most `most` of the snapshots, the first and the last one among them."""
-    count = min(len(snapshots), most)
-    return [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int)]
+def frame_of(canvas) -> np.ndarray:
+    """Pixels, (height, width, 3) bytes, of what a canvas shows, without an odd last row or column."""
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3]
+    # Many MP4 players require even sizes.
+    return pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
 
 
 def drawn_frames(drawing, snapshots):
@@ -23,9 +24,7 @@ def drawn_frames(drawing, snapshots):
     for snapshot in snapshots:
         drawing.show(snapshot)
         drawing.figure.canvas.draw()
-        pixels = np.asarray(drawing.figure.canvas.buffer_rgba())[..., :3]
-        # Many MP4 players require even sizes.
-        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
+        yield frame_of(drawing.figure.canvas)
     plt.close(drawing.figure)
 
 

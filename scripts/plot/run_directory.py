@@ -73,6 +73,12 @@ class Run:
         return str(self.study_facts.get("scene") or self.name)
 
 
+def evenly_spaced(snapshots: list[Snapshot], most: int) -> list[Snapshot]:
+    """At most `most` of the snapshots, the first and the last one among them."""
+    count = min(len(snapshots), most)
+    return [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int)]
+
+
 def _text(value) -> str:
     return value.decode() if isinstance(value, bytes) else str(value)
 

@@ -34,6 +34,14 @@ class Documents(unittest.TestCase):
                         self.assertRegex(code, rf"\b{part}\b", f"{document} has {function} in {name}")
         self.assertGreater(count, 80)
 
+    def test_page_of_backends_lists_all_code_for_a_device(self):
+        page = (SOURCE / "docs/adding-a-backend.md").read_text(encoding="utf-8")
+        listed = set(re.findall(FILE, page[page.index("## 5."):page.index("## Constraints")]))
+        condition = re.compile(r"^#.*\b(?:KOKKOS_ENABLE_CUDA|__CUDA_ARCH__|__CUDACC__)\b", re.MULTILINE)
+        found = {file.relative_to(SOURCE).as_posix() for file in (SOURCE / "kernels").rglob("*.[ch]pp")
+                 if condition.search(file.read_text(encoding="utf-8"))}
+        self.assertEqual(found | {"kernels/device/warp.hpp"}, listed)
+
     def test_tests_that_pages_name_exist(self):
         suites = {}
         for file in (SOURCE / "tests").rglob("*.cpp"):

@@ -231,6 +231,7 @@ f("of this "
         for text, word in (
             ("double speed(double x);\n", "no doc comment"),
             ("/// Speed of sound. Does not throw.\ndouble speed(double rho);\n", "no unit"),
+            ("/// Mean over the cells, a count of a vertex's rows (n,3). Does not throw.\ndouble mean(double rho);\n", "no unit"),
             ("/// Speed of sound, m/s.\ndouble speed(double rho);\n", "whether it throws"),
             ("class Solver {\n public:\n  /// Number of steps.\n  virtual int steps() const = 0;\n};\n", "whether it throws"),
             ("/// Steps, s.\ntemplate <class S, class F = None>\nclass Solver {\n public:\n  /// Advances to t.\n"
@@ -245,6 +246,8 @@ f("of this "
         for text in (
             "/// Speed of sound, m/s. Does not throw.\ndouble speed(double rho);\n",
             "/// Speed of sound, m/s.\nKOKKOS_INLINE_FUNCTION double speed(double rho) { return rho; }\n",
+            "/// Norm, in the unit of v. Does not throw.\ndouble norm(const double* v);\n",
+            "/// Rows of the vertices. Does not throw.\nvoid sort(std::span<const int> vertices);\n",
             "/// Steps. Members do not throw.\nclass Solver {\n public:\n  /// Number of steps.\n  int steps() const;\n"
             " private:\n  void hidden(double x);\n};\n",
             "/// Reads and writes positions, m. Throws std::invalid_argument.\nvoid read(double* x);\nvoid write(double x);\n",

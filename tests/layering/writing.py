@@ -467,13 +467,16 @@ def rates_with_an_article(path, text):
 #           kernels/device, whose arithmetic serves any unit.
 # Exempt: destructors, operators, defaulted, deleted and friend functions, constructors without arguments.
 
+# A symbol follows a comma, a preposition, a number, a bracket or another symbol: `vertex's` and (n,3) hold none. A count of
+# cells is no unit: a comment says "dimensionless", or which other unit the numbers have.
 UNITS = re.compile(
-    r"\b(?:m|s|kg|N|J|K|Pa|Hz|W|rad|us|ns|ms|bytes?|GB|years?|a year|per year|seconds?|metres?|kilograms?|dimensionless|"
-    r"per cent|percent|fractions?|ratios?|counts?|number of|units?|money|price units|of the strike|strikes?|log|radians?|"
-    r"indices|index|SI|flop|cells?)\b|%|1/s|N/m|kg/m|m/s|epsilon|unitless|any unit", re.IGNORECASE)
+    r"(?:, |\bin |\d |/|\(|\* )(?:1/)?(?:m|s|kg|N|J|K|Pa|Hz|W|rad|us|ns|ms|GB|flop)(?![\w'`(])|%|\bSI\b|"
+    r"\b(?i:bytes?|years?|seconds?|metres?|kilograms?|radians?|per cent|percent|money|dimensionless|fractions?|ratios?|"
+    r"any unit|no unit|unit vectors?|units? of|of the strike|multiples? of)\b")
 ERRORS = re.compile(r"[Tt]hrow|noexcept|[Aa]borts|[Nn]o errors|[Dd]oes not fail|[Nn]ever fails")
 SCOPE = re.compile(r"\b(namespace|class|struct|union|extern)\b")
-REAL = re.compile(r"\b(?:double|float|Real|R|T|Vector3?|Pair|span|View\w*|Kokkos::View)\b|Views?<|Vector|array<(?!int|bool|std::)")
+REAL = re.compile(r"\b(?:double|float|Real|R|T|Vector3?|Pair|span<(?!const (?:int|std::)|int|std::)|View\w*|Kokkos::View)\b|"
+                  r"Views?<|Vector|array<(?!int|bool|std::)")
 HEADERS = (".hpp",)
 
 

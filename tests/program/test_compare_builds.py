@@ -22,6 +22,17 @@ if history is not None:
     (folder / "history.csv").write_text(history)
 sys.exit(code)
 """
+# Appends its build and arguments to a log; `run` writes a record, `compare` prints a verdict and ends with a code.
+PERF_PROGRAM = """#!/usr/bin/env python3
+import pathlib, sys
+with open({log!r}, "a") as log:
+    log.write({build!r} + " " + " ".join(sys.argv[1:4]) + "\\n")
+if sys.argv[1] == "run":
+    pathlib.Path(sys.argv[sys.argv.index("--out") + 1]).write_text("record of {build}\\n")
+    sys.exit(0)
+print("verdict")
+sys.exit(5)
+"""
 
 
 class Builds(unittest.TestCase):
@@ -79,6 +90,28 @@ class Builds(unittest.TestCase):
         self.scenes("old", "1,2")
         self.scenes("new", "1,2")
         self.assertEqual(2, self.compare("--only", "no-such-scene").returncode)
+
+    def test_leaves_out_programs_of_neither_build(self):
+        self.program("old", "drogue-gas", SCENE_PROGRAM.format(scenes="sod", history="1,2", code=0))
+        self.program("new", "drogue-gas", SCENE_PROGRAM.format(scenes="sod", history="1,2", code=0))
+        self.expect_bits(0, "sod: the same bits")
+
+    def test_rejects_a_program_of_one_build_alone(self):
+        self.program("new", "drogue-gas", SCENE_PROGRAM.format(scenes="sod", history="1,2", code=0))
+        done = self.compare()
+        self.assertEqual((1, True), (done.returncode, "does not exist" in done.stderr), done.stderr)
+
+    def test_speed_alternates_builds_and_keeps_their_records(self):
+        log, kept = self.folder / "log", self.folder / "kept"
+        for build in ("old", "new"):
+            self.program(build, "drogue-perf", PERF_PROGRAM.format(log=str(log), build=build))
+        done = self.compare("--speed", "gas", "--rounds", "2", "--quick", "--keep", kept)
+        self.assertEqual((5, "verdict\n"), (done.returncode, done.stdout), done.stderr)
+        runs = [f"{build} run --filter gas" for build in ("old", "new", "new", "old")]
+        self.assertEqual([*runs, f"new compare {kept / 'old.jsonl'} {kept / 'new.jsonl'}"], log.read_text().splitlines())
+        self.assertEqual("record of old\n" * 2, (kept / "old.jsonl").read_text())
+        self.assertEqual("record of new\n" * 2, (kept / "new.jsonl").read_text())
+        self.assertEqual("verdict\n", (kept / "compare.txt").read_text())
 
 
 if __name__ == "__main__":

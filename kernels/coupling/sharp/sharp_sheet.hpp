@@ -116,7 +116,7 @@ struct AddCrossingsFunctor {
 
 /// Adds the sums of faces to the density of the force and resets them and the counts.
 template <class ExecutionSpace>
-struct TakeCrossingsFunctor {
+struct FlushSumsFunctor {
   SharpSheetViews<ExecutionSpace> sheet;
 
   KOKKOS_FUNCTION void operator()(const int t) const {
@@ -267,7 +267,7 @@ class SharpSheet {
     launch("drogue::coupling::count_crossings", CountCrossingsFunctor<ExecutionSpace>{views});
     launch("drogue::coupling::largest_crossing", LargestCrossingFunctor<ExecutionSpace>{views});
     launch("drogue::coupling::add_crossings", AddCrossingsFunctor<ExecutionSpace>{views, _transfer.counts});
-    launch("drogue::coupling::take_crossings", TakeCrossingsFunctor<ExecutionSpace>{views});
+    launch("drogue::coupling::flush_sums", FlushSumsFunctor<ExecutionSpace>{views});
     device::launch_each(space, "drogue::coupling::gather_corners", _surface.vertices(),
                         GatherCornersFunctor<ExecutionSpace>{views, force});
   }

@@ -139,6 +139,8 @@ KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& res
       q.of[e] = now.of[e] - rest.of[e];
     else if constexpr (model.model == Model::quadratic)
       q.of[e] = 2.0 * (device::square_root(rest.of[e] * now.of[e]) - rest.of[e]);
+    else
+      static_assert(!whole_triangles<model>, "the strain measure of this model is missing");
   return q;
 }
 

@@ -109,7 +109,7 @@ struct VertexGeometryFunctor {
   }
 };
 
-/// Throws std::invalid_argument unless the number of rows of a View is at least `rows`.
+/// Throws std::invalid_argument unless the number of rows of a View, in any unit, is at least `rows`.
 template <class View>
 void require_rows(const View& view, int rows) {
   if (view.extent(0) < static_cast<std::size_t>(rows))

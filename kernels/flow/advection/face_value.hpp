@@ -22,6 +22,7 @@ KOKKOS_INLINE_FUNCTION R load_field(const double* pointer) {
 /// q^2.
 template <Advection scheme, class R>
 KOKKOS_INLINE_FUNCTION R upwind_face_value(R m2, R m1, R q0, R p1, R p2, R epsilon) {
+  static_assert(scheme == Advection::weno_js || scheme == Advection::weno_z, "no weights of this scheme");
   const R a = m1 - m2, b = q0 - m1, c = p1 - q0, d = p2 - p1;
   constexpr reconstruction::Reconstruction weights =
       scheme == Advection::weno_js ? reconstruction::Reconstruction::js : reconstruction::Reconstruction::z1;

@@ -13,8 +13,8 @@ namespace drogue::flow {
 /// Fewest cells of a rank along a divided axis: a neighbour needs that many ghost cells from it.
 inline constexpr int least_cells_of_rank = 3;
 
-/// Numbers that a rank sends in a step of one projection, per cell along x: ghost cells, and transpositions
-/// of a direct pressure solver. Does not throw.
+/// Count, dimensionless, of the numbers that a rank sends in a step of one projection, per cell along x:
+/// ghost cells, and transpositions of a direct pressure solver. Does not throw.
 inline double numbers_sent(const std::array<int, 3>& cells, int parts_y, int parts_z) {
   const double own_y = static_cast<double>(cells[1]) / parts_y,
                own_z = static_cast<double>(cells[2]) / parts_z;

@@ -103,17 +103,16 @@ class Halo {
 
   /// Combines the contributions of all ranks to the totals, in the order of the ranks, and adds those to the
   /// flow through each side.
-  void combine(double sum[total_count], double outflow[6]) const {
+  void combine(PartTotals& part) const {
     constexpr std::size_t count = total_count;
     std::array<double, count + 6> mine;
-    std::copy_n(sum, count, mine.begin());
-    std::copy_n(outflow, 6, mine.begin() + count);
+    std::copy_n(part.sum, count, mine.begin());
+    std::copy_n(part.outflow, 6, mine.begin() + count);
     const std::vector<double> all = _group.gather(mine);
-    std::fill_n(sum, count, 0.0);
-    std::fill_n(outflow, 6, 0.0);
+    part = {};
     for (std::size_t at = 0; at < all.size(); at += mine.size()) {
-      combine_totals(sum, all.data() + at);
-      for (std::size_t side = 0; side < 6; ++side) outflow[side] += all[at + count + side];
+      combine_totals(part.sum, all.data() + at);
+      for (std::size_t side = 0; side < 6; ++side) part.outflow[side] += all[at + count + side];
     }
   }
 

@@ -1,7 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "kernels/device/copy.hpp"
 #include "kernels/device/launch.hpp"
 #include "kernels/flow/observables/gradient.hpp"
+#include "kernels/flow/parameters.hpp"
+#include "kernels/flow/state.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {
@@ -126,5 +133,86 @@ struct OutflowRowsFunctor {
     rows(static_cast<std::size_t>(entry)) = side % 2 == 1 ? sum : -sum;
   }
 };
+
+/// Sums over the cells of a rank.
+struct PartTotals {
+  double sum[total_count] = {};  ///< contributions of the cells
+  double outflow[6] = {};        ///< normal velocity outwards, m/s, summed over the faces of each side
+};
+
+/// Sums over a velocity field in an order that does not depend on the backend, with their scratch memory.
+template <class ExecutionSpace>
+class TotalsSum {
+ public:
+  /// `scratch` holds the sums of the columns if it is large enough; `enqueue` then overwrites it. Throws
+  /// std::bad_alloc.
+  TotalsSum(const MacGrid& grid, const List<ExecutionSpace>& scratch) : _grid(grid) {
+    const auto nx = static_cast<std::size_t>(grid.n[0]), columns = nx * static_cast<std::size_t>(grid.n[1]);
+    if (scratch.size() >= total_count * columns)
+      _columns = TotalsView<ExecutionSpace>(scratch.data(), columns);
+    else
+      _columns = TotalsView<ExecutionSpace>("drogue::flow::column_totals", columns);
+    _planes = TotalsView<ExecutionSpace>("drogue::flow::plane_totals", nx);
+    _outflow_rows =
+        List<ExecutionSpace>("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(longest_row()));
+    _planes_on_host = Kokkos::create_mirror_view(_planes);
+    _outflow_rows_on_host = Kokkos::create_mirror_view(_outflow_rows);
+  }
+
+  /// Enqueues the sums of a velocity, m/s, with ghost cells, and their copy to the host. Asynchronous. Throws
+  /// only after a failed launch.
+  void enqueue(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
+    const int nx = _grid.n[0], ny = _grid.n[1];
+    device::launch_each(space, "drogue::flow::column_totals", nx * ny,
+                        ColumnTotalsFunctor<ExecutionSpace>{_grid, velocity, _columns});
+    device::launch_each(space, "drogue::flow::plane_totals", nx,
+                        PlaneTotalsFunctor<ExecutionSpace>{nx, ny, _columns, _planes});
+    device::launch_each(space, "drogue::flow::outflow_rows", 6 * longest_row(),
+                        OutflowRowsFunctor<ExecutionSpace>{_grid, velocity, _outflow_rows, longest_row()});
+    device::copy_out(space, _planes_on_host.data(), _planes, _planes.size());
+    device::copy_out(space, _outflow_rows_on_host.data(), _outflow_rows, _outflow_rows.size());
+  }
+
+  /// Sums of the last `enqueue`, whose work must be complete; no outflow towards other ranks. Does not throw.
+  [[nodiscard]] PartTotals result(const BoundaryKind (&sides)[6]) const {
+    PartTotals part;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(_grid.n[0]); ++i) {
+      double own[total_count];
+      for (std::size_t q = 0; q < total_count; ++q) own[q] = _planes_on_host(i, q);
+      combine_totals(part.sum, own);
+    }
+    for (int side = 0; side < 6; ++side) {
+      if (sides[side] == BoundaryKind::neighbour) continue;
+      for (int row = 0; row < longest_row(); ++row)
+        part.outflow[side] += _outflow_rows_on_host(static_cast<std::size_t>(side * longest_row() + row));
+    }
+    return part;
+  }
+
+ private:
+  [[nodiscard]] int longest_row() const { return std::max(_grid.n[1], _grid.n[2]); }
+
+  MacGrid _grid;
+  TotalsView<ExecutionSpace> _columns, _planes;
+  List<ExecutionSpace> _outflow_rows;
+  typename TotalsView<ExecutionSpace>::HostMirror _planes_on_host;
+  typename List<ExecutionSpace>::HostMirror _outflow_rows_on_host;
+};
+
+/// Totals, SI units, from the sums of all ranks; step, time and dt are left out. Does not throw.
+inline Totals make_totals(const PartTotals& whole, const Parameters& parameters, const MacGrid& grid) {
+  const double volume = grid.h[0] * grid.h[1] * grid.h[2], mass = parameters.density * volume;
+  const double cells = static_cast<double>(grid.whole[0]) * grid.whole[1] * grid.whole[2];
+  Totals totals;
+  totals.kinetic_energy = mass * whole.sum[total_energy];
+  totals.enstrophy = volume * whole.sum[total_enstrophy];
+  totals.dissipation = parameters.viscosity * volume * whole.sum[total_dissipation];
+  for (int c = 0; c < 3; ++c) totals.momentum[c] = mass * whole.sum[total_momentum_x + c];
+  totals.max_speed = std::sqrt(whole.sum[total_squared_speed]);
+  totals.divergence_rms = std::sqrt(whole.sum[total_squared_divergence] / cells);
+  totals.divergence_max = whole.sum[total_divergence];
+  for (int side = 0; side < 6; ++side) totals.outflow[side] = whole.outflow[side] * volume / grid.h[side / 2];
+  return totals;
+}
 
 }  // namespace drogue::flow

@@ -19,8 +19,8 @@ struct Characteristic {
   R slow, entropy, fast;
 };
 
-/// Eigensystem for velocity `u` and total enthalpy `enthalpy`. H - u^2/2 is formed in R, because at Mach 2000
-/// the difference has no correct digit in single precision; later operations use N.
+/// Eigensystem for velocity `u`, m/s, and total specific enthalpy H, J/kg. H - u^2/2 is formed in R, because
+/// at Mach 2000 the difference has no correct digit in single precision; later operations use N.
 template <class N, class R, class S>
 KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
   using F = typename device::Access<N>::Element;
@@ -39,7 +39,7 @@ struct FaceCell {
   R rho, m, energy, u, enthalpy;
 };
 
-/// Eigensystem of the average state of the two cells beside a face.
+/// Eigensystem of the average state of the two cells beside a face, both in SI units.
 template <class N, class R, class S>
 KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(FaceAverage average, S gamma, const FaceCell<R>& left,
                                                        const FaceCell<R>& right) {

@@ -11,7 +11,8 @@ struct CellState {
   R u, p, enthalpy, c;  ///< velocity, pressure, total specific enthalpy H, sound speed
 };
 
-/// Pressure p = (gamma - 1) (E - m u / 2). Every admissibility check uses this order of operations.
+/// Pressure p = (gamma - 1) (E - m u / 2), Pa, from momentum density, kg/(m^2 s), energy density, J/m^3, and
+/// velocity, m/s. Every admissibility check uses this order of operations.
 template <class R, class S>
 KOKKOS_INLINE_FUNCTION R pressure(S gamma, R m, R energy, R u) {
   return (gamma - S(1)) * (energy - S(0.5) * (m * u));

@@ -49,7 +49,8 @@ struct SplitDifferences {
     if (k < 4) right[k] = df + alpha * du;
     if (k > 0) left[4 - k] = df - alpha * du;
   }
-  /// Correction of the field from both sides, times `correction_scale * scale * unit`.
+  /// Correction of the field from both sides, times `correction_scale * scale * unit`; in the unit of the
+  /// differences times that of `unit`.
   template <Reconstruction scheme, int scale>
   KOKKOS_FUNCTION R corrected(R unit) const {
     return correction<scheme, scale, R>(right[0], right[1], right[2], right[3], unit) -
@@ -58,7 +59,7 @@ struct SplitDifferences {
 };
 
 /// Characteristic finite-difference WENO5 flux at a face in difference form (docs/gas.md, section 2; Jiang
-/// and Shu 1996, section 2): the central flux minus the projected nonlinear corrections.
+/// and Shu 1996, section 2), SI units: the central flux minus the projected nonlinear corrections.
 ///
 /// `N` is the type of the nonlinear terms: R, or its single-precision twin for split precision. `AnyStencil`
 /// is `Stencil` or a type with the same differences and `central()`. Force-inlined: a call would spill its

@@ -13,8 +13,8 @@
 
 namespace drogue::linear {
 
-/// Matrix of the eigenvectors along an axis, on a device. Column k holds eigenvector k. Blocks.
-/// Throws std::runtime_error if memory runs out.
+/// Matrix (n * n) of the normalised eigenvectors along an axis of n cells, dimensionless, on a device. Column
+/// k holds eigenvector k. Blocks. Throws std::runtime_error if memory runs out.
 template <class ExecutionSpace>
 Kokkos::View<double*, typename ExecutionSpace::memory_space> eigenvector_matrix(const ExecutionSpace& space,
                                                                                 const PoissonProblem& problem,

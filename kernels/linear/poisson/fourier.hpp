@@ -88,15 +88,15 @@ class AxisTransforms {
     }
   }
 
-  /// Factor that undoes the growth by a forward and a backward transform. Does not throw.
+  /// Dimensionless factor that undoes the growth by a forward and a backward transform. Does not throw.
   [[nodiscard]] double normalisation() const { return _normalisation; }
 
-  /// Forward transform; `from` equals `to` unless the input is kept. Asynchronous where the execution space
-  /// is. Does nothing for an object or array without cells. Does not throw.
+  /// Forward transform, in the unit of the input; `from` equals `to` unless the input is kept. Asynchronous
+  /// where the execution space is. Does nothing for an object or array without cells. Does not throw.
   void forward(const ExecutionSpace& space, const double* from, double* to) const {
     transform(space, 0, from, to);
   }
-  /// Backward transform in place, as `forward`. Does not throw.
+  /// Backward transform in place, in the unit of the values, as `forward`. Does not throw.
   void backward(const ExecutionSpace& space, double* values) const { transform(space, 1, values, values); }
 
   /// False for an object without plans. Does not throw.

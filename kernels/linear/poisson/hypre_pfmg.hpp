@@ -24,8 +24,8 @@ class HyprePfmgSolver {
                   int max_iterations = 200)
       : HyprePfmgSolver(space, problem, {}, {}, tolerance, max_iterations) {}
 
-  /// Sets up the levels on the ranks of a group, of which each holds the cells of `box_of`. The constructor
-  /// and the solves are collective. Throws std::runtime_error if hypre fails.
+  /// Sets up the levels on the ranks of a group, of which each holds the cells of `box_of`; `tolerance`:
+  /// ratio as above. The constructor and the solves are collective. Throws std::runtime_error if hypre fails.
   HyprePfmgSolver(const ExecutionSpace& space, const PoissonProblem& problem, const RankGroup& group,
                   const PencilRanks& ranks, double tolerance, int max_iterations = 200)
       : _space(space),

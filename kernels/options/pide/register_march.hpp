@@ -121,7 +121,7 @@ class JumpSum<8, lanes, true> : public RegisterFourier<lanes> {
                                reinterpret_cast<ComplexNumber<double>*>(rows.out)) {}
 };
 
-/// Converts a node array from plain to `swizzled` order.
+/// Converts an array of node values, in any unit, from plain to `swizzled` order.
 template <int block, class ThreadGroup>
 KOKKOS_INLINE_FUNCTION void swizzle(const ThreadGroup& group, double* nodes) {
   const auto own = LaneNodes<block>::load(group.lane, nodes);
@@ -129,8 +129,9 @@ KOKKOS_INLINE_FUNCTION void swizzle(const ThreadGroup& group, double* nodes) {
   if (group.is_writer()) own.store_swizzled(group.lane, nodes);
 }
 
-/// Marches from expiry to maturity; leaves `jumps.exit_mass` and `exit_price` `swizzled`. Returns the last
-/// exercised node below the strike, -1 if there is none.
+/// Marches from expiry to maturity; leaves `jumps.exit_mass` and `exit_price` `swizzled`. `strike_value`:
+/// payoff at the strike as a fraction of it. Returns the last exercised node below the strike, -1 if there is
+/// none.
 template <int block, bool halved = false, int lanes, bool single>
 KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpThreadGroup<lanes, single>& group,
                                               const PutPack<double>& put, const Jumps<double>& jumps,

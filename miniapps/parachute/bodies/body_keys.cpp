@@ -65,7 +65,7 @@ void declare_porosity(Table& table, Porosity& porosity) {
 }
 
 /// Condition of keys that some kinds of bodies have.
-struct OfKinds {
+struct KindCondition {
   const Body& body;
   std::vector<BodyKind> kinds;
 
@@ -82,7 +82,7 @@ struct OfKinds {
 };
 
 scene::Key& declare_for(Table& table, const std::string& name, scene::Codec codec, const std::string& help,
-                        const OfKinds& of) {
+                        const KindCondition& of) {
   return table.value(name, std::move(codec), help).when(of.holds(), of.text(), "kind");
 }
 

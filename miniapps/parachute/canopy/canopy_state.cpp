@@ -11,7 +11,7 @@ namespace {
 
 using fabric::Vector;
 
-constexpr int shadow_squares = 256;  // along the larger extent
+constexpr int raster_squares = 256;  // along the larger extent
 
 double distance_between(const Vector& a, const Vector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -73,13 +73,13 @@ double inversion_of(const CanopyRows& rows, const fabric::Parameters& sheets,
              : static_cast<double>(inverted) / static_cast<double>(rows.suspension.size());
 }
 
-/// Squares in the plane of x and y that a shadow covers.
-class Shadow {
+/// Squares of the plane of x and y whose centres lie in the projections of triangles.
+class Raster {
  public:
-  Shadow(const Vector& low, double side)
-      : _low(low), _side(side), _covered(static_cast<std::size_t>(shadow_squares) * shadow_squares, 0) {}
+  Raster(const Vector& low, double side)
+      : _low(low), _side(side), _covered(static_cast<std::size_t>(raster_squares) * raster_squares, 0) {}
 
-  void cover(const Vector& a, const Vector& b, const Vector& c) {
+  void add(const Vector& a, const Vector& b, const Vector& c) {
     const auto [first_row, last_row] = range(1, a, b, c);
     const auto [first, last] = range(0, a, b, c);
     for (int row = first_row; row <= last_row; ++row)
@@ -87,7 +87,7 @@ class Shadow {
         const Vector at = {_low[0] + (column + 0.5) * _side, _low[1] + (row + 0.5) * _side, 0.0};
         const double u = turn(a, b, at), v = turn(b, c, at), w = turn(c, a, at);
         if ((u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0))
-          _covered[static_cast<std::size_t>(row) * shadow_squares + static_cast<std::size_t>(column)] = 1;
+          _covered[static_cast<std::size_t>(row) * raster_squares + static_cast<std::size_t>(column)] = 1;
       }
   }
 
@@ -104,7 +104,7 @@ class Shadow {
                                           const Vector& c) const {
     const auto [low, high] = std::minmax({a[axis], b[axis], c[axis]});
     const auto square = [&](double x) {
-      return std::clamp(static_cast<int>((x - _low[axis]) / _side), 0, shadow_squares - 1);
+      return std::clamp(static_cast<int>((x - _low[axis]) / _side), 0, raster_squares - 1);
     };
     return {square(low), square(high)};
   }
@@ -128,9 +128,9 @@ double projected_area(std::span<const Vector> positions, std::span<const std::ar
       }
   const double extent = std::max(high[0] - low[0], high[1] - low[1]);
   if (!(extent > 0.0 && std::isfinite(extent))) return 0.0;
-  Shadow shadow(low, extent / shadow_squares);
-  for (const auto& [a, b, c] : triangles) shadow.cover(at(a), at(b), at(c));
-  return shadow.area();
+  Raster raster(low, extent / raster_squares);
+  for (const auto& [a, b, c] : triangles) raster.add(at(a), at(b), at(c));
+  return raster.area();
 }
 
 CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets, const SheetState& state,

@@ -236,6 +236,12 @@ std::filesystem::path scene_folder();
 
 /// Name of a pressure solver in scenes: auto, fft, diagonalization, hypre-pfmg.
 std::string pressure_solver_name(flow::PressureSolver solver);
+/// Name of a time scheme in scenes: ab2, rk3.
+std::string time_scheme_name(flow::TimeScheme scheme);
+/// Name of a treatment of diffusion in scenes: explicit, crank-nicolson.
+std::string diffusion_name(flow::Diffusion diffusion);
+/// Name of an advection scheme with its weights, in studies: central, weno-js, weno-z.
+std::string advection_name(flow::Advection advection);
 
 /// Markdown page docs/scenes-parachute.md: all keys with type, range, unit, default and meaning.
 std::string document_flow_scene();

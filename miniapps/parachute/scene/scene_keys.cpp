@@ -252,4 +252,22 @@ std::string pressure_solver_name(flow::PressureSolver solver) {
   return scene::choice_name(pressure_choices, solver);
 }
 
+std::string time_scheme_name(flow::TimeScheme scheme) { return scene::choice_name(time_choices, scheme); }
+
+std::string diffusion_name(flow::Diffusion diffusion) {
+  return scene::choice_name(diffusion_choices, diffusion);
+}
+
+std::string advection_name(flow::Advection advection) {
+  switch (advection) {
+    case flow::Advection::central:
+      return "central";
+    case flow::Advection::weno_js:
+      return "weno-js";
+    case flow::Advection::weno_z:
+      return "weno-z";
+  }
+  return "";
+}
+
 }  // namespace drogue::parachute_app

@@ -36,31 +36,6 @@ run::DatasetSpec field_spec(const std::string& name, const std::array<int, 3>& c
   return {name, shape, "1/s", "cell", "vorticity"};
 }
 
-/// Cell of an index whose x varies fastest, and its centre.
-std::string cell_text(const flow::Parameters& p, std::int64_t index) {
-  const Lattice cells = lattice_of(p, flow::StateField::pressure);
-  const auto centre = cells.place(static_cast<std::size_t>(index));
-  std::ostringstream text;
-  text << "cell (" << index % cells.n[0] << ", " << index / cells.n[0] % cells.n[1] << ", "
-       << index / cells.n[0] / cells.n[1] << ") at (" << centre[0] << ", " << centre[1] << ", " << centre[2]
-       << ") m";
-  return text.str();
-}
-
-const char* reason_text(flow::FailureReason reason) {
-  switch (reason) {
-    case flow::FailureReason::not_finite:
-      return "the velocity is not finite";
-    case flow::FailureReason::side_velocity:
-      return "the prescribed velocity is not finite on the side ";
-    case flow::FailureReason::time_step:
-      return "no time step is admissible";
-    case flow::FailureReason::pressure_solver:
-      return "the pressure solver did not converge";
-  }
-  return "";
-}
-
 /// Flow with all sheets of a scene. Sheets whose motion is prescribed need no steps of their own.
 coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sheets) {
   coupling::Parameters p;
@@ -247,39 +222,6 @@ framework::FieldsTask Simulation::snapshot() {
     for (std::size_t k = 0; k < names.size(); ++k)
       fields.write((is_canopy_field(names[k]) ? "canopy/" : "") + names[k], 0, filled[k]);
   };
-}
-
-std::string Simulation::failure_text(bool) { return failure_cause() + light_cloth_text(); }
-
-std::string Simulation::failure_cause() {
-  std::ostringstream text;
-  text.precision(9);
-  if (_stop == flow::Stop::max_steps) return step_limit_text(_scene, now().time);
-  if (_coupled != nullptr)
-    if (const auto reason = _coupled->failure_reason(); reason != coupling::FailureReason::flow)
-      return sheet_failure_text(reason);
-  const flow::StepFailure failure = _solver->failure();
-  const double fixed_dt = _scene.parameters.fixed_dt;
-  const bool is_unstable = failure.reason == flow::FailureReason::time_step && failure.dt < fixed_dt;
-  // Without a finite velocity of the start the first step has no dt.
-  const bool is_initial = failure.step == 1 && std::isnan(failure.dt);
-  if (is_unstable)
-    text << "run.dt = " << fixed_dt << " s exceeds the largest stable time step, " << failure.dt << " s,";
-  else
-    text << reason_text(failure.reason);
-  if (failure.reason == flow::FailureReason::side_velocity)
-    text << side_names[static_cast<std::size_t>(failure.index)];
-  else if (failure.index >= 0)
-    text << " in " << cell_text(_scene.parameters, failure.index);
-  text << " at " << (is_initial ? "the initial projection" : "step " + std::to_string(failure.step))
-       << ", t = " << failure.time << " s";
-  if (!is_initial && !is_unstable) text << ", dt = " << failure.dt << " s";
-  if (failure.reason == flow::FailureReason::pressure_solver)
-    text << "; it may with a flow.pressure_tolerance above "
-         << scene::real_text(_scene.parameters.pressure_tolerance);
-  if (failure.reason == flow::FailureReason::not_finite && !is_initial)
-    text << (fixed_dt > 0.0 ? "; a smaller run.dt" : "; a smaller run.cfl") << " may save the run";
-  return text.str();
 }
 
 void Simulation::describe(run::ResultDocument& result) {

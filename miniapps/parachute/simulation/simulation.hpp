@@ -51,7 +51,6 @@ class Simulation final : public framework::Simulation {
   /// Values of the fields of one output, in the order of the scene.
   using Snapshot = std::vector<std::vector<double>>;
 
-  [[nodiscard]] std::vector<flow::StateField> state_fields() const;
   void sample_fields(Snapshot& snapshot);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
@@ -70,8 +69,13 @@ class Simulation final : public framework::Simulation {
   void append_canopy_values(framework::HistoryRow& row);
   void sample_canopy_field(const std::string& name, std::vector<double>& values);
   [[nodiscard]] std::string failure_cause();
-  [[nodiscard]] std::string vertex_text(std::int64_t vertex) const;
+  [[nodiscard]] std::string flow_failure_text();
   [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);
+  [[nodiscard]] std::string stiff_cloth_text();
+  [[nodiscard]] std::string broken_line_text();
+  [[nodiscard]] std::string leaving_vertex_text();
+  [[nodiscard]] std::string leaving_part_text(std::size_t vertex) const;
+  [[nodiscard]] std::string vertex_text(std::int64_t vertex) const;
   [[nodiscard]] std::string light_cloth_text() const;
   void write_coupling(run::RestartWriter& writer);
   void read_coupling(const run::RestartReader& reader);

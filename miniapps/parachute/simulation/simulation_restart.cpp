@@ -2,6 +2,7 @@
 #include <string>
 
 #include "common/program/stopwatch.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
@@ -27,37 +28,23 @@ void visit(Progress& progress, const Number& number, const Integer& integer) {
 
 }  // namespace
 
-std::vector<flow::StateField> Simulation::state_fields() const {
-  using enum flow::StateField;
-  std::vector<flow::StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
-  if (_scene.parameters.time_scheme == flow::TimeScheme::ab2)
-    fields.insert(fields.end(), {rate_x, rate_y, rate_z});
-  return fields;
-}
-
 void Simulation::write_coupling(run::RestartWriter& writer) {
   const std::size_t vertices = _sheets.positions.size();
-  std::vector<fabric::Vector> acceleration(vertices), positions(vertices), velocities(vertices);
-  _coupled->download_air_acceleration(acceleration);
-  _coupled->download_cloth(positions, velocities);
+  const coupling::RestartState state = coupling::download_restart_state(*_coupled, vertices);
   const auto write = [&](const char* name, const std::vector<fabric::Vector>& values) {
     writer.array(name, 3 * vertices);
     writer.write(name, 0, {values.front().data(), 3 * vertices});
   };
-  write("air_acceleration", acceleration);
-  if (_scene.is_explicit()) {
-    std::vector<fabric::Vector> forces(vertices);
-    _coupled->forces(forces);
-    write("sheet_force", forces);
-  }
-  write("sheet_position", positions);
-  write("sheet_velocity", velocities);
-  if (const std::vector<double> faces = _coupled->download_face_acceleration(); !faces.empty()) {
+  write("air_acceleration", state.air_acceleration);
+  if (_scene.is_explicit()) write("sheet_force", state.forces);
+  write("sheet_position", state.positions);
+  write("sheet_velocity", state.velocities);
+  if (const std::vector<double>& faces = state.face_acceleration; !faces.empty()) {
     writer.array("face_acceleration", faces.size());
     writer.write("face_acceleration", 0, faces);
   }
   _record.write(writer);
-  const coupling::BlockProgress block = _coupled->block();
+  const coupling::BlockProgress& block = state.block;
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
   writer.integer("block_end", block.end);
@@ -65,7 +52,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   writer.integer("block_since", block.since);
   writer.number("block_start", block.start);
   if (_scene.frame != Frame::follow) return;
-  const coupling::FrameMotion frame = _coupled->frame();
+  const coupling::FrameMotion& frame = state.frame;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     writer.number(std::string("frame_velocity_") + axis_names[axis], frame.velocity[axis]);
     writer.number(std::string("frame_start_") + axis_names[axis], frame.start[axis]);
@@ -74,30 +61,27 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
 }
 
 void Simulation::read_coupling(const run::RestartReader& reader) {
-  const auto values = [&](const char* name) {
-    std::vector<fabric::Vector> vectors(_sheets.positions.size());
-    reader.read(name, 0, {vectors.front().data(), 3 * vectors.size()});
-    return vectors;
+  coupling::RestartState state = coupling::download_restart_state(*_coupled, _sheets.positions.size());
+  const auto read = [&](const char* name, std::vector<fabric::Vector>& values) {
+    reader.read(name, 0, {values.front().data(), 3 * values.size()});
   };
-  _coupled->upload_cloth(values("sheet_position"), values("sheet_velocity"));
-  _coupled->upload_air_acceleration(values("air_acceleration"));
-  if (_scene.is_explicit()) _coupled->upload_forces(values("sheet_force"));
-  if (std::vector<double> faces = _coupled->download_face_acceleration(); !faces.empty()) {
-    reader.read("face_acceleration", 0, faces);
-    _coupled->upload_face_acceleration(faces);
-  }
+  read("sheet_position", state.positions);
+  read("sheet_velocity", state.velocities);
+  read("air_acceleration", state.air_acceleration);
+  if (_scene.is_explicit()) read("sheet_force", state.forces);
+  if (!state.face_acceleration.empty()) reader.read("face_acceleration", 0, state.face_acceleration);
   _record.read(reader);
-  _coupled->set_block({reader.number("block_dt"), reader.integer("block_substeps"),
-                       reader.integer("block_end"), reader.integer("block_cloth_step"),
-                       reader.integer("block_since"), reader.number("block_start")});
-  if (_scene.frame != Frame::follow) return;
-  coupling::FrameMotion frame;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    frame.velocity[axis] = reader.number(std::string("frame_velocity_") + axis_names[axis]);
-    frame.start[axis] = reader.number(std::string("frame_start_") + axis_names[axis]);
+  state.block = {reader.number("block_dt"),     reader.integer("block_substeps"),
+                 reader.integer("block_end"),   reader.integer("block_cloth_step"),
+                 reader.integer("block_since"), reader.number("block_start")};
+  if (_scene.frame == Frame::follow) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      state.frame.velocity[axis] = reader.number(std::string("frame_velocity_") + axis_names[axis]);
+      state.frame.start[axis] = reader.number(std::string("frame_start_") + axis_names[axis]);
+    }
+    state.frame.since = reader.number("frame_since");
   }
-  frame.since = reader.number("frame_since");
-  _coupled->set_frame(frame);
+  coupling::upload_restart_state(*_coupled, state);
 }
 
 void Simulation::write_restart(run::RestartWriter& writer) {
@@ -108,8 +92,8 @@ void Simulation::write_restart(run::RestartWriter& writer) {
   _statistics.write(writer);
   if (_coupled != nullptr) write_coupling(writer);
   std::vector<double> values;
-  for (const flow::StateField field : state_fields()) {
-    values.resize(lattice_of(_scene.parameters, field).size());
+  for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
+    values.resize(flow::state_size(_scene.parameters, field));
     _solver->download(field, values);
     writer.array(array_name(field), values.size());
     writer.write(array_name(field), 0, values);
@@ -126,8 +110,8 @@ void Simulation::restore(const run::RestartReader& reader) {
       });
   _statistics.read(reader);
   std::vector<double> values;
-  for (const flow::StateField field : state_fields()) {
-    values.resize(lattice_of(_scene.parameters, field).size());
+  for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
+    values.resize(flow::state_size(_scene.parameters, field));
     reader.read(array_name(field), 0, values);
     _solver->upload(field, values);
   }

@@ -1,17 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <optional>
 #include <sstream>
 #include <string>
 
-#include "miniapps/parachute/canopy/stiffness.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
-// Bodies and canopies in history.csv, fields.h5 and messages.
+// Bodies and canopies in history.csv and fields.h5.
 
 namespace drogue::parachute_app {
 namespace {
@@ -146,103 +143,6 @@ void Simulation::sample_canopy_field(const std::string& name, std::vector<double
   std::vector<fabric::Stress> stress(_sheets.fabric.mesh.triangles.size());
   _coupled->cloth_stress(fabric::StressMeasure::cauchy, stress);
   copy_canopy_stress(_sheets, stress, values);
-}
-
-/// End of the message of a failure for which explicit coupling of light cloth is the likely cause.
-std::string Simulation::light_cloth_text() const {
-  if (!_scene.is_explicit() || _scene.largest_added_mass_ratio() <= 1.0) return "";
-  std::ostringstream text;
-  text.precision(3);
-  text << "; coupling.method = \"explicit\" is unstable for cloth that moves "
-       << _scene.largest_added_mass_ratio() << " times its own mass of fluid";
-  return text.str();
-}
-
-std::string Simulation::vertex_text(std::int64_t vertex) const {
-  std::ostringstream text;
-  const auto row = static_cast<std::size_t>(vertex);
-  if (row < vertices_of(_scene.bodies)) text << "vertex " << row << " of the bodies";
-  text << canopy_vertex_text(_sheets, row);
-  return text.str();
-}
-
-std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
-  std::ostringstream text;
-  text.precision(9);
-  const double time = now().time;
-  if (reason == coupling::FailureReason::not_spread) {
-    text << "a force on a sheet is not finite at t = " << time << " s";
-    return text.str();
-  }
-  if (reason == coupling::FailureReason::too_stiff) {
-    text << "the cloth needs more than " << coupling::most_substeps
-         << " steps in the step of the flow after t = " << time << " s";
-    std::optional<StiffPart> stiffest;
-    std::string canopy;
-    for (std::size_t i = 0; i < _scene.canopies.size(); ++i) {
-      const StiffPart part = stiffest_part(_scene.canopies[i], make_canopy(_scene.canopies[i]));
-      if (stiffest && part.frequency <= stiffest->frequency) continue;
-      stiffest = part;
-      canopy = "canopy[" + std::to_string(i) + "].";
-    }
-    if (stiffest) text << "; a smaller " << canopy << stiffest->key << " or run.cfl may save the run";
-    return text.str();
-  }
-  if (reason == coupling::FailureReason::cloth) {
-    const auto failure = _coupled->cloth_failure().value_or(fabric::StepFailure{});
-    text << cloth_failure_text(failure.reason) << " at " << vertex_text(failure.index)
-         << " after t = " << time << " s; a smaller run.cfl may save the run";
-    return text.str();
-  }
-  if (reason == coupling::FailureReason::line) {
-    const int line = _coupled->failed_line();
-    for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
-      const std::vector<int>& lines = _sheets.canopies[i].suspension;
-      const auto found = std::ranges::find(lines, line);
-      if (found == lines.end()) continue;
-      text << "line " << found - lines.begin() << " of canopy[" << i << "] breaks: it carries more than "
-           << "canopy[" << i << "].lines.strength = " << _scene.canopies[i].lines.strength.value_or(0.0)
-           << " N in the step after t = " << time << " s";
-    }
-    return text.str();
-  }
-  // The vertex that is closest to a side, in cells.
-  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-  _coupled->download_cloth(positions, velocities);
-  const flow::Parameters& p = _scene.parameters;
-  const auto spacing = lattice_of(p, flow::StateField::pressure).spacing;
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t vertex = 0, closest = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    for (std::size_t side = 0; side < 6; ++side) {
-      const std::size_t axis = side / 2;
-      if (p.cells[axis] == 1 || p.boundary[side].kind == flow::BoundaryKind::periodic) continue;
-      const double distance =
-          (side % 2 == 0 ? positions[i][axis] - p.low[axis] : p.high[axis] - positions[i][axis]) /
-          spacing[axis];
-      if (distance < least) least = distance, vertex = i, closest = side;
-    }
-  std::size_t end = 0;
-  for (std::size_t i = 0; i < _scene.bodies.size(); ++i) {
-    const std::size_t begin = end;
-    end += static_cast<std::size_t>(_scene.bodies[i].vertices());
-    if (vertex >= begin && vertex < end) text << "body[" << i << "] leaves the domain: a vertex";
-  }
-  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
-    const CanopyRows& rows = _sheets.canopies[i];
-    if (vertex >= rows.begin && vertex < rows.end)
-      text << "canopy[" << i << "] leaves the domain: "
-           << (vertex < rows.cloth_end  ? "its cloth"
-               : vertex == rows.payload ? "its payload"
-                                        : "its riser");
-  }
-  for (std::size_t i = 0; i < _sheets.flags.size(); ++i)
-    if (vertex >= _sheets.flags[i].begin && vertex < _sheets.flags[i].end)
-      text << "flag[" << i << "] leaves the domain: a vertex";
-  text << " at (" << positions[vertex][0] << ", " << positions[vertex][1] << ", " << positions[vertex][2]
-       << ") m comes closer than a cell to the side " << side_names[closest] << " after t = " << time
-       << " s; a larger grid.domain or a shorter run.end_time may save the run";
-  return text.str();
 }
 
 }  // namespace drogue::parachute_app

@@ -95,16 +95,13 @@ framework::RepeatedRun run_point(const FlowScene& scene, device::Backend backend
 
 study::StudyRow row_of(const FlowScene& scene, framework::RepeatedRun runs) {
   const flow::Parameters& p = scene.parameters;
-  const std::string advection = p.advection == flow::Advection::central   ? "central"
-                                : p.advection == flow::Advection::weno_js ? "weno-js"
-                                                                          : "weno-z";
-  const std::string time = p.time_scheme == flow::TimeScheme::ab2 ? "ab2" : "rk3";
-  const std::string pressure = pressure_solver_name(p.pressure_solver);
+  const std::string advection = advection_name(p.advection), time = time_scheme_name(p.time_scheme),
+                    diffusion = diffusion_name(p.diffusion),
+                    pressure = pressure_solver_name(p.pressure_solver);
   study::StudyRow row = framework::study_row(std::move(runs));
-  const bool is_implicit = p.diffusion == flow::Diffusion::crank_nicolson;
-  row.settings = {advection, time, std::string(is_implicit ? "crank-nicolson" : "explicit"), pressure};
+  row.settings = {advection, time, diffusion, pressure};
   row.label = advection + " " + time;
-  if (is_implicit) row.label += " crank-nicolson";
+  if (diffusion != "explicit") row.label += " " + diffusion;
   if (pressure != "auto") row.label += " " + pressure;
   row.mesh = longest(p);
   return row;

@@ -31,14 +31,14 @@ struct OptionArrays {
 };
 
 /// Elimination and substitution (Thomas algorithm) of one option: `right(i)` in, `v(i)` out, `pivots(i)` work
-/// space.
-template <class Right, class Pivots, class V>
-KOKKOS_INLINE_FUNCTION void solve_step(const OptionStep& s, double boundary, const Right& right,
-                                       const Pivots& pivots, const V& v) {
-  double value = boundary, ratio = 0.0;
+/// space. `Step`: an OptionStep, or one of the real type `R`, of which tests count the operations.
+template <class Step, class R, class Right, class Pivots, class V>
+KOKKOS_INLINE_FUNCTION void solve_step(const Step& s, R boundary, const Right& right, const Pivots& pivots,
+                                       const V& v) {
+  R value = boundary, ratio = 0.0;
   v(0) = boundary;
   for (int i = 1; i < option_nodes - 1; ++i) {
-    const double inverse = 1.0 / (s.diagonal - s.lower * ratio);
+    const R inverse = 1.0 / (s.diagonal - s.lower * ratio);
     value = (right(i) + s.lower * value) * inverse;
     ratio = s.upper * inverse;
     v(i) = value, pivots(i) = ratio;

@@ -100,7 +100,8 @@ Work options_work(const OptionsProblem& problem, double launches, double bytes) 
   Work work;
   work.launches = launches;
   work.bytes = bytes * node_steps;
-  work.flops = node_steps * (2.0 * option_nodes + 7.0);
+  // The sum over jumps, the right-hand side, and the elimination.
+  work.flops = node_steps * (2.0 * option_nodes + 2.0 + elimination_operations);
   work.divisions = node_steps;
   return work;
 }

@@ -33,6 +33,9 @@ struct OptionsProblem {
   [[nodiscard]] int options() const { return static_cast<int>(steps.size()); }
 };
 
+/// Additions and multiplications per node of `solve_step`, counted by tests/kernels/ladders/.
+inline constexpr double elimination_operations = 8.0;
+
 /// Throws std::bad_alloc.
 [[nodiscard]] OptionsProblem make_options_problem(int options);
 

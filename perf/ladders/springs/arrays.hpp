@@ -84,10 +84,10 @@ class SheetOfArrays {
     for (int t = 0; t < _triangles(i); ++t) {
       double numbers[3 + Springs::numbers];
       for (int k = 0; k < 3 + Springs::numbers; ++k) numbers[k] = _numbers(i, k, t);
-      const TriangleEdges edges(at, point(stage_x + 3 * buffer, _neighbours(i, 0, t)),
-                                point(stage_x + 3 * buffer, _neighbours(i, 1, t)), numbers);
+      const TriangleEdges<double> edges(at, point(stage_x + 3 * buffer, _neighbours(i, 0, t)),
+                                        point(stage_x + 3 * buffer, _neighbours(i, 1, t)), numbers);
       const Tensions tension = Springs::tensions(edges.change, numbers, numbers + 3, _two_lambda_mu, _mu);
-      sum = sum + tension.along_b * edges.to_b + tension.along_a * edges.to_a;
+      sum = edges.add_force(sum, tension);
     }
     return sum;
   }
@@ -137,7 +137,7 @@ class ArraysRung final : public SpringRung<ExecutionSpace, SheetOfArrays<Executi
       "read neighbouring numbers at once, on a GPU or in packs. The record of this ladder on a "
       "GPU is still to be made."};
 
-  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, 49); }
+  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, stored_operations); }
 
   explicit ArraysRung(const SpringProblem& problem)
       : SpringRung<ExecutionSpace, SheetOfArrays<ExecutionSpace, StoredSprings>>(problem, problem.scattered) {

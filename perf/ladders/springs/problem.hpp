@@ -44,8 +44,7 @@ struct SpringProblem {
 [[nodiscard]] double difference(const Numbering& numbering, const std::vector<fabric::Vector>& x);
 
 /// Work per step of four stages with `launches` kernels each: `stored` numbers and two indices per vertex and
-/// triangle, loads of two neighbours, and `flops` per vertex and triangle, counted by hand. Does not
-/// throw.
+/// triangle, loads of two neighbours, and `flops` per vertex and triangle. Does not throw.
 [[nodiscard]] Work spring_work(const SpringProblem& problem, double launches, double stored, double flops);
 
 }  // namespace drogue::perf::ladder

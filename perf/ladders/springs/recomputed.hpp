@@ -31,7 +31,7 @@ class RecomputedRung final : public SpringRung<ExecutionSpace, RecomputedSheet<E
       "waiting for loads, of which there are fewer. At a million vertices on a GPU bytes are "
       "the bound, and fewer stored numbers decide (docs/springs-notebook.md)."};
 
-  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 4, 70); }
+  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 4, recomputed_operations); }
 
   explicit RecomputedRung(const SpringProblem& problem)
       : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, Tension>>(problem, problem.scattered) {}

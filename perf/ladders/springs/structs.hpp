@@ -58,9 +58,10 @@ class SheetOfStructs {
     Point sum{0.0, 0.0, 0.0};
     for (int t = 0; t < vertex.triangles; ++t) {
       const Spring& s = vertex.around[t];
-      const TriangleEdges edges(vertex.x[buffer], _vertices(s.a).x[buffer], _vertices(s.b).x[buffer], s.rest);
+      const TriangleEdges<double> edges(vertex.x[buffer], _vertices(s.a).x[buffer], _vertices(s.b).x[buffer],
+                                        s.rest);
       const Tensions tension = stored_tensions(edges.change, s.stiffness);
-      sum = sum + tension.along_b * edges.to_b + tension.along_a * edges.to_a;
+      sum = edges.add_force(sum, tension);
     }
     return sum;
   }
@@ -99,7 +100,7 @@ class StructsRung final : public SpringRung<ExecutionSpace, SheetOfStructs<Execu
       "Twice the prediction: a core waits for each load of a scattered neighbour, which the "
       "model takes for free. The record of this ladder on a GPU is still to be made."};
 
-  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, 49); }
+  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, stored_operations); }
 
   explicit StructsRung(const SpringProblem& problem)
       : SpringRung<ExecutionSpace, SheetOfStructs<ExecutionSpace>>(problem, problem.scattered) {}

@@ -7,8 +7,8 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 
 from .. import style
-from ..movie_file import drawn_frames, evenly_spaced
-from ..run_directory import Snapshot
+from ..movie_file import drawn_frames
+from ..run_directory import Snapshot, evenly_spaced
 from ..style import plt
 from .plane import AXES, Plane
 from .quantities import Quantity

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import style
-from ..run_directory import Run, Snapshot
+from ..run_directory import Run, Snapshot, evenly_spaced
 from ..style import plt
 from .plane import AXES, cell_counts, dimension
 
@@ -61,9 +61,10 @@ def _box(run: Run) -> tuple[float, float, float]:
 def _curves(run: Run, last: Snapshot) -> list[tuple[Snapshot, Spectrum]]:
     """Spectra of at most _MAX_CURVES evenly spaced snapshots up to `last`, without those of no energy."""
     snapshots = run.snapshots[: run.snapshots.index(last) + 1]
-    count = min(len(snapshots), _MAX_CURVES)
-    chosen = [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int)]
-    spectra = [(snapshot, energy_spectrum(snapshot.fields["velocity"].values, _box(run))) for snapshot in chosen]
+    spectra = [
+        (snapshot, energy_spectrum(snapshot.fields["velocity"].values, _box(run)))
+        for snapshot in evenly_spaced(snapshots, _MAX_CURVES)
+    ]
     return [(snapshot, spectrum) for snapshot, spectrum in spectra if np.any(spectrum.energy > 0)]
 
 

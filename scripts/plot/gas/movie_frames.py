@@ -1,8 +1,8 @@
 """Animation of a gas run: the fields of each snapshot on axes that fit the whole run."""
 
-import numpy as np
-
 from .. import style
+from ..movie_file import frame_of
+from ..run_directory import evenly_spaced
 from ..style import plt
 from .exact_solution import pointwise_errors
 from .fields_figure import FieldPanel, View, legend, set_range, subtitle
@@ -15,8 +15,7 @@ _DPI = 100
 def frames(view: View):
     """Generator of frames, (height, width, 3) bytes each, of at most MAX_FRAMES evenly spaced snapshots."""
     snapshots = view.run.snapshots
-    count = min(len(snapshots), MAX_FRAMES)
-    chosen = [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int)]
+    chosen = evenly_spaced(snapshots, MAX_FRAMES)
     columns = len(view.fields)
     width = max(3.7, 2.55 * columns + 0.4)
     figure, axes = plt.subplots(1, columns, figsize=(width, _HEIGHT), squeeze=False, dpi=_DPI)
@@ -44,7 +43,5 @@ def frames(view: View):
             panel.show(snapshot)
         for artist in moving:
             figure.draw_artist(artist)
-        pixels = np.asarray(canvas.buffer_rgba())[..., :3]
-        # Many MP4 players require even sizes.
-        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
+        yield frame_of(canvas)
     plt.close(figure)

@@ -11,8 +11,8 @@ from .. import shading, style
 from ..flow.plane import AXES, Plane
 from ..flow.quantities import Quantity
 from ..flow.slices_figure import draw_slice, draw_streamlines
-from ..movie_file import drawn_frames, evenly_spaced
-from ..run_directory import Snapshot
+from ..movie_file import drawn_frames
+from ..run_directory import Snapshot, evenly_spaced
 from ..style import plt
 from .canopies import Canopies
 

@@ -7,8 +7,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize, to_rgba
 
 from .. import shading, style
-from ..movie_file import drawn_frames, evenly_spaced
-from ..run_directory import Run, Snapshot
+from ..movie_file import drawn_frames
+from ..run_directory import Run, Snapshot, evenly_spaced
 from ..style import plt
 from . import bodies, strings
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/expression_program.hpp"
 
@@ -146,18 +147,10 @@ TEST(MovingFrame, ContinuesBitForBit) {
     ASSERT_TRUE(whole.advance(23));
     ASSERT_TRUE(first.advance(48));
     const auto second = create_solver(tested_backend, c.p);
-    using enum StateField;
-    std::vector<StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
-    if (time == flow::TimeScheme::ab2) fields.insert(fields.end(), {rate_x, rate_y, rate_z});
+    const std::vector<StateField> fields = flow::state_fields(c.p.flow);
     for (const StateField field : fields) second->upload(field, array_of(c, *first.solver, field));
-    const FabricState middle = fabric_of(c, *first.solver);
-    std::vector<Vector> acceleration(c.x.size());
-    first.solver->download_air_acceleration(acceleration);
-    second->upload_cloth(middle.x, middle.v);
     second->restore(first.solver->progress());
-    second->upload_air_acceleration(acceleration);
-    second->set_block(first.solver->block());
-    second->set_frame(first.solver->frame());
+    upload_restart_state(*second, download_restart_state(*first.solver, c.x.size()));
     ASSERT_EQ(second->advance(1e9, 71, {}), flow::Stop::pause);
     for (const StateField field : fields)
       EXPECT_EQ(array_of(c, *second, field), array_of(c, *whole.solver, field));

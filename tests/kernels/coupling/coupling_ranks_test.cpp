@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/flow/halo/decomposition.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/ranks.hpp"
@@ -32,21 +33,11 @@ struct Case {
   std::vector<Vector> x, v;
 };
 
-struct State {
+struct State : RestartState {
   std::vector<std::vector<double>> flow;
-  std::vector<Vector> positions, velocities, acceleration, forces;
   std::array<double, 3> total_force{};
   flow::Progress progress;
-  BlockProgress block;
-  FrameMotion frame;
 };
-
-std::vector<StateField> state_fields(const flow::Parameters& p) {
-  using enum StateField;
-  std::vector<StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
-  if (p.time_scheme == flow::TimeScheme::ab2) fields.insert(fields.end(), {rate_x, rate_y, rate_z});
-  return fields;
-}
 
 /// A case on the ranks of a group, with whole arrays of the flow.
 class SharedRun {
@@ -76,30 +67,20 @@ class SharedRun {
   }
   void restore(const State& state) {
     std::size_t k = 0;
-    for (const StateField field : state_fields(_p))
+    for (const StateField field : flow::state_fields(_p))
       _solver->upload(field, cut(state.flow[k++], extents(_p, field), flow::part_of(_p, _ranks, field)));
-    _solver->upload_cloth(state.positions, state.velocities);
     _solver->restore(state.progress);
-    _solver->upload_air_acceleration(state.acceleration);
-    _solver->set_block(state.block);
-    _solver->set_frame(state.frame);
+    upload_restart_state(*_solver, state);
   }
   [[nodiscard]] State state() {
-    State s;
-    for (const StateField field : state_fields(_p)) {
+    State s{
+        download_restart_state(*_solver, _vertices), {}, _solver->total_force_on_air(), _solver->progress()};
+    for (const StateField field : flow::state_fields(_p)) {
       const linear::CellBox part = flow::part_of(_p, _ranks, field);
       std::vector<double> own(part.size());
       _solver->download(field, own);
       s.flow.push_back(joined(_group, own, extents(_p, field), part));
     }
-    for (auto* rows : {&s.positions, &s.velocities, &s.acceleration, &s.forces}) rows->resize(_vertices);
-    _solver->download_cloth(s.positions, s.velocities);
-    _solver->download_air_acceleration(s.acceleration);
-    _solver->forces(s.forces);
-    s.total_force = _solver->total_force_on_air();
-    s.progress = _solver->progress();
-    s.block = _solver->block();
-    s.frame = _solver->frame();
     return s;
   }
   /// Numbers of the cloth as the ranks have them, one row per rank.
@@ -215,7 +196,7 @@ void expect_near(const State& a, const State& b, const std::string& what) {
   };
   compare(a.positions, b.positions, "positions");
   compare(a.velocities, b.velocities, "velocities");
-  compare(a.acceleration, b.acceleration, "acceleration");
+  compare(a.air_acceleration, b.air_acceleration, "acceleration");
   compare(a.forces, b.forces, "forces");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(a.total_force[axis], b.total_force[axis], tolerance) << what;
@@ -227,7 +208,7 @@ void expect_equal(const State& a, const State& b, const std::string& what) {
   EXPECT_EQ(a.flow, b.flow) << what;
   EXPECT_EQ(a.positions, b.positions) << what;
   EXPECT_EQ(a.velocities, b.velocities) << what;
-  EXPECT_EQ(a.acceleration, b.acceleration) << what;
+  EXPECT_EQ(a.air_acceleration, b.air_acceleration) << what;
   EXPECT_EQ(a.forces, b.forces) << what;
   EXPECT_EQ(a.total_force, b.total_force) << what;
   EXPECT_EQ(a.progress.time, b.progress.time) << what;

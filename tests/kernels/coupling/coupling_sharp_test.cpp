@@ -5,6 +5,7 @@
 #include <random>
 
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/points_transfer.hpp"
 #include "kernels/reference/coupling/sharp_sheet.hpp"
@@ -204,20 +205,16 @@ TEST(SharpSheet, ContinuesBitForBitAndBackendsAgree) {
   ASSERT_TRUE(whole.advance(20));
   ASSERT_TRUE(whole.advance(20));
   ASSERT_TRUE(first.advance(20));
-  using enum flow::StateField;
-  for (const flow::StateField field :
-       {velocity_x, velocity_y, velocity_z, pressure, rate_x, rate_y, rate_z}) {
-    const std::array<int, 3> n = extents(c.p.flow, field);
-    std::vector<double> values(static_cast<std::size_t>(n[0] * n[1] * n[2]));
+  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
+    std::vector<double> values(flow::state_size(c.p.flow, field));
     first.solver->download(field, values);
     second.solver->upload(field, values);
   }
   second.solver->restore(first.solver->progress());
-  const std::vector<double> acceleration = first.solver->download_face_acceleration();
-  EXPECT_EQ(acceleration.size(), 3 * 16U * 8U);
-  second.solver->upload_face_acceleration(acceleration);
+  const RestartState sheets = download_restart_state(*first.solver, c.x.size());
+  EXPECT_EQ(sheets.face_acceleration.size(), 3 * 16U * 8U);
+  upload_restart_state(*second.solver, sheets);
   EXPECT_THROW(second.solver->upload_face_acceleration(std::vector<double>(7)), std::invalid_argument);
-  second.solver->set_block(first.solver->block());
   ASSERT_TRUE(second.advance(20));
   EXPECT_EQ(second.force(), whole.force());
 #if defined(DROGUE_EXACT)

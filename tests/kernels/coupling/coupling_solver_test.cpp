@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "tests/support/coupled_case.hpp"
@@ -53,48 +54,26 @@ CoupledCase meeting_strips(bool with_contact) {
   return c;
 }
 
-struct State {
+struct State : RestartState {
   std::vector<std::vector<double>> flow;
-  std::vector<Vector> positions, velocities, acceleration, forces;
   Vector total_force;
   flow::Progress progress;
-  BlockProgress block;
 };
 
-std::vector<flow::StateField> state_fields(const flow::Parameters& p) {
-  using enum flow::StateField;
-  std::vector<flow::StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
-  if (p.time_scheme == flow::TimeScheme::ab2) fields.insert(fields.end(), {rate_x, rate_y, rate_z});
-  return fields;
-}
-
 State state_of(const CoupledCase& c, Solver& solver) {
-  State s;
-  for (const flow::StateField field : state_fields(c.p.flow)) {
-    const std::array<int, 3> n = extents(c.p.flow, field);
-    s.flow.emplace_back(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) *
-                        static_cast<std::size_t>(n[2]));
+  State s{download_restart_state(solver, c.x.size()), {}, solver.total_force_on_air(), solver.progress()};
+  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
+    s.flow.emplace_back(flow::state_size(c.p.flow, field));
     solver.download(field, s.flow.back());
   }
-  s.positions.resize(c.x.size()), s.velocities.resize(c.x.size()), s.acceleration.resize(c.x.size());
-  solver.download_cloth(s.positions, s.velocities);
-  solver.download_air_acceleration(s.acceleration);
-  s.forces.resize(c.x.size());
-  solver.forces(s.forces);
-  s.total_force = solver.total_force_on_air();
-  s.progress = solver.progress();
-  s.block = solver.block();
   return s;
 }
 
 void restore(const CoupledCase& c, const State& s, Solver& solver) {
   std::size_t k = 0;
-  for (const flow::StateField field : state_fields(c.p.flow)) solver.upload(field, s.flow[k++]);
-  solver.upload_cloth(s.positions, s.velocities);
+  for (const flow::StateField field : flow::state_fields(c.p.flow)) solver.upload(field, s.flow[k++]);
   solver.restore(s.progress);
-  solver.upload_air_acceleration(s.acceleration);
-  solver.upload_forces(s.forces);
-  solver.set_block(s.block);
+  upload_restart_state(solver, s);
 }
 
 double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
@@ -107,7 +86,7 @@ double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
 
 double distance(const State& a, const State& b) {
   double largest = std::max({distance(a.positions, b.positions), distance(a.velocities, b.velocities),
-                             1e-3 * distance(a.acceleration, b.acceleration)});
+                             1e-3 * distance(a.air_acceleration, b.air_acceleration)});
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < a.flow[k].size(); ++i)
       largest = std::max(largest, std::abs(a.flow[k][i] - b.flow[k][i]));
@@ -401,10 +380,10 @@ TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
   ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
   run.solver->upload_cloth(c.x, c.v);
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::array<int, 3> n = extents(c.p.flow, state_fields(c.p.flow)[k]);
+    const std::array<int, 3> n = extents(c.p.flow, flow::state_fields(c.p.flow)[k]);
     const auto faces =
         static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
-    run.solver->upload(state_fields(c.p.flow)[k], std::vector<double>(faces, 0.0));
+    run.solver->upload(flow::state_fields(c.p.flow)[k], std::vector<double>(faces, 0.0));
   }
   run.solver->start();
   EXPECT_TRUE(run.advance(5));

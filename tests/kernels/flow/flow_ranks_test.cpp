@@ -21,13 +21,6 @@ using namespace drogue::testing;  // NOLINT: helpers of these tests
 constexpr const auto& backend = testing::tested_backend;
 constexpr double tolerance = 1e-10;
 
-std::vector<StateField> state_fields(const Parameters& p) {
-  using enum StateField;
-  std::vector<StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
-  if (p.time_scheme == TimeScheme::ab2) fields.insert(fields.end(), {rate_x, rate_y, rate_z});
-  return fields;
-}
-
 /// A solver on the ranks of a group, with whole arrays.
 class SharedSolver {
  public:

@@ -3,12 +3,14 @@
 import collections
 import json
 import pathlib
+import platform
 import re
 import shlex
 import subprocess
 
 SYMBOL = re.compile(r"^[0-9a-f]+ <(.*)>:$")
 ARITHMETIC = re.compile(r"\s+[0-9a-f]+:\s+v?(add|sub|mul|div|sqrt|rcp14|rsqrt14|fn?m(?:add|sub)\d{3})([ps])d\s+(.*)$")
+FUSED = re.compile(r"\bvfn?m(?:add|sub)\w*")
 REGISTERS = ("zmm", "ymm", "xmm")
 
 
@@ -38,6 +40,18 @@ def cache(build):
     """CMake cache variables of a build folder."""
     text = (build / "CMakeCache.txt").read_text(encoding="utf-8")
     return dict(re.findall(r"^(\w+):\w+=(.*)$", text, re.MULTILINE))
+
+
+def reason_to_skip(build):
+    """Reason why the machine code of a build folder cannot be read, or None."""
+    variables = cache(build)
+    if variables.get("DROGUE_SANITIZE") == "ON":
+        return "sanitizers put checks between the instructions"
+    if variables.get("CMAKE_BUILD_TYPE") == "Debug":
+        return "nothing is optimised"
+    if platform.machine() != "x86_64":
+        return "instructions are read for x86-64 alone"
+    return None
 
 
 def compilation(build, source):

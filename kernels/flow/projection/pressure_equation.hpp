@@ -1,0 +1,134 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "kernels/flow/parameters.hpp"
+#include "kernels/flow/state.hpp"
+#include "kernels/flow/views.hpp"
+#include "kernels/linear/poisson/diagonalization.hpp"
+#include "kernels/linear/poisson/fourier.hpp"
+#include "kernels/linear/poisson/pencil_solver.hpp"
+#if defined(DROGUE_HAVE_HYPRE)
+#include "kernels/linear/poisson/hypre_pfmg.hpp"
+#endif
+
+namespace drogue::flow {
+
+/// Pressure equation of a flow: zero normal derivative of the pressure on sides with a prescribed normal
+/// velocity, zero pressure on outflows. Does not throw.
+inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
+  linear::PoissonProblem problem;
+  problem.cells = parameters.cells;
+  const auto end = [&](std::size_t side) {
+    return parameters.boundary[side].kind == BoundaryKind::outflow ? linear::EndCondition::dirichlet
+                                                                   : linear::EndCondition::neumann;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    problem.spacing[axis] = (parameters.high[axis] - parameters.low[axis]) / parameters.cells[axis];
+    problem.axes[axis] = {parameters.boundary[2 * axis].kind == BoundaryKind::periodic, end(2 * axis),
+                          end(2 * axis + 1)};
+  }
+  return problem;
+}
+
+/// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization. Throws
+/// std::invalid_argument if `parameters` request transforms that the backend lacks for them.
+template <class ExecutionSpace>
+bool uses_transforms(const Parameters& parameters, int ranks) {
+  const bool can = linear::FourierSolver<ExecutionSpace>::supports(pressure_problem(parameters)) &&
+                   (device::is_host<ExecutionSpace> || ranks == 1);
+  if (parameters.pressure_solver == PressureSolver::fft && !can)
+    throw std::invalid_argument(
+        "flow solver: this backend has fast transforms for periodic axes on one rank only");
+  return can && parameters.pressure_solver != PressureSolver::diagonalization;
+}
+
+/// Solver of the pressure equation that `Parameters::pressure_solver` selects. The constructor and the solves
+/// are collective on several ranks.
+template <class ExecutionSpace>
+class PressureEquation {
+ public:
+  using Values = List<ExecutionSpace>;
+
+  /// `in_place`: the solution replaces the right-hand side. Throws std::invalid_argument as `uses_transforms`
+  /// does, and std::runtime_error if memory runs out or a library fails.
+  PressureEquation(const ExecutionSpace& space, const Parameters& parameters, const linear::RankGroup& group,
+                   const linear::PencilRanks& ranks, bool in_place) {
+    const linear::PoissonProblem problem = pressure_problem(parameters);
+#if defined(DROGUE_HAVE_HYPRE)
+    if (parameters.pressure_solver == PressureSolver::hypre_pfmg) {
+      _name = "hypre-pfmg";
+      _solver.emplace(std::in_place_type<linear::HyprePfmgSolver<ExecutionSpace>>, space, problem, group,
+                      ranks, parameters.pressure_tolerance);
+      return;
+    }
+#endif
+    const bool transforms = uses_transforms<ExecutionSpace>(parameters, group.size());
+    _name = transforms ? "fft" : "diagonalization";
+    if (group.size() > 1)
+      _solver.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space, problem, group, ranks,
+                      transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization);
+    else if (transforms)
+      _solver.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem, in_place);
+    else
+      _solver.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space, problem,
+                      linear::InvertedOperators::laplacian);
+  }
+
+  /// Name of the solver: "fft" or "diagonalization" or "hypre-pfmg". Does not throw.
+  [[nodiscard]] const char* name() const { return _name; }
+
+  /// Last solve of an iterative solver; none for a direct one. Does not throw.
+  [[nodiscard]] std::optional<PressureSolve> last_solve() const {
+    return std::visit(
+        [](const auto& solver) -> std::optional<PressureSolve> {
+          if constexpr (requires { solver.converged(); })
+            return PressureSolve{solver.iterations(), solver.residual()};
+          return std::nullopt;
+        },
+        *_solver);
+  }
+
+  /// Lets an iterative solver, which keeps its last solution, begin with another pressure, m^2/s^2, or with
+  /// zero for an empty `guess`. Does nothing for a direct one. Does not throw.
+  void set_guess(const Values& guess) {
+    std::visit(
+        [&](auto& solver) {
+          if constexpr (requires { solver.set_guess(guess); }) solver.set_guess(guess);
+        },
+        *_solver);
+  }
+
+  /// Enqueues a solve for the pressure, m^2/s^2, or its increment, with a right-hand side in 1/s^2. Returns
+  /// false if an iterative solver, which blocks, did not converge. Throws std::runtime_error if a library
+  /// fails.
+  bool enqueue_solve(const Values& right_hand_side, const Values& solution) {
+    return std::visit(
+        [&](auto& solver) {
+          solver.enqueue_solve(right_hand_side, solution);
+          if constexpr (requires { solver.converged(); }) return solver.converged();
+          return true;
+        },
+        *_solver);
+  }
+
+ private:
+#if defined(DROGUE_HAVE_HYPRE)
+  using Solver =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>, linear::HyprePfmgSolver<ExecutionSpace>>;
+#else
+  using Solver =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>>;
+#endif
+
+  const char* _name = "";
+  std::optional<Solver> _solver;  ///< never empty after the constructor
+};
+
+}  // namespace drogue::flow

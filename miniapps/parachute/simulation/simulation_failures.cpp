@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "common/scene/node.hpp"
+#include "miniapps/parachute/canopy/stiffness.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/sheet_output.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
+
+// Messages of failed steps.
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+
+/// Cell of an index whose x varies fastest, and its centre.
+std::string cell_text(const flow::Parameters& p, std::int64_t index) {
+  const Lattice cells = lattice_of(p, flow::StateField::pressure);
+  const auto centre = cells.place(static_cast<std::size_t>(index));
+  std::ostringstream text;
+  text << "cell (" << index % cells.n[0] << ", " << index / cells.n[0] % cells.n[1] << ", "
+       << index / cells.n[0] / cells.n[1] << ") at (" << centre[0] << ", " << centre[1] << ", " << centre[2]
+       << ") m";
+  return text.str();
+}
+
+const char* reason_text(flow::FailureReason reason) {
+  switch (reason) {
+    case flow::FailureReason::not_finite:
+      return "the velocity is not finite";
+    case flow::FailureReason::side_velocity:
+      return "the prescribed velocity is not finite on the side ";
+    case flow::FailureReason::time_step:
+      return "no time step is admissible";
+    case flow::FailureReason::pressure_solver:
+      return "the pressure solver did not converge";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string Simulation::flow_failure_text() {
+  std::ostringstream text;
+  text.precision(9);
+  const flow::StepFailure failure = _solver->failure();
+  const double fixed_dt = _scene.parameters.fixed_dt;
+  const bool is_unstable = failure.reason == flow::FailureReason::time_step && failure.dt < fixed_dt;
+  // Without a finite velocity of the start the first step has no dt.
+  const bool is_initial = failure.step == 1 && std::isnan(failure.dt);
+  if (is_unstable)
+    text << "run.dt = " << fixed_dt << " s exceeds the largest stable time step, " << failure.dt << " s,";
+  else
+    text << reason_text(failure.reason);
+  if (failure.reason == flow::FailureReason::side_velocity)
+    text << side_names[static_cast<std::size_t>(failure.index)];
+  else if (failure.index >= 0)
+    text << " in " << cell_text(_scene.parameters, failure.index);
+  text << " at " << (is_initial ? "the initial projection" : "step " + std::to_string(failure.step))
+       << ", t = " << failure.time << " s";
+  if (!is_initial && !is_unstable) text << ", dt = " << failure.dt << " s";
+  if (failure.reason == flow::FailureReason::pressure_solver)
+    text << "; it may with a flow.pressure_tolerance above "
+         << scene::real_text(_scene.parameters.pressure_tolerance);
+  if (failure.reason == flow::FailureReason::not_finite && !is_initial)
+    text << (fixed_dt > 0.0 ? "; a smaller run.dt" : "; a smaller run.cfl") << " may save the run";
+  return text.str();
+}
+
+/// End of the message of a failure for which explicit coupling of light cloth is the likely cause.
+std::string Simulation::light_cloth_text() const {
+  if (!_scene.is_explicit() || _scene.largest_added_mass_ratio() <= 1.0) return "";
+  std::ostringstream text;
+  text.precision(3);
+  text << "; coupling.method = \"explicit\" is unstable for cloth that moves "
+       << _scene.largest_added_mass_ratio() << " times its own mass of fluid";
+  return text.str();
+}
+
+std::string Simulation::vertex_text(std::int64_t vertex) const {
+  std::ostringstream text;
+  const auto row = static_cast<std::size_t>(vertex);
+  if (row < vertices_of(_scene.bodies)) text << "vertex " << row << " of the bodies";
+  text << canopy_vertex_text(_sheets, row);
+  return text.str();
+}
+
+/// Cloth that needs too many steps within one of the flow, and the keys that may help.
+std::string Simulation::stiff_cloth_text() {
+  std::ostringstream text;
+  text.precision(9);
+  text << "the cloth needs more than " << coupling::most_substeps
+       << " steps in the step of the flow after t = " << now().time << " s";
+  std::optional<StiffPart> stiffest;
+  std::string canopy;
+  for (std::size_t i = 0; i < _scene.canopies.size(); ++i) {
+    const StiffPart part = stiffest_part(_scene.canopies[i], make_canopy(_scene.canopies[i]));
+    if (stiffest && part.frequency <= stiffest->frequency) continue;
+    stiffest = part;
+    canopy = "canopy[" + std::to_string(i) + "].";
+  }
+  if (stiffest) text << "; a smaller " << canopy << stiffest->key << " or run.cfl may save the run";
+  return text.str();
+}
+
+/// Line that carries more than its strength.
+std::string Simulation::broken_line_text() {
+  std::ostringstream text;
+  text.precision(9);
+  const int line = _coupled->failed_line();
+  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
+    const std::vector<int>& lines = _sheets.canopies[i].suspension;
+    const auto found = std::ranges::find(lines, line);
+    if (found == lines.end()) continue;
+    text << "line " << found - lines.begin() << " of canopy[" << i << "] breaks: it carries more than "
+         << "canopy[" << i << "].lines.strength = " << _scene.canopies[i].lines.strength.value_or(0.0)
+         << " N in the step after t = " << now().time << " s";
+  }
+  return text.str();
+}
+
+/// Body, canopy or flag that leaves the domain with the vertex.
+std::string Simulation::leaving_part_text(std::size_t vertex) const {
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < _scene.bodies.size(); ++i) {
+    const std::size_t begin = end;
+    end += static_cast<std::size_t>(_scene.bodies[i].vertices());
+    if (vertex >= begin && vertex < end) return "body[" + std::to_string(i) + "] leaves the domain: a vertex";
+  }
+  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
+    const CanopyRows& rows = _sheets.canopies[i];
+    if (vertex < rows.begin || vertex >= rows.end) continue;
+    const char* part = vertex < rows.cloth_end  ? "its cloth"
+                       : vertex == rows.payload ? "its payload"
+                                                : "its riser";
+    return "canopy[" + std::to_string(i) + "] leaves the domain: " + part;
+  }
+  for (std::size_t i = 0; i < _sheets.flags.size(); ++i)
+    if (vertex >= _sheets.flags[i].begin && vertex < _sheets.flags[i].end)
+      return "flag[" + std::to_string(i) + "] leaves the domain: a vertex";
+  return "";
+}
+
+/// Vertex that is closest to a side, in cells.
+std::string Simulation::leaving_vertex_text() {
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  _coupled->download_cloth(positions, velocities);
+  const flow::Parameters& p = _scene.parameters;
+  const auto spacing = lattice_of(p, flow::StateField::pressure).spacing;
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t vertex = 0, closest = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    for (std::size_t side = 0; side < 6; ++side) {
+      const std::size_t axis = side / 2;
+      if (p.cells[axis] == 1 || p.boundary[side].kind == flow::BoundaryKind::periodic) continue;
+      const double distance =
+          (side % 2 == 0 ? positions[i][axis] - p.low[axis] : p.high[axis] - positions[i][axis]) /
+          spacing[axis];
+      if (distance < least) least = distance, vertex = i, closest = side;
+    }
+  std::ostringstream text;
+  text.precision(9);
+  text << leaving_part_text(vertex) << " at (" << positions[vertex][0] << ", " << positions[vertex][1] << ", "
+       << positions[vertex][2] << ") m comes closer than a cell to the side " << side_names[closest]
+       << " after t = " << now().time
+       << " s; a larger grid.domain or a shorter run.end_time may save the run";
+  return text.str();
+}
+
+std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
+  std::ostringstream text;
+  text.precision(9);
+  switch (reason) {
+    case coupling::FailureReason::not_spread:
+      text << "a force on a sheet is not finite at t = " << now().time << " s";
+      return text.str();
+    case coupling::FailureReason::cloth: {
+      const auto failure = _coupled->cloth_failure().value_or(fabric::StepFailure{});
+      text << cloth_failure_text(failure.reason) << " at " << vertex_text(failure.index)
+           << " after t = " << now().time << " s; a smaller run.cfl may save the run";
+      return text.str();
+    }
+    case coupling::FailureReason::too_stiff:
+      return stiff_cloth_text();
+    case coupling::FailureReason::line:
+      return broken_line_text();
+    case coupling::FailureReason::left_domain:
+      return leaving_vertex_text();
+    case coupling::FailureReason::flow:
+      break;  // `flow_failure_text` has the reason
+  }
+  return "";
+}
+
+std::string Simulation::failure_cause() {
+  if (_stop == flow::Stop::max_steps) return step_limit_text(_scene, now().time);
+  const auto reason = _coupled != nullptr ? _coupled->failure_reason() : coupling::FailureReason::flow;
+  return reason == coupling::FailureReason::flow ? flow_failure_text() : sheet_failure_text(reason);
+}
+
+std::string Simulation::failure_text(bool) { return failure_cause() + light_cloth_text(); }
+
+}  // namespace drogue::parachute_app
