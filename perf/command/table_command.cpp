@@ -13,7 +13,7 @@ namespace drogue::perf {
 namespace {
 
 struct TableOptions {
-  std::string table, out;
+  std::string table, out, profile;
   std::string app;  ///< empty: that of the table
   std::string backend = "auto";
   bool quick = false;
@@ -59,12 +59,14 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
   require_name("table of " + options.app, options.table, tables_of(options.app));
+  if (!options.profile.empty() && options.table != "occupancy")
+    throw Failure(ExitCode::usage, "--profile is for table occupancy");
   run::require_writable(options.out);
   install_signal_handlers();
   Table table;
   if (options.table == "occupancy")
-    table =
-        print_occupancy(provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
+    table = print_occupancy(
+        options.profile, provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
   else if (options.table == "scaling")
     table = print_scaling(options.app, backends_of(options.backend), options.quick);
   else
@@ -87,6 +89,8 @@ Command table_command(CLI::App& program) {
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
       ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
+  app->add_option("--profile", options->profile,
+                  "For occupancy: CSV file of ncu, or folder of them, whose kernels stand beside the model");
   app->add_option("--out", options->out, "File for the records, one JSON line a row");
   app->add_flag("--quick", options->quick, "Few rows and few samples");
   return {app, [options](const std::vector<std::string>& kokkos) { return print_table(*options, kokkos); }};

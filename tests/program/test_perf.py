@@ -1,7 +1,9 @@
 """drogue-perf: subcommands, records and usage errors."""
 
 import os
+import pathlib
 import re
+import shlex
 import signal
 import statistics
 import subprocess
@@ -145,6 +147,76 @@ class Occupancy(perf_program.PerfTest):
             self.assertEqual((blocks, registers), (facts["blocks"], facts["registers"]), name)
             self.assertLessEqual(facts["least_blocks"], facts["blocks"])
             self.assertLessEqual(facts["shared_bytes"], 48 * 1024)
+
+
+class ProfiledOccupancy(perf_program.PerfTest):
+    """Kernels of a file in the layout of ncu beside the model."""
+
+    def setUp(self):
+        super().setUp()
+        source = pathlib.Path(os.environ["DROGUE_SOURCE"])
+        self.profile = (source / "tests/support/profiles/kernels.csv").read_text(encoding="utf-8")
+
+    def rows(self, code, profile):
+        (self.folder / "kernels.csv").write_text(profile, encoding="utf-8")
+        text = self.expect(code, "table", "occupancy", "--profile", "kernels.csv", "--out", "rows.jsonl").stdout
+        return text, [record for record in self.records("rows.jsonl") if "achieved" in record["facts"]]
+
+    def test_every_kernel_is_predicted_to_the_block(self):
+        text, records = self.rows(0, self.profile)
+        labels = set(re.findall(r"drogue::(?!device)\w+::\w+Functor", self.profile))
+        self.assertEqual(labels, {record["facts"]["kernel"] for record in records})
+        self.assertIn(f"{len(records)} of {len(records)} kernels are predicted to the block.", text)
+        for record in records:
+            facts = record["facts"]
+            self.assertEqual(("passed", 0.0), (record["check"], record["error"]))
+            self.assertEqual(facts["blocks"], facts["achieved"]["blocks"], facts)
+            self.assertEqual(facts["blocks"], min(facts["achieved"][key] for key in facts["achieved"] if "_by_" in key))
+            self.assertLessEqual(facts["achieved"]["mean_blocks"], 1.02 * facts["blocks"])
+            self.assertLess(0.0, facts["achieved"]["mean_blocks"])
+
+    def test_reports_a_kernel_with_other_blocks(self):
+        # The kernel of flow, whose registers leave room for four blocks, would hold five.
+        wrong = self.profile.replace('"32","4","7","16","126"', '"32","5","7","16","126"')
+        self.assertNotEqual(self.profile, wrong)
+        text, records = self.rows(5, wrong)
+        failed, = (record for record in records if record["check"] == "failed")
+        self.assertEqual(("drogue::flow::MomentumFunctor", 1.0), (failed["facts"]["kernel"], failed["error"]))
+        self.assertIn("blocks by registers 4 (ncu 5)", text)
+        self.assertIn(f"{len(records) - 1} of {len(records)} kernels", text)
+
+    def test_reports_more_resident_blocks_than_predicted(self):
+        wrong = self.profile.replace('"25.00","21.30"', '"25.00","26.30"')
+        self.assertNotEqual(self.profile, wrong)
+        _, records = self.rows(5, wrong)
+        failed, = (record for record in records if record["check"] == "failed")
+        self.assertEqual(1.0, failed["error"])
+
+    def test_names_areas_without_a_kernel(self):
+        lines = [line for line in self.profile.splitlines(True) if "drogue::options" not in line]
+        self.assertIn("The profile has no kernel of options.", self.rows(0, "".join(lines))[0])
+
+    def test_rejects_what_is_no_profile(self):
+        for profile, hint in (("", "no kernel"), (self.profile.rsplit(",", 3)[0] + "\n", "is the file truncated?"),
+                              (self.profile[:-3], "does not end on its line"),
+                              (self.profile.replace('"9.0"', '"4.2"'), "no compute capability '4.2'")):
+            with self.subTest(hint):
+                (self.folder / "kernels.csv").write_text(profile, encoding="utf-8")
+                self.assertIn(hint, self.expect(3, "table", "occupancy", "--profile", "kernels.csv").stderr)
+        self.assertIn("missing.csv", self.expect(2, "table", "occupancy", "--profile", "missing.csv").stderr)
+        self.assertIn("for table occupancy",
+                      self.expect(2, "table", "transfers", "--profile", "kernels.csv").stderr)
+
+    def test_command_profiles_the_kernels_of_a_case(self):
+        words = shlex.split(self.expect(0, "ncu", "gas-step/cuda/65536", "--out", "a.csv").stdout)
+        self.assertEqual("ncu", words[0])
+        self.assertEqual("regex:drogue::gas", words[words.index("--kernel-name") + 1])
+        self.assertEqual(["run", "--filter", "^gas-step/cuda/65536$"], words[-3:])
+        self.assertEqual(perf_program.PROGRAM.resolve(), pathlib.Path(words[-4]))
+        # The table reads what the command collects.
+        for metric in words[words.index("--metrics") + 1].split(","):
+            self.assertIn(f'"{metric}"', self.profile)
+        self.assertIn("no case on cuda", self.expect(2, "ncu", "gas-step/serial/1024").stderr)
 
 
 class WorkPrecision(perf_program.PerfTest):
