@@ -6,7 +6,7 @@
 
 folder=${1:?usage: scripts/profile_occupancy.sh FOLDER [BUILD [FILTER]]}
 perf=${2:-$root/build/cuda}/bin/drogue-perf
-filter=${3:-'^(gas-step/cuda/(8192(/graph|/stages)?|16777216(/(z|split|on))?)|springs-step/cuda/(2640(/verlet)?|1000000(/(quadratic|verlet))?)|springs-contact/cuda/.*|options/cuda/.*|flow-step/cuda/(64x64x64|128x128x128)/.*|flow-pressure/cuda/64x64x64/(fft|diagonalization)/.*|parachute-flight/cuda/.*)$'}
+filter=${3:-'^(gas-step/cuda/(8192(/graph|/stages)?|16777216(/(z|split|on))?)|springs-step/cuda/(2640(/verlet)?|1000000(/(quadratic|verlet))?)|springs-contact/cuda/.*|options/cuda/.*|flow-step/cuda/(64x64x64|256x256x256)/.*|flow-pressure/cuda/64x64x64/(fft|diagonalization)/.*|parachute-flight/cuda/.*)$'}
 mkdir -p "$folder"
 command -v ncu >/dev/null || fail "ncu is not on the PATH: install Nsight Compute, which the CUDA toolkit holds."
 mapfile -t cases < <("$perf" list | grep -E "$filter" || true)

@@ -50,8 +50,12 @@ Table print_flow_memory(device::Backend backend, bool quick, const nlohmann::jso
 /// Failure as `run` does, and interrupted after a signal.
 Table print_scaling(const std::string& app, const std::vector<device::Backend>& backends, bool quick);
 
-/// Figure 4.4: time per step against block size and mesh, for the baseline solver and for the fused step.
-/// `backend` must be a GPU.
-Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::json& provenance);
+/// Time against block size and mesh for the kernels of `block_forms`, figure 4.4 for gas, beside the
+/// occupancy that the model predicts. `backend` must be a GPU. `capability`: its compute capability; an
+/// unknown one is replaced by 9.0. `profile`: for `read_profiles`, for registers of the kernels; empty: those
+/// of their launch bounds.
+Table print_block_sizes(const std::string& app, device::Backend backend, bool quick,
+                        const std::string& capability, const std::string& profile,
+                        const nlohmann::json& provenance);
 
 }  // namespace drogue::perf

@@ -417,9 +417,10 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
+                            (["table", "block-size", "--app", "options"], "have no block size"),
                             (["table", "transfers", "--app", "parachute"], "have --app flow"),
                             (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling"),
-                            (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory, scaling"),
+                            (["table", "occupancy", "--app", "flow"], "valid names are block-size, pressure, memory, scaling"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
                              "no problem matches 'day$'; with --quick there are thesis, merton"),
                             (["work-precision", "--app", "options", "--filter", "("], "is not a valid regular expression"),
@@ -445,8 +446,9 @@ class Refusals(perf_program.PerfTest):
                 self.assertIn("missing/records.jsonl", process.stderr)
 
     def test_rejects_block_sizes_on_a_host_backend(self):
-        self.assertIn("means nothing to the host backend 'serial'",
-                      self.expect(2, "table", "block-size", "--backend", "serial").stderr)
+        for app in ("gas", "flow", "parachute"):
+            self.assertIn("means nothing to the host backend 'serial'",
+                          self.expect(2, "table", "block-size", "--app", app, "--backend", "serial").stderr)
 
     def test_reports_an_absent_backend(self):
         if "DROGUE_CUDA:BOOL=ON" in perf_program.CACHE:
