@@ -6,8 +6,10 @@
 
 folder=${1:?usage: scripts/profile_occupancy.sh FOLDER [BUILD [FILTER]]}
 perf=${2:-$root/build/cuda}/bin/drogue-perf
-filter=${3:-'^(gas-step/cuda/(8192(/graph|/stages)?|16777216(/(z|split|on))?)|springs-step/cuda/(2640(/verlet)?|1000000(/(quadratic|verlet))?)|springs-contact/cuda/.*|options/cuda/.*|flow-step/cuda/(64x64x64|256x256x256)/.*|flow-pressure/cuda/64x64x64/(fft|diagonalization)/.*|parachute-flight/cuda/.*)$'}
+filter=${3:-'^(gas-step/cuda/(8192(/stages)?|16777216(/(split|on))?)|springs-step/cuda/(2640|1000000(/verlet)?)|springs-contact/cuda/15625|options/cuda/(1|4096)/128x32|options-surface/cuda/surface/1x33x8|flow-step/cuda/(64x64x64/periodic|256x256x256/(tunnel/vreman|periodic/(crank-nicolson|diagonalization)))|parachute-flight/cuda/60x60x120/c9-contact)$'}
 mkdir -p "$folder"
+nvcc="$(find_nvcc)"
+PATH="$PATH:${nvcc%/*}"
 command -v ncu >/dev/null || fail "ncu is not on the PATH: install Nsight Compute, which the CUDA toolkit holds."
 mapfile -t cases < <("$perf" list | grep -E "$filter" || true)
 [ ${#cases[@]} -gt 0 ] || fail "no case of '$perf list' matches '$filter': is this a build with CUDA, on a machine with a GPU?"

@@ -10,11 +10,12 @@ namespace drogue::perf {
 namespace {
 
 /// Kinds of cases with the namespaces of their kernels.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kinds = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kinds = {
     {{"gas-step", "gas"},
      {"springs-step", "fabric"},
      {"springs-contact", "fabric"},
      {"options", "options"},
+     {"options-surface", "options"},
      {"flow-step", "(flow|linear)"},
      {"flow-pressure", "linear"},
      {"parachute-flight", "(coupling|fabric|flow|linear)"},
@@ -33,6 +34,8 @@ constexpr std::array metrics = {"launch__block_size",
                                 "launch__occupancy_limit_registers",
                                 "launch__occupancy_limit_shared_mem",
                                 "launch__occupancy_limit_warps",
+                                "device__attribute_compute_capability_major",
+                                "device__attribute_compute_capability_minor",
                                 "device__attribute_multiprocessor_count",
                                 "sm__maximum_warps_per_active_cycle_pct",
                                 "sm__warps_active.avg.pct_of_peak_sustained_active",
@@ -70,36 +73,16 @@ std::string profiling_command(const std::string& case_name, const std::string& p
   std::string names;
   for (const char* metric : metrics) names += (names.empty() ? "" : ",") + std::string(metric);
   std::string text = "ncu";
-  for (const std::string& word : {std::string("--csv"),
-                                  std::string("--page"),
-                                  std::string("raw"),
-                                  std::string("--print-units"),
-                                  std::string("base"),
-                                  std::string("--print-kernel-base"),
-                                  std::string("demangled"),
-                                  std::string("--kernel-name-base"),
-                                  std::string("demangled"),
-                                  std::string("--kernel-name"),
-                                  "regex:drogue::" + std::string(spaces),
-                                  std::string("--launch-count"),
-                                  std::string(std::to_string(launches)),
-                                  std::string("--kill"),
-                                  std::string("yes"),
-                                  std::string("--graph-profiling"),
-                                  std::string("node"),
-                                  std::string("--clock-control"),
-                                  std::string("none"),
-                                  std::string("--cache-control"),
-                                  std::string("none"),
-                                  std::string("--metrics"),
-                                  names,
-                                  std::string("--log-file"),
-                                  out,
-                                  program,
-                                  std::string("run"),
-                                  std::string("--filter"),
-                                  "^" + case_name + "$"})
-    text += " " + quoted(word);
+  const std::vector<std::string> words = {
+      // Exact numbers and whole names: rounded bytes and shortened templates would be ambiguous.
+      "--csv", "--page", "raw", "--print-units", "base", "--print-kernel-base", "demangled",
+      "--rename-kernels", "no", "--kernel-name-base", "demangled", "--kernel-name",
+      "regex:drogue::" + std::string(spaces), "--launch-count", std::to_string(launches), "--kill", "yes",
+      "--graph-profiling", "node",
+      // As in a run without a profiler.
+      "--clock-control", "none", "--cache-control", "none", "--metrics", names, "--log-file", out, program,
+      "run", "--filter", "^" + case_name + "$"};
+  for (const std::string& word : words) text += " " + quoted(word);
   return text;
 }
 

@@ -50,7 +50,8 @@ class Row {
     if (!at) return std::nullopt;
     std::string digits(_fields[*at]);
     std::erase(digits, ',');  // of thousands
-    if (digits.empty() || digits == "n/a") return std::nullopt;
+    if (digits.empty() || digits.find("n/a") != std::string::npos || digits.find("nan") != std::string::npos)
+      return std::nullopt;
     double value = 0.0;
     if (csv::parse_number(digits, value) != csv::NumberError::none)
       throw wrong(csv::shown(_fields[*at]) + " of column '" + std::string(name) + "' is no number");
@@ -84,11 +85,18 @@ class Row {
   const csv::Fields& _fields;
 };
 
+/// "9.0", of the column or of the attributes of the device.
+std::string capability_of(const Row& row) {
+  if (row.column("CC")) return row.text("CC");
+  return std::to_string(row.whole("device__attribute_compute_capability_major")) + "." +
+         std::to_string(row.whole("device__attribute_compute_capability_minor"));
+}
+
 KernelProfile profile_of(const Row& row) {
   KernelProfile k;
   k.kernel = kernel_label(row.text("Kernel Name"));
   k.place = row.place();
-  k.capability = row.text("CC");
+  k.capability = capability_of(row);
   k.threads = row.whole("launch__block_size");
   if (k.threads == 0) throw row.wrong("the block has no threads");
   k.registers = row.whole("launch__registers_per_thread");

@@ -218,6 +218,11 @@ class ProfiledOccupancy(perf_program.PerfTest):
             self.assertIn(f'"{metric}"', self.profile)
         self.assertIn("no case on cuda", self.expect(2, "ncu", "gas-step/serial/1024").stderr)
 
+    @unittest.skipIf("DROGUE_CUDA:BOOL=ON" in perf_program.CACHE, "a CUDA build knows the names of its cases")
+    def test_command_exists_for_every_kind_of_case(self):
+        for kind in {name.partition("/")[0] for name in self.expect(0, "list").stdout.split()}:
+            self.expect(0, "ncu", kind + "/cuda")
+
 
 class WorkPrecision(perf_program.PerfTest):
     def test_records_are_valid(self):

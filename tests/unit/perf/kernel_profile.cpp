@@ -83,10 +83,21 @@ TEST_F(ProfileFile, ReadsKernelsBetweenOtherLines) {
   EXPECT_EQ(found[0].place, _file + ":5");
 }
 
+TEST_F(ProfileFile, TakesTheDeviceFromItsAttributes) {
+  std::string other(header);
+  other.replace(
+      other.find("\"CC\""), 4,
+      "\"device__attribute_compute_capability_major\",\"device__attribute_compute_capability_minor\"");
+  other.replace(other.find("\"\",\"\",\"\""), 8, "\"\",\"\",\"\",\"\"");
+  std::string launch = row(usual, "1", "1");
+  launch.replace(launch.find("\"9.0\""), 5, "\"10\",\"3\"");
+  EXPECT_EQ(read(other + launch).at(0).capability, "10.3");
+}
+
 TEST_F(ProfileFile, MergesLaunchesWithEqualResources) {
   const auto found =
       read(std::string(header) + row(usual, "10", "5") + row(usual, "5,000", "12.5") + row(usual, "20", "6") +
-           row("\"64\",\"168\",\"0\",\"0\"", "20", "") + header + row(usual, "30", "7"));
+           row("\"64\",\"168\",\"0\",\"0\"", "20", "(!) n/a") + header + row(usual, "30", "7"));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].launches, 1);
   EXPECT_TRUE(std::isnan(found[0].active_fraction));
@@ -107,8 +118,8 @@ TEST_F(ProfileFile, ReportsLinesThatAreNoProfile) {
       "does not have permission");
   EXPECT_EQ(refusal(good + "\"0\",\"void f(T1)\",\"9.0\",\"128\"\n"),
             ":3: the line has 4 fields, the table 13 columns; is the file truncated?");
-  EXPECT_EQ(refusal(good + row("\"128\",\"nan\",\"0\",\"0\"", "1", "1")),
-            ":3: \"nan\" of column 'launch__registers_per_thread' is no number");
+  EXPECT_EQ(refusal(good + row("\"128\",\"many\",\"0\",\"0\"", "1", "1")),
+            ":3: \"many\" of column 'launch__registers_per_thread' is no number");
   EXPECT_EQ(
       refusal(good + row("\"128\",\"\",\"0\",\"0\"", "1", "1")),
       ":3: column 'launch__registers_per_thread' is absent or has no number; drogue-perf ncu CASE prints the "
