@@ -16,6 +16,7 @@ struct TableOptions {
   std::string table, out, profile;
   std::string app;  ///< empty: that of the table
   std::string backend = "auto";
+  std::string architecture = "sm_90";
   bool quick = false;
 };
 
@@ -74,8 +75,9 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
   install_signal_handlers();
   Table table;
   if (options.table == "occupancy")
-    table = print_occupancy(
-        options.profile, provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
+    table =
+        print_occupancy(options.architecture, options.profile,
+                        provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
   else if (options.table == "scaling")
     table = print_scaling(options.app, backends_of(options.backend), options.quick);
   else
@@ -100,6 +102,9 @@ Command table_command(CLI::App& program) {
       ->capture_default_str();
   app->add_option("--profile", options->profile,
                   "CSV file of ncu, or folder of them: kernels for occupancy, registers for block-size");
+  app->add_option("--architecture", options->architecture,
+                  "For occupancy: compute capability of the step kernels of gas, sm_20 to sm_121")
+      ->capture_default_str();
   app->add_option("--out", options->out, "File for the records, one JSON line a row");
   app->add_flag("--quick", options->quick, "Few rows and few samples");
   return {app, [options](const std::vector<std::string>& kokkos) { return print_table(*options, kokkos); }};

@@ -10,6 +10,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/program/program.hpp"
+#include "common/scene/nearest.hpp"
 #include "kernels/gas/tile/team_shape.hpp"
 #include "perf/profile/kernel_profile.hpp"
 #include "perf/tables/dissertation.hpp"
@@ -113,21 +114,23 @@ std::vector<StepKernel> step_kernels() {
   return kernels;
 }
 
-void print_step_kernels(Table& table, const nlohmann::json& provenance) {
-  const Architecture on = hopper();
+/// `on` is hopper(), for which the launch bounds are chosen, or an architecture of no device in particular.
+void print_step_kernels(Table& table, const Architecture& on, const nlohmann::json& provenance) {
+  const bool is_tuned = on.multiprocessors > 0;
+  const std::string device = is_tuned ? ", " + std::to_string(on.multiprocessors) + " multiprocessors" : "";
   std::printf(
-      "\nThe fused step of drogue-gas on %s, %d multiprocessors; the last row is that of %lld cells and "
-      "more\n\n"
+      "\nThe fused step of drogue-gas on %s%s; the last row is that of %lld cells and more\n\n"
       "block  slots  registers  shared bytes  by registers  by shared  by threads  by limit  blocks  "
       "threads/SM  "
       "threads/device    %% of the threads\n",
-      on.name.data(), on.multiprocessors, static_cast<long long>(gas::large_mesh));
+      on.name.data(), device.c_str(), static_cast<long long>(gas::large_mesh));
   for (const StepKernel& kernel : step_kernels()) {
     const Block block{kernel.team, kernel.registers,
                       gas::shared_bytes(gas::device_rows, kernel.slots, kernel.team)};
     const Occupancy o = occupancy(on, block);
     const Record record =
-        untimed(on, std::to_string(block.threads) + kernel.name, std::max(0, kernel.least_teams - o.blocks));
+        untimed(on, std::to_string(block.threads) + kernel.name + (is_tuned ? "" : "/gas-step"),
+                is_tuned ? std::max(0, kernel.least_teams - o.blocks) : 0);
     std::printf("%5d  %5d  %9d  %12d  %12d  %9d  %10d  %8d  %6d  %10d  %14d  %5.1f%s\n", block.threads,
                 kernel.slots, block.registers, block.shared_bytes, o.by_registers, o.by_shared_memory,
                 o.by_threads, o.by_limit, o.blocks, o.threads, o.device_threads, 100.0 * o.occupancy,
@@ -211,6 +214,12 @@ void print_difference(const KernelProfile& kernel, const ProfiledKernel& k) {
       o.by_limit, kernel.by_limit);
 }
 
+Failure unknown_architecture(const std::string& name) {
+  std::vector<std::string> valid;
+  for (const Architecture& known : architectures()) valid.emplace_back(known.name);
+  return {ExitCode::usage, "there is no architecture '" + name + "'; " + scene::suggestion(name, valid)};
+}
+
 /// Names the areas of which no kernel was profiled.
 void print_missing(const std::vector<KernelProfile>& kernels) {
   std::string missing;
@@ -259,12 +268,16 @@ void print_profile(Table& table, const std::string& path, const std::vector<Kern
 
 }  // namespace
 
-Table print_occupancy(const std::string& profile, const nlohmann::json& provenance) {
+Table print_occupancy(const std::string& architecture, const std::string& profile,
+                      const nlohmann::json& provenance) {
+  const Architecture* known = find_architecture(architecture);
+  if (known == nullptr) throw unknown_architecture(architecture);
+  const Architecture on = known->name == hopper().name ? hopper() : *known;
   const std::vector<KernelProfile> kernels =
       profile.empty() ? std::vector<KernelProfile>{} : read_profiles(profile);
   Table table;
   print_table_4_2(table, provenance);
-  print_step_kernels(table, provenance);
+  print_step_kernels(table, on, provenance);
   if (profile.empty())
     std::printf(
         "\nAchieved blocks need CUDA: scripts/profile_occupancy.sh profiles the kernels of all mini-apps on "

@@ -21,10 +21,12 @@ struct Table {
 // The functions below print to standard output and block until all samples are measured. They throw what the
 // solvers throw.
 
-/// Table 4.2 of [Shi] by the occupancy model, the occupancy of the step kernels of gas on an sm_90, and all
-/// kernels of `profile`, a file or folder for `read_profiles`, beside the model; empty: none. The records
-/// have no samples; their error is the number of mismatches. Throws as `read_profiles`.
-Table print_occupancy(const std::string& profile, const nlohmann::json& provenance);
+/// Table 4.2 of [Shi] by the occupancy model, the occupancy of the step kernels of gas on `architecture`,
+/// such as "sm_90", and all kernels of `profile`, a file or folder for `read_profiles`, beside the model;
+/// empty: none. The records have no samples; their error is the number of mismatches. Throws as
+/// `read_profiles`, and Failure(usage) for an unknown architecture.
+Table print_occupancy(const std::string& architecture, const std::string& profile,
+                      const nlohmann::json& provenance);
 
 /// Table 5.5: copy to the device, compute and copy to the host by the baseline solver, from pageable memory
 /// and, on a GPU, pinned memory.

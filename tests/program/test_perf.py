@@ -149,6 +149,18 @@ class Occupancy(perf_program.PerfTest):
             self.assertLessEqual(facts["shared_bytes"], 48 * 1024)
 
 
+class OtherArchitectures(perf_program.PerfTest):
+    def test_step_kernels_on_another_architecture(self):
+        text = self.expect(0, "table", "occupancy", "--architecture", "sm_86", "--out", "rows.jsonl").stdout
+        self.assertIn("The fused step of drogue-gas on sm_86;", text)
+        facts = {record["case"]: record["facts"] for record in self.records("rows.jsonl")}
+        # 64 Ki registers leave room for three blocks of 128 threads, 100 KiB for two of the large tile.
+        self.assertEqual(3, facts["occupancy/sm_86/128/gas-step"]["blocks"])
+        self.assertEqual((4, 2), tuple(facts["occupancy/sm_86/128/large-mesh/gas-step"][key]
+                                       for key in ("blocks_by_registers", "blocks")))
+        self.assertIn('did you mean "sm_90"?', self.expect(2, "table", "occupancy", "--architecture", "sm90").stderr)
+
+
 class ProfiledOccupancy(perf_program.PerfTest):
     """Kernels of a file in the layout of ncu beside the model."""
 
