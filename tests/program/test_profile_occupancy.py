@@ -42,7 +42,7 @@ class ProfileOccupancy(perf_program.PerfTest):
                               cwd=self.folder, capture_output=True, text=True, check=False,
                               env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
 
-    def test_a_case_that_fails_leaves_the_others(self):
+    def test_keeps_other_cases_if_one_fails(self):
         self.program("bin/ncu", NCU.replace("PROFILE", str(SOURCE / "tests/support/profiles/kernels.csv")))
         process = self.profile()
         self.assertEqual(1, process.returncode, process.stderr)
