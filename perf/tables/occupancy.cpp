@@ -93,6 +93,10 @@ void print_table_4_2(Table& table, const nlohmann::json& provenance) {
     facts["thesis"] = printed_facts(printed);
     table.add(record, provenance, facts);
   }
+  std::printf(
+      "\nCorrected slips of [Shi], section 4.3: shared memory limits blocks, not threads; its quotient is "
+      "rounded "
+      "down in the\nminimum of all limits; and that includes the 48 warps of a multiprocessor\n");
 }
 
 /// Launch configuration of a step kernel.

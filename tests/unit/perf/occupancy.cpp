@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#if __has_include(<cuda_occupancy.h>)
+#include <cuda_occupancy.h>
+#endif
+
 #include <cmath>
 #include <iterator>
+#include <random>
 #include <string>
 
 #include "perf/tables/dissertation.hpp"
@@ -61,7 +66,7 @@ TEST(Occupancy, EqualsTheOccupancyCalculatorOfCudaForHopper) {
 }
 
 // Blocks that cudaOccMaxActiveBlocksPerMultiprocessor in cuda_occupancy.h of CUDA 13.0 gives with all shared
-// memory preferred; equal for 200 000 random blocks of each architecture.
+// memory preferred.
 TEST(Occupancy, EqualsTheOccupancyCalculatorOfCudaForAllArchitectures) {
   constexpr Block blocks[] = {{32, 32, 0},       {96, 63, 12'000}, {128, 40, 0},     {256, 60, 8'192},
                               {512, 63, 24'576}, {1024, 32, 0},    {416, 48, 1'000}, {128, 63, 49'152}};
@@ -85,6 +90,53 @@ TEST(Occupancy, EqualsTheOccupancyCalculatorOfCudaForAllArchitectures) {
   }
   EXPECT_EQ(std::size(cases) + 1, architectures().size()) << "the calculator of CUDA begins at 3.0";
 }
+
+#if __has_include(<cuda_occupancy.h>)
+/// Resident blocks by CUDA's own calculator, with all shared memory preferred; -1 for an architecture that is
+/// newer than the header.
+int blocks_by_cuda(const Architecture& on, const Block& block) {
+  const int capability = std::stoi(std::string(on.name.substr(3)));
+  cudaOccDeviceProp device;
+  device.computeMajor = capability / 10;
+  device.computeMinor = capability % 10;
+  device.maxThreadsPerBlock = largest_block;
+  device.maxThreadsPerMultiprocessor = on.threads;
+  device.regsPerBlock = device.regsPerMultiprocessor = on.registers;
+  device.warpSize = 32;
+  device.sharedMemPerBlock = 48 * 1024;
+  device.sharedMemPerMultiprocessor = static_cast<std::size_t>(on.shared_bytes);
+  device.sharedMemPerBlockOptin = static_cast<std::size_t>(on.block_shared_bytes);
+  device.reservedSharedMemPerBlock = static_cast<std::size_t>(on.reserved_bytes);
+  device.numSms = 1;
+  cudaOccFuncAttributes kernel;
+  kernel.maxThreadsPerBlock = largest_block;
+  kernel.numRegs = block.registers;
+  kernel.shmemLimitConfig = FUNC_SHMEM_LIMIT_OPTIN;
+  kernel.maxDynamicSharedSizeBytes = static_cast<std::size_t>(block.shared_bytes);
+  cudaOccDeviceState state;
+  state.cacheConfig = CACHE_PREFER_SHARED;
+  state.carveoutConfig = SHAREDMEM_CARVEOUT_MAX_SHARED;
+  cudaOccResult result{};
+  const cudaOccError error = cudaOccMaxActiveBlocksPerMultiprocessor(
+      &result, &device, &kernel, &state, block.threads, static_cast<std::size_t>(block.shared_bytes));
+  return error == CUDA_OCC_SUCCESS ? result.activeBlocksPerMultiprocessor : -1;
+}
+
+TEST(Occupancy, EqualsTheHeaderOfCudaForRandomBlocks) {
+  std::mt19937 random(1);
+  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+  for (const Architecture& on : architectures().subspan(1))  // the header begins at 3.0
+    for (int i = 0; i < 20'000; ++i) {
+      const Block block{1 + below(largest_block), 1 + below(on.thread_registers),
+                        i % 3 == 0 ? 0 : below(i % 3 == 1 ? 20'000 : 240'000)};
+      const int expected = blocks_by_cuda(on, block);
+      if (expected < 0) break;
+      ASSERT_EQ(occupancy(on, block).blocks, expected)
+          << on.name << ": " << block.threads << " threads, " << block.registers << " registers, "
+          << block.shared_bytes << " bytes";
+    }
+}
+#endif
 
 // The tables "Technical Specifications per Compute Capability" of the CUDA C++ Programming Guide.
 TEST(Occupancy, LimitsOfArchitecturesArePublishedOnes) {
