@@ -105,6 +105,18 @@ std::string read_integer(const Node& node, const Limits& limits, std::int64_t& v
   return {};
 }
 
+Codec block_codec(int& threads) {
+  Codec codec = zero_is_unset(integer_codec(threads), threads);
+  codec.read = [read = codec.read, &threads](const Node& node, const Limits& limits) {
+    const int before = threads;
+    std::string fault = read(node, limits);
+    if (!fault.empty() || threads % 32 == 0) return fault;
+    threads = before;
+    return "= " + describe(node) + " is not a multiple of 32";
+  };
+  return codec;
+}
+
 std::string read_name(const Node& node, const std::vector<std::string>& valid, std::string& value) {
   const auto* text = node.as<std::string>();
   std::string all;

@@ -86,6 +86,16 @@ Codec integer_codec(T& value) {
           back_to_default(value)};
 }
 
+/// Treats 0, or the first choice, as an absent value.
+template <class T>
+Codec zero_is_unset(Codec codec, const T& value) {
+  codec.print = [print = codec.print, &value] { return value != T{} ? print() : std::nullopt; };
+  return codec;
+}
+
+/// Number of threads of a team, a multiple of 32 within the declared limits; 0 is an absent value.
+Codec block_codec(int& threads);
+
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 

@@ -90,8 +90,10 @@ DeviceFacts device_facts() {
 #if defined(KOKKOS_ENABLE_CUDA)
   cudaDeviceProp properties;
   int driver = 0;
-  if (cudaGetDeviceProperties(&properties, Kokkos::Cuda().cuda_device()) == cudaSuccess)
+  if (cudaGetDeviceProperties(&properties, Kokkos::Cuda().cuda_device()) == cudaSuccess) {
     facts.gpu = properties.name;
+    facts.capability = std::to_string(properties.major) + "." + std::to_string(properties.minor);
+  }
   if (cudaDriverGetVersion(&driver) == cudaSuccess)
     facts.driver = std::to_string(driver / 1000) + "." + std::to_string(driver % 1000 / 10);
 #endif

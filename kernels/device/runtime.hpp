@@ -21,9 +21,10 @@ class Runtime {
 /// Facts about the software and the device of a run.
 struct DeviceFacts {
   std::string kokkos_version;
-  std::string gpu;     ///< name of the device, empty without one
-  std::string driver;  ///< CUDA driver version, empty without one
-  int threads = 1;     ///< number of threads of the OpenMP backend
+  std::string gpu;              ///< name of the device, empty without one
+  std::string driver;           ///< CUDA driver version, empty without one
+  int threads = 1;              ///< number of threads of the OpenMP backend
+  std::string capability = {};  ///< compute capability of the device, "9.0"; empty without one
 };
 
 /// Version of Kokkos, for example "4.5.1". Does not throw.

@@ -100,6 +100,9 @@ struct Contact {
   /// interval, from the displacements in it (Bridson, Fedkiw and Anderson 2002); the end of a call of
   /// `enqueue_steps` ends an interval. With 1, impulses precede every step.
   int interval = 1;
+  /// Threads of a team that resolves an interval in one launch of a device, a multiple of 32 up to 512; 0:
+  /// 512.
+  int block = 0;
 
   /// True if there is contact with bodies or itself. Does not throw.
   [[nodiscard]] bool is_enabled() const { return self || !bodies.empty(); }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/device/block_size.hpp"
 #include "kernels/fabric/contact/features.hpp"
 #include "kernels/mesh/edges.hpp"
 
@@ -26,6 +27,8 @@ void check_contact(const Parameters& p, const Require& require) {
           "contact of fabric with itself needs triangles that are higher than the thickness");
   require(not_negative(contact.friction), "friction must not be negative");
   require(contact.interval >= 1, "the interval of contact must be at least one step");
+  require(device::is_block_size(contact.block),
+          "the block of contact must be a multiple of 32 between 32 and 512");
   for (const Body& body : contact.bodies) {
     const double size = std::hypot(body.normal[0], body.normal[1], body.normal[2]);
     require(std::abs(size - 1.0) < 1e-9, "a body's normal must have unit length");

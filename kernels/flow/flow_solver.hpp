@@ -660,6 +660,7 @@ MomentumSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::momentum_setup(double 
           {_acceleration[0], _acceleration[1], _acceleration[2]},
           1.0 / _parameters.density,
           smoothness_floor,
+          tile_rows(_parameters.block),
           {}};
 }
 
@@ -747,7 +748,8 @@ ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(dou
                                         Values(),    _diffusion.has_value(),
                                         _control,    kinematic_viscosity(),
                                         fraction,    _boundary.has_outflow(),
-                                        false,       {}};
+                                        false,       tile_rows(_parameters.block),
+                                        {}};
   copy_pressure_below(setup.pressure_below);
   return setup;
 }

@@ -1,11 +1,15 @@
 #pragma once
 
+#include "kernels/device/block_size.hpp"
 #include "kernels/device/launch.hpp"
 
 namespace drogue::flow {
 
 /// Threads of a team on a device, as columns of a tile of 32 x 4 cells.
 inline constexpr int tile_x = 32, tile_y = 4;
+
+/// Rows of the tile of a team of `block` threads on a device; 0: of the default. Does not throw.
+constexpr int tile_rows(int block) { return block > 0 ? block / tile_x : tile_y; }
 
 using device::launch_cells;
 

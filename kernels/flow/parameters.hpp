@@ -98,6 +98,9 @@ struct Parameters {
   double max_dt = 0.0;  ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
   std::int64_t max_steps = 1'000'000'000;
   Driver driver = Driver::automatic;
+  /// Threads of a team of momentum stage and pressure correction on a device, a multiple of 32 up to 512; 0:
+  /// 128.
+  int block = 0;
 };
 
 }  // namespace drogue::flow

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "kernels/device/allocate.hpp"
+#include "kernels/device/block_size.hpp"
 
 namespace drogue::flow {
 
@@ -105,6 +106,7 @@ void check_parameters(const Parameters& p) {
             "a wall or inflow has three velocity expressions, or none; other sides have none");
     for (const double v : side.velocity) require(std::isfinite(v), "the velocity of a side must be finite");
   }
+  require(device::is_block_size(p.block), "block must be a multiple of 32 between 32 and 512");
   check_net_inflow(p);
 }
 

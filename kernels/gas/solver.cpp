@@ -4,6 +4,7 @@
 #include <string>
 
 #include "kernels/device/allocate.hpp"
+#include "kernels/device/block_size.hpp"
 
 namespace drogue::gas {
 
@@ -27,8 +28,7 @@ void check(const Parameters& p) {
           "both ends must be periodic, or none");
   require(p.weno_power == 1 || p.weno_power == 2, "weno_power must be 1 or 2");
   require(p.fixed_dt > 0.0 || p.cfl > 0.0, "cfl must be positive");
-  require(p.block == 0 || (p.block >= 32 && p.block <= 512 && p.block % 32 == 0),
-          "block must be a multiple of 32 between 32 and 512");
+  require(device::is_block_size(p.block), "block must be a multiple of 32 between 32 and 512");
 }
 
 }  // namespace

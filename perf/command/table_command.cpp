@@ -13,16 +13,18 @@ namespace drogue::perf {
 namespace {
 
 struct TableOptions {
-  std::string table, out;
+  std::string table, out, profile;
   std::string app;  ///< empty: that of the table
   std::string backend = "auto";
+  std::string architecture = "sm_90";
   bool quick = false;
 };
 
 /// Tables of a mini-app.
 std::vector<std::string> tables_of(const std::string& app) {
   if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling"};
-  if (app == "flow") return {"pressure", "memory", "scaling"};
+  if (app == "flow") return {"block-size", "pressure", "memory", "scaling"};
+  if (app == "parachute") return {"block-size"};
   return {"transfers", "scaling"};
 }
 
@@ -36,8 +38,10 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
                                        std::string(device::name(backend)) +
                                        "', whose teams are single threads; give --backend cuda");
   const device::Runtime runtime(kokkos);
-  const nlohmann::json here = provenance(device::device_facts());
-  if (block_size) return print_block_sizes(backend, options.quick, here);
+  const device::DeviceFacts device = device::device_facts();
+  const nlohmann::json here = provenance(device);
+  if (block_size)
+    return print_block_sizes(options.app, backend, options.quick, device.capability, options.profile, here);
   const auto print = options.table == "pressure" ? print_flow_pressure
                      : options.table == "memory" ? print_flow_memory
                      : options.app == "gas"      ? print_gas_transfers
@@ -52,19 +56,28 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
   if (options.app.empty())
     options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
   require_app(options.app);
-  if (options.app == "parachute")
-    throw Failure(ExitCode::usage, "there is no table of canopies; those of the flow have --app flow");
+  if (options.app == "parachute" && options.table != "block-size")
+    throw Failure(ExitCode::usage,
+                  "of canopies there is table block-size alone; tables of the flow have --app flow");
   if (options.app == "springs" && options.table == "block-size")
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
+  if (options.app == "options" && options.table == "block-size")
+    throw Failure(
+        ExitCode::usage,
+        "kernels of options have no block size: one or two warps, which exchange values by shuffles, "
+        "price an option");
   require_name("table of " + options.app, options.table, tables_of(options.app));
+  if (!options.profile.empty() && options.table != "occupancy" && options.table != "block-size")
+    throw Failure(ExitCode::usage, "--profile is for table occupancy and table block-size");
   run::require_writable(options.out);
   install_signal_handlers();
   Table table;
   if (options.table == "occupancy")
     table =
-        print_occupancy(provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
+        print_occupancy(options.architecture, options.profile,
+                        provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
   else if (options.table == "scaling")
     table = print_scaling(options.app, backends_of(options.backend), options.quick);
   else
@@ -86,6 +99,11 @@ Command table_command(CLI::App& program) {
   app->add_option("--app", options->app, app_help("Kernels that are measured"));
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
       ->check(CLI::IsMember(backend_choices()))
+      ->capture_default_str();
+  app->add_option("--profile", options->profile,
+                  "CSV file of ncu, or folder of them: kernels for occupancy, registers for block-size");
+  app->add_option("--architecture", options->architecture,
+                  "For occupancy: compute capability of the step kernels of gas, sm_20 to sm_121")
       ->capture_default_str();
   app->add_option("--out", options->out, "File for the records, one JSON line a row");
   app->add_flag("--quick", options->quick, "Few rows and few samples");

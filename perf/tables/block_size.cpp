@@ -1,103 +1,139 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include "common/run/statistics.hpp"
 #include "perf/measure/record.hpp"
-#include "perf/problems/sod.hpp"
-#include "perf/tables/baseline_case.hpp"
-#include "perf/tables/dissertation.hpp"
+#include "perf/models/rank_correlation.hpp"
+#include "perf/profile/kernel_profile.hpp"
+#include "perf/tables/block_forms.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
 namespace {
 
-/// Steps of a sample of some milliseconds.
-constexpr long fused_steps = 200;
-
-Case fused_case(const std::string& name, device::Backend backend, const gas::Parameters& p) {
-  const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
-  return {name,
-          device::needs_device(backend),
-          "step",
-          "launch latency, and teams that wait for room",
-          [=] {
-            *solver = gas::create_solver(backend, p);
-            return sod::steps(p, **solver, fused_steps);
-          },
-          [=] { return sod::l1_error(p, **solver); },
-          sod::tolerance(p)};
+/// Registers per thread of the kernel of a form in a profile: the most of its variants that were launched
+/// with `block`, or of all within the launch bounds; without any, those that the bounds allow.
+int registers_of(const std::vector<KernelProfile>& profile, const BlockForm& form, const Block& block) {
+  int of_block = 0, of_all = 0;
+  for (const KernelProfile& kernel : profile) {
+    if (kernel.kernel != form.kernel || kernel.registers > block.registers) continue;
+    of_all = std::max(of_all, kernel.registers);
+    if (kernel.threads == block.threads) of_block = std::max(of_block, kernel.registers);
+  }
+  return of_block > 0 ? of_block : of_all > 0 ? of_all : block.registers;
 }
 
-/// Baseline solver or fused step; records name them "seed" and "step".
-enum class Form { baseline, fused };
-constexpr const char* name_of(Form form) { return form == Form::baseline ? "seed" : "step"; }
-
-/// Rows and columns of the table.
-struct Axes {
-  std::vector<int> cells, blocks;
+/// Block with its occupancy.
+struct Predicted {
+  Block block;
+  Occupancy occupancy;
 };
 
-Axes axes(bool quick) {
-  if (quick) return {{1024, 8192}, {32, 128, 512}};
-  Axes all;
-  for (const dissertation::TransferRow& row : dissertation::table_5_5) all.cells.push_back(row.cells);
-  for (const int block : dissertation::figure_4_4_blocks) all.blocks.push_back(block);
-  return all;
+/// Predictions for all blocks of a form.
+std::vector<Predicted> predictions(const Architecture& on, const BlockForm& form,
+                                   const std::vector<KernelProfile>& profile) {
+  std::vector<Predicted> list;
+  for (const int threads : form.blocks) {
+    Block block = form.resources(threads);
+    block.registers = registers_of(profile, form, block);
+    Occupancy o = occupancy(on, block);
+    if (form.most_blocks > 0 && o.blocks > form.most_blocks) {
+      o.blocks = form.most_blocks;
+      o.threads = o.blocks * threads;
+      o.occupancy = static_cast<double>(o.threads) / on.threads;
+    }
+    list.push_back({block, o});
+  }
+  return list;
 }
 
-/// Times the flux kernel alone for the baseline solver, as in the figure, and the whole fused step otherwise.
-/// The fused step runs as a graph, because the persistent driver divides the mesh by multiprocessors, not by
-/// blocks.
-Case case_of(device::Backend backend, Form form, int cells, int block) {
-  gas::Parameters p = sod::parameters(cells);
-  p.block = block;
-  p.driver = gas::Driver::graph;
-  const std::string name = "gas-block/" + std::string(device::name(backend)) + "/" + name_of(form) + "/" +
-                           std::to_string(block) + "/" + std::to_string(cells);
-  if (form == Form::fused) return fused_case(name, backend, p);
-  return baseline_case(name, "launch latency, and blocks that wait for room", backend, p,
-                       [](const gas::PhaseTimes& times) {
-                         return std::map<std::string, double>{{"compute", times.compute}};
-                       });
+/// States whether the order of the speeds is that of the occupancies.
+void print_explanation(const std::vector<Predicted>& predicted, const std::vector<const Record*>& row) {
+  std::vector<double> occupancies, speeds;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    if (!row[k]->passed() || row[k]->samples.empty()) continue;
+    occupancies.push_back(predicted[k].occupancy.occupancy);
+    speeds.push_back(1.0 / run::median(row[k]->samples));
+  }
+  if (speeds.size() < 2) return;
+  const RankCorrelation found = rank_correlation(occupancies, speeds);
+  if (std::isnan(found.rho))
+    std::printf("  one occupancy: it explains nothing");
+  else
+    std::printf("  rho %+.2f, p %.3f: occupancy %s the order", found.rho, found.probability,
+                found.probability <= 0.05 ? "explains" : "does not explain");
 }
 
 /// Prints the records of one form, mesh by mesh; `record` is the first.
-void print_form(Form form, const Axes& axes, const Record* record) {
-  std::printf("\n%s, microseconds per step (median); cells down, threads of a block across\n%8s",
-              form == Form::baseline ? "The flux kernel of [Shi], three stages"
-                                     : "The fused step, one graph per step",
-              "");
-  for (const int block : axes.blocks) std::printf("%10d", block);
-  for (const int cells : axes.cells) {
-    std::printf("\n%8d", cells);
-    for (std::size_t k = 0; k < axes.blocks.size(); ++k, ++record)
+void print_form(const BlockForm& form, const std::vector<Predicted>& predicted, const Record* record) {
+  std::printf("\n%s, microseconds per %s (median); cells down, threads of a block across\n%10s",
+              form.title.c_str(), form.unit.c_str(), "");
+  for (const int block : form.blocks) std::printf("%10d", block);
+  std::printf("\n%10s", "registers");
+  for (const Predicted& p : predicted) std::printf("%10d", p.block.registers);
+  std::printf("\n%10s", "blocks");
+  for (const Predicted& p : predicted) std::printf("%10d", p.occupancy.blocks);
+  std::printf("\n%10s", "occupancy");
+  for (const Predicted& p : predicted) std::printf("%8.1f %%", 100.0 * p.occupancy.occupancy);
+  for (const std::int64_t cells : form.cells) {
+    std::printf("\n%10lld", static_cast<long long>(cells));
+    std::vector<const Record*> row;
+    for (std::size_t k = 0; k < form.blocks.size(); ++k, ++record) {
+      row.push_back(record);
       std::printf("%9.2f%c", 1e6 * run::median(record->samples), record->passed() ? ' ' : '!');
+    }
+    print_explanation(predicted, row);
   }
   std::printf("\n");
 }
 
+nlohmann::json facts_of(device::Backend backend, const BlockForm& form, std::int64_t cells,
+                        const Predicted& p) {
+  return {{"backend", device::name(backend)}, {"form", form.name},
+          {"block", p.block.threads},         {"cells", cells},
+          {"registers", p.block.registers},   {"shared_bytes", p.block.shared_bytes},
+          {"blocks", p.occupancy.blocks},     {"occupancy", p.occupancy.occupancy}};
+}
+
 }  // namespace
 
-Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::json& provenance) {
-  const Axes all = axes(quick);
+Table print_block_sizes(const std::string& app, device::Backend backend, bool quick,
+                        const std::string& capability, const std::string& profile,
+                        const nlohmann::json& provenance) {
+  const std::vector<KernelProfile> profiled =
+      profile.empty() ? std::vector<KernelProfile>{} : read_profiles(profile);
+  const Architecture* known = find_architecture(capability);
+  const Architecture on = known != nullptr ? *known : hopper();
+  const std::vector<BlockForm> forms = block_forms(app, backend, quick);
   std::vector<Case> cases;
   std::vector<nlohmann::json> facts;
-  for (const Form form : {Form::baseline, Form::fused})
-    for (const int cells : all.cells)
-      for (const int block : all.blocks) {
-        cases.push_back(case_of(backend, form, cells, block));
-        facts.push_back({{"backend", device::name(backend)},
-                         {"form", name_of(form)},
-                         {"block", block},
-                         {"cells", cells}});
+  std::vector<std::vector<Predicted>> predicted;
+  for (const BlockForm& form : forms) {
+    predicted.push_back(predictions(on, form, profiled));
+    for (std::size_t mesh = 0; mesh < form.cells.size(); ++mesh)
+      for (const Predicted& p : predicted.back()) {
+        cases.push_back(form.make(form.records + "/" + std::string(device::name(backend)) + "/" + form.name +
+                                      "/" + std::to_string(p.block.threads) + "/" +
+                                      std::to_string(form.cells[mesh]),
+                                  mesh, p.block.threads));
+        facts.push_back(facts_of(backend, form, form.cells[mesh], p));
       }
+  }
   const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
   Table table;
   for (std::size_t i = 0; i < records.size(); ++i) table.add(records[i], provenance, facts[i]);
-  std::printf("Figure 4.4 on %s; ! marks a time whose result failed its check\n",
-              std::string(device::name(backend)).c_str());
-  print_form(Form::baseline, all, records.data());
-  print_form(Form::fused, all, records.data() + records.size() / 2);
+  std::printf(
+      "%s on %s: times beside the occupancy that the model predicts for %s, registers by %s;\n"
+      "! marks a time whose result failed its check; rho: rank correlation of occupancy and speed, p: the\n"
+      "probability of one at least as large by chance, 0.05 or less where occupancy explains the order\n",
+      app == "gas" ? "Figure 4.4" : "Block sizes", std::string(device::name(backend)).c_str(), on.name.data(),
+      profile.empty() ? "launch bounds" : profile.c_str());
+  const Record* first = records.data();
+  for (std::size_t k = 0; k < forms.size(); ++k) {
+    print_form(forms[k], predicted[k], first);
+    first += forms[k].cells.size() * forms[k].blocks.size();
+  }
   return table;
 }
 

@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include "common/program/failure.hpp"
+#include "common/program/program.hpp"
+#include "common/scene/nearest.hpp"
 #include "kernels/gas/tile/team_shape.hpp"
+#include "perf/profile/kernel_profile.hpp"
 #include "perf/tables/dissertation.hpp"
 #include "perf/tables/tables.hpp"
 
@@ -29,9 +35,9 @@ nlohmann::json facts_of(const Architecture& on, const Block& block, const Occupa
 }
 
 /// Record without samples; its error is the number of mismatches.
-Record untimed(const Architecture& on, const Block& block, const std::string& kernel, int mismatches) {
+Record untimed(const Architecture& on, const std::string& kernel, int mismatches) {
   Record record;
-  record.name = "occupancy/" + on.name + "/" + std::to_string(block.threads) + kernel;
+  record.name = "occupancy/" + std::string(on.name) + "/" + kernel;
   record.unit_of_work = "step";
   record.bound = "what a multiprocessor holds";
   record.error = mismatches;
@@ -75,7 +81,7 @@ void print_table_4_2(Table& table, const nlohmann::json& provenance) {
     const Block block{printed.block, dissertation::flux_registers,
                       dissertation::flux_shared_bytes(printed.block)};
     const Occupancy o = occupancy(on, block);
-    const Record record = untimed(on, block, "", differences(printed, block, o));
+    const Record record = untimed(on, std::to_string(block.threads), differences(printed, block, o));
     std::printf(
         "%5d  %5d (%5d)   %6d (%2d)   %4d (%2d)  %3d (%d)  %3d (%d)   %3d (%3d)     %4d (%4d)     %4.1f "
         "(%4.1f)%s\n",
@@ -87,6 +93,10 @@ void print_table_4_2(Table& table, const nlohmann::json& provenance) {
     facts["thesis"] = printed_facts(printed);
     table.add(record, provenance, facts);
   }
+  std::printf(
+      "\nCorrected slips of [Shi], section 4.3: shared memory limits blocks, not threads; its quotient is "
+      "rounded "
+      "down in the\nminimum of all limits; and that includes the 48 warps of a multiprocessor\n");
 }
 
 /// Launch configuration of a step kernel.
@@ -108,20 +118,23 @@ std::vector<StepKernel> step_kernels() {
   return kernels;
 }
 
-void print_step_kernels(Table& table, const nlohmann::json& provenance) {
-  const Architecture on = hopper();
+/// `on` is hopper(), for which the launch bounds are chosen, or an architecture of no device in particular.
+void print_step_kernels(Table& table, const Architecture& on, const nlohmann::json& provenance) {
+  const bool is_tuned = on.multiprocessors > 0;
+  const std::string device = is_tuned ? ", " + std::to_string(on.multiprocessors) + " multiprocessors" : "";
   std::printf(
-      "\nThe fused step of drogue-gas on %s, %d multiprocessors; the last row is that of %lld cells and "
-      "more\n\n"
+      "\nThe fused step of drogue-gas on %s%s; the last row is that of %lld cells and more\n\n"
       "block  slots  registers  shared bytes  by registers  by shared  by threads  by limit  blocks  "
       "threads/SM  "
       "threads/device    %% of the threads\n",
-      on.name.c_str(), on.multiprocessors, static_cast<long long>(gas::large_mesh));
+      on.name.data(), device.c_str(), static_cast<long long>(gas::large_mesh));
   for (const StepKernel& kernel : step_kernels()) {
     const Block block{kernel.team, kernel.registers,
                       gas::shared_bytes(gas::device_rows, kernel.slots, kernel.team)};
     const Occupancy o = occupancy(on, block);
-    const Record record = untimed(on, block, kernel.name, std::max(0, kernel.least_teams - o.blocks));
+    const Record record =
+        untimed(on, std::to_string(block.threads) + kernel.name + (is_tuned ? "" : "/gas-step"),
+                is_tuned ? std::max(0, kernel.least_teams - o.blocks) : 0);
     std::printf("%5d  %5d  %9d  %12d  %12d  %9d  %10d  %8d  %6d  %10d  %14d  %5.1f%s\n", block.threads,
                 kernel.slots, block.registers, block.shared_bytes, o.by_registers, o.by_shared_memory,
                 o.by_threads, o.by_limit, o.blocks, o.threads, o.device_threads, 100.0 * o.occupancy,
@@ -133,12 +146,149 @@ void print_step_kernels(Table& table, const nlohmann::json& provenance) {
   }
 }
 
+/// Architecture of a profiled device. Throws Failure(invalid_scene).
+Architecture architecture_of(const KernelProfile& kernel) {
+  const Architecture* known = find_architecture(kernel.capability);
+  if (known == nullptr)
+    throw Failure(ExitCode::invalid_scene,
+                  kernel.place + ": the model of occupancy has no compute capability '" + kernel.capability +
+                      "'; its last one is " + std::string(architectures().back().name));
+  Architecture on = *known;
+  on.multiprocessors = kernel.multiprocessors;
+  return on;
+}
+
+/// Kernel of a profile beside the model.
+struct ProfiledKernel {
+  Architecture on;
+  Block block;
+  Occupancy predicted;
+  int achieved;      ///< resident blocks that ncu finds possible for this launch
+  double mean;       ///< resident blocks by counters; NaN: not measured
+  std::string name;  ///< label without the namespace of the project
+  int mismatches;    ///< blocks of difference, and 1 if more were resident than predicted
+};
+
+/// The counters of warps and of cycles are read one after the other.
+constexpr double counter_tolerance = 0.02;
+
+ProfiledKernel compare_with_model(const KernelProfile& kernel) {
+  ProfiledKernel k{.on = architecture_of(kernel),
+                   .block = {kernel.threads, kernel.registers, kernel.shared_bytes},
+                   .predicted = {},
+                   .achieved = std::min(
+                       {kernel.by_registers, kernel.by_shared_memory, kernel.by_threads, kernel.by_limit}),
+                   .mean = 0.0,
+                   .name = kernel.kernel,
+                   .mismatches = 0};
+  k.predicted = occupancy(k.on, k.block, kernel.carve_out);
+  const int warps = (kernel.threads + 31) / 32;
+  k.mean = kernel.active_fraction * k.on.threads / (32.0 * warps);
+  const bool exceeds = k.mean > (1.0 + counter_tolerance) * k.predicted.blocks;
+  k.mismatches = std::abs(k.achieved - k.predicted.blocks) + (exceeds ? 1 : 0);
+  constexpr std::string_view project = "drogue::";
+  if (k.name.starts_with(project)) k.name.erase(0, project.size());
+  return k;
+}
+
+nlohmann::json profiled_facts(const KernelProfile& kernel, const ProfiledKernel& k) {
+  nlohmann::json facts = facts_of(k.on, k.block, k.predicted);
+  facts["kernel"] = kernel.kernel;
+  facts["limited_by"] = limits_of(k.predicted);
+  facts["launches"] = kernel.launches;
+  facts["achieved"] = {{"blocks_by_registers", kernel.by_registers},
+                       {"blocks_by_shared_memory", kernel.by_shared_memory},
+                       {"blocks_by_threads", kernel.by_threads},
+                       {"blocks_by_limit", kernel.by_limit},
+                       {"blocks", k.achieved}};
+  if (kernel.carve_out > 0) facts["carve_out_bytes"] = kernel.carve_out;
+  if (kernel.grid > 0.0) facts["grid"] = kernel.grid;
+  if (!std::isnan(k.mean)) facts["achieved"]["mean_blocks"] = k.mean;
+  return facts;
+}
+
+/// States all four limits where the least ones differ.
+void print_difference(const KernelProfile& kernel, const ProfiledKernel& k) {
+  const Occupancy& o = k.predicted;
+  std::printf(
+      "    %s: blocks by registers %d (ncu %d), shared memory %d (%d) of %d bytes, threads %d (%d), limit %d "
+      "(%d)\n",
+      kernel.place.c_str(), o.by_registers, kernel.by_registers, o.by_shared_memory, kernel.by_shared_memory,
+      kernel.carve_out > 0 ? kernel.carve_out : k.on.shared_bytes, o.by_threads, kernel.by_threads,
+      o.by_limit, kernel.by_limit);
+}
+
+Failure unknown_architecture(const std::string& name) {
+  std::vector<std::string> valid;
+  for (const Architecture& known : architectures()) valid.emplace_back(known.name);
+  return {ExitCode::usage, "there is no architecture '" + name + "'; " + scene::suggestion(name, valid)};
+}
+
+/// Names the areas of which no kernel was profiled.
+void print_missing(const std::vector<KernelProfile>& kernels) {
+  std::string missing;
+  for (const char* area : {"gas", "fabric", "options", "flow", "linear", "coupling"})
+    if (std::ranges::none_of(kernels, [&](const KernelProfile& k) {
+          return k.kernel.starts_with("drogue::" + std::string(area) + "::");
+        }))
+      missing += (missing.empty() ? "" : ", ") + std::string(area);
+  if (!missing.empty()) std::printf("The profile has no kernel of %s.\n", missing.c_str());
+}
+
+void print_profile(Table& table, const std::string& path, const std::vector<KernelProfile>& kernels,
+                   const nlohmann::json& provenance) {
+  std::printf(
+      "\nKernels of %s: blocks that a multiprocessor holds, predicted from\nregisters, shared memory and "
+      "block; "
+      "achieved, by ncu's limits of the launch; and their mean while the\nmultiprocessors worked\n\n"
+      "%-44s %6s %6s %9s %12s %9s %8s %6s %6s  %s\n",
+      path.c_str(), "kernel", "device", "block", "registers", "shared bytes", "predicted", "achieved", "mean",
+      "%", "limited by");
+  std::size_t right = 0;
+  for (const KernelProfile& kernel : kernels) {
+    const ProfiledKernel k = compare_with_model(kernel);
+    std::string name = k.name;
+    for (const int part : {kernel.threads, kernel.registers, kernel.shared_bytes})
+      name += "/" + std::to_string(part);
+    if (kernel.carve_out > 0) name += "/" + std::to_string(kernel.carve_out);
+    const Record record = untimed(k.on, name, k.mismatches);
+    std::printf("%-44s %6s %6d %9d %12d %9d %8d %6.2f %6.1f  %s%s\n", k.name.c_str(), k.on.name.data(),
+                kernel.threads, kernel.registers, kernel.shared_bytes, k.predicted.blocks, k.achieved, k.mean,
+                100.0 * k.predicted.occupancy, limits_of(k.predicted).c_str(),
+                record.passed() ? "" : "  FAILED");
+    if (record.passed())
+      ++right;
+    else
+      print_difference(kernel, k);
+    table.add(record, provenance, profiled_facts(kernel, k));
+  }
+  std::printf("\n%zu of %zu kernels are predicted to the block.\n", right, kernels.size());
+  print_missing(kernels);
+  if (right != kernels.size())
+    print_notice("drogue-perf",
+                 std::to_string(kernels.size() - right) +
+                     " kernels of the profile contradict the model; their rows are marked FAILED");
+}
+
 }  // namespace
 
-Table print_occupancy(const nlohmann::json& provenance) {
+Table print_occupancy(const std::string& architecture, const std::string& profile,
+                      const nlohmann::json& provenance) {
+  const Architecture* known = find_architecture(architecture);
+  if (known == nullptr) throw unknown_architecture(architecture);
+  const Architecture on = known->name == hopper().name ? hopper() : *known;
+  const std::vector<KernelProfile> kernels =
+      profile.empty() ? std::vector<KernelProfile>{} : read_profiles(profile);
   Table table;
   print_table_4_2(table, provenance);
-  print_step_kernels(table, provenance);
+  print_step_kernels(table, on, provenance);
+  if (profile.empty())
+    std::printf(
+        "\nAchieved blocks need CUDA: scripts/profile_occupancy.sh profiles the kernels of all mini-apps on "
+        "a GPU "
+        "by ncu,\nand --profile reads its files here.\n");
+  else
+    print_profile(table, profile, kernels, provenance);
   return table;
 }
 

@@ -21,9 +21,12 @@ struct Table {
 // The functions below print to standard output and block until all samples are measured. They throw what the
 // solvers throw.
 
-/// Table 4.2 of [Shi] by the occupancy model, and the occupancy of the step kernels of gas on an sm_90. The
-/// records have no samples; their error is the number of mismatches.
-Table print_occupancy(const nlohmann::json& provenance);
+/// Table 4.2 of [Shi] by the occupancy model, the occupancy of the step kernels of gas on `architecture`,
+/// such as "sm_90", and all kernels of `profile`, a file or folder for `read_profiles`, beside the model;
+/// empty: none. The records have no samples; their error is the number of mismatches. Throws as
+/// `read_profiles`, and Failure(usage) for an unknown architecture.
+Table print_occupancy(const std::string& architecture, const std::string& profile,
+                      const nlohmann::json& provenance);
 
 /// Table 5.5: copy to the device, compute and copy to the host by the baseline solver, from pageable memory
 /// and, on a GPU, pinned memory.
@@ -49,8 +52,12 @@ Table print_flow_memory(device::Backend backend, bool quick, const nlohmann::jso
 /// Failure as `run` does, and interrupted after a signal.
 Table print_scaling(const std::string& app, const std::vector<device::Backend>& backends, bool quick);
 
-/// Figure 4.4: time per step against block size and mesh, for the baseline solver and for the fused step.
-/// `backend` must be a GPU.
-Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::json& provenance);
+/// Time against block size and mesh for the kernels of `block_forms`, figure 4.4 for gas, beside the
+/// occupancy that the model predicts. `backend` must be a GPU. `capability`: its compute capability; an
+/// unknown one is replaced by 9.0. `profile`: for `read_profiles`, for registers of the kernels; empty: those
+/// of their launch bounds.
+Table print_block_sizes(const std::string& app, device::Backend backend, bool quick,
+                        const std::string& capability, const std::string& profile,
+                        const nlohmann::json& provenance);
 
 }  // namespace drogue::perf

@@ -134,6 +134,9 @@ BAD_LINES = [
 
 # Assignments, and words of the message, which names the one at fault.
 BAD_SETS = [
+    (["tuning.stage.block=100"], "tuning.stage.block", ["= 100 is not a multiple of 32"]),
+    (["tuning.stage.block=1024"], "tuning.stage.block", ["32 .. 512"]),
+    (["tuning.contact.block=64"], "tuning.contact", ["contact = true"]),
     (["flow.diffusion=implicit"], "flow.diffusion", ["explicit", "crank-nicolson"]),
     (["flow.diffusion=crank-nicolson", "flow.time=rk3"], "flow.diffusion", ["ab2"]),
     (["fluid.velocity=[1, 'sin(t)', 0]", "grid.boundary={x='inflow',y=['slip','inflow'],z='periodic'}", "grid.wall_velocity={}"],

@@ -161,6 +161,15 @@ def blocks(machine=H200):
     return found
 
 
+def flow_blocks(machine=H200):
+    found = []
+    for kind, form, cells in (("flow", "momentum", 262144), ("parachute", "contact", 432000)):
+        for block in (32, 128, 512):
+            facts = {"backend": "cuda", "form": form, "block": block, "cells": cells, "occupancy": 0.25}
+            found.append(record(f"{kind}-block/cuda/{form}/{block}/{cells}", 1e-4 + 1e-7 * block, machine, facts))
+    return found
+
+
 def springs_solutions(machine=EPYC):
     """Errors n^-1 of n vertices with masses by area, n^-0.5 with equal masses; for strings the squares of these."""
     found = []

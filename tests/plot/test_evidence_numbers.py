@@ -257,6 +257,13 @@ class Devices(Folder):
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Block size, CUDA"]
         self.assertEqual(rows[1][:4], ["1\u2009024", "6.35", "6.24", "6.02"])
 
+    def test_block_sizes_of_flow_and_canopies_have_own_pictures(self):
+        _, files = self.page(records.flow_blocks(), "flow")
+        self.assertEqual(
+            files,
+            ["blocks_flow_cuda_nvidia-h200.png", "blocks_parachute_cuda_nvidia-h200.png", "flow.html"],
+        )
+
 
 class Springs(Folder):
     def springs_page(self, lines):

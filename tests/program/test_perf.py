@@ -1,7 +1,9 @@
 """drogue-perf: subcommands, records and usage errors."""
 
 import os
+import pathlib
 import re
+import shlex
 import signal
 import statistics
 import subprocess
@@ -145,6 +147,93 @@ class Occupancy(perf_program.PerfTest):
             self.assertEqual((blocks, registers), (facts["blocks"], facts["registers"]), name)
             self.assertLessEqual(facts["least_blocks"], facts["blocks"])
             self.assertLessEqual(facts["shared_bytes"], 48 * 1024)
+
+
+class OtherArchitectures(perf_program.PerfTest):
+    def test_step_kernels_on_another_architecture(self):
+        text = self.expect(0, "table", "occupancy", "--architecture", "sm_86", "--out", "rows.jsonl").stdout
+        self.assertIn("The fused step of drogue-gas on sm_86;", text)
+        facts = {record["case"]: record["facts"] for record in self.records("rows.jsonl")}
+        # 64 Ki registers leave room for three blocks of 128 threads, 100 KiB for two of the large tile.
+        self.assertEqual(3, facts["occupancy/sm_86/128/gas-step"]["blocks"])
+        self.assertEqual((4, 2), tuple(facts["occupancy/sm_86/128/large-mesh/gas-step"][key]
+                                       for key in ("blocks_by_registers", "blocks")))
+        self.assertIn('did you mean "sm_90"?', self.expect(2, "table", "occupancy", "--architecture", "sm90").stderr)
+
+
+class ProfiledOccupancy(perf_program.PerfTest):
+    """Kernels of a file in the layout of ncu beside the model."""
+
+    def setUp(self):
+        super().setUp()
+        source = pathlib.Path(os.environ["DROGUE_SOURCE"])
+        self.profile = (source / "tests/support/profiles/kernels.csv").read_text(encoding="utf-8")
+
+    def rows(self, code, profile):
+        (self.folder / "kernels.csv").write_text(profile, encoding="utf-8")
+        text = self.expect(code, "table", "occupancy", "--profile", "kernels.csv", "--out", "rows.jsonl").stdout
+        return text, [record for record in self.records("rows.jsonl") if "achieved" in record["facts"]]
+
+    def test_every_kernel_is_predicted_to_the_block(self):
+        text, records = self.rows(0, self.profile)
+        labels = set(re.findall(r"drogue::(?!device)\w+::\w+Functor", self.profile))
+        self.assertEqual(labels, {record["facts"]["kernel"] for record in records})
+        self.assertIn(f"{len(records)} of {len(records)} kernels are predicted to the block.", text)
+        for record in records:
+            facts = record["facts"]
+            self.assertEqual(("passed", 0.0), (record["check"], record["error"]))
+            self.assertEqual(facts["blocks"], facts["achieved"]["blocks"], facts)
+            self.assertEqual(facts["blocks"], min(facts["achieved"][key] for key in facts["achieved"] if "_by_" in key))
+            self.assertLessEqual(facts["achieved"]["mean_blocks"], 1.02 * facts["blocks"])
+            self.assertLess(0.0, facts["achieved"]["mean_blocks"])
+
+    def test_reports_a_kernel_with_other_blocks(self):
+        # The kernel of flow, whose registers leave room for four blocks, would hold five.
+        wrong = self.profile.replace('"32","4","7","16","126"', '"32","5","7","16","126"')
+        self.assertNotEqual(self.profile, wrong)
+        text, records = self.rows(5, wrong)
+        failed, = (record for record in records if record["check"] == "failed")
+        self.assertEqual(("drogue::flow::MomentumFunctor", 1.0), (failed["facts"]["kernel"], failed["error"]))
+        self.assertIn("blocks by registers 4 (ncu 5)", text)
+        self.assertIn(f"{len(records) - 1} of {len(records)} kernels", text)
+
+    def test_reports_more_resident_blocks_than_predicted(self):
+        wrong = self.profile.replace('"25.00","21.30"', '"25.00","26.30"')
+        self.assertNotEqual(self.profile, wrong)
+        _, records = self.rows(5, wrong)
+        failed, = (record for record in records if record["check"] == "failed")
+        self.assertEqual(1.0, failed["error"])
+
+    def test_names_areas_without_a_kernel(self):
+        lines = [line for line in self.profile.splitlines(True) if "drogue::options" not in line]
+        self.assertIn("The profile has no kernel of options.", self.rows(0, "".join(lines))[0])
+
+    def test_rejects_what_is_no_profile(self):
+        for profile, hint in (("", "no kernel"), (self.profile.rsplit(",", 3)[0] + "\n", "is the file truncated?"),
+                              (self.profile[:-3], "does not end on its line"),
+                              (self.profile.replace('"9.0"', '"4.2"'), "no compute capability '4.2'")):
+            with self.subTest(hint):
+                (self.folder / "kernels.csv").write_text(profile, encoding="utf-8")
+                self.assertIn(hint, self.expect(3, "table", "occupancy", "--profile", "kernels.csv").stderr)
+        self.assertIn("missing.csv", self.expect(2, "table", "occupancy", "--profile", "missing.csv").stderr)
+        self.assertIn("for table occupancy",
+                      self.expect(2, "table", "transfers", "--profile", "kernels.csv").stderr)
+
+    def test_command_profiles_the_kernels_of_a_case(self):
+        words = shlex.split(self.expect(0, "ncu", "gas-step/cuda/65536", "--out", "a.csv").stdout)
+        self.assertEqual("ncu", words[0])
+        self.assertEqual("regex:drogue::gas", words[words.index("--kernel-name") + 1])
+        self.assertEqual(["run", "--filter", "^gas-step/cuda/65536$"], words[-3:])
+        self.assertEqual(perf_program.PROGRAM.resolve(), pathlib.Path(words[-4]))
+        # The table reads what the command collects.
+        for metric in words[words.index("--metrics") + 1].split(","):
+            self.assertIn(f'"{metric}"', self.profile)
+        self.assertIn("no case on cuda", self.expect(2, "ncu", "gas-step/serial/1024").stderr)
+
+    @unittest.skipIf("DROGUE_CUDA:BOOL=ON" in perf_program.CACHE, "a CUDA build knows the names of its cases")
+    def test_command_exists_for_every_kind_of_case(self):
+        for kind in {name.partition("/")[0] for name in self.expect(0, "list").stdout.split()}:
+            self.expect(0, "ncu", kind + "/cuda")
 
 
 class WorkPrecision(perf_program.PerfTest):
@@ -345,9 +434,10 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
+                            (["table", "block-size", "--app", "options"], "have no block size"),
                             (["table", "transfers", "--app", "parachute"], "have --app flow"),
                             (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling"),
-                            (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory, scaling"),
+                            (["table", "occupancy", "--app", "flow"], "valid names are block-size, pressure, memory, scaling"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
                              "no problem matches 'day$'; with --quick there are thesis, merton"),
                             (["work-precision", "--app", "options", "--filter", "("], "is not a valid regular expression"),
@@ -373,8 +463,9 @@ class Refusals(perf_program.PerfTest):
                 self.assertIn("missing/records.jsonl", process.stderr)
 
     def test_rejects_block_sizes_on_a_host_backend(self):
-        self.assertIn("means nothing to the host backend 'serial'",
-                      self.expect(2, "table", "block-size", "--backend", "serial").stderr)
+        for app in ("gas", "flow", "parachute"):
+            self.assertIn("means nothing to the host backend 'serial'",
+                          self.expect(2, "table", "block-size", "--app", app, "--backend", "serial").stderr)
 
     def test_reports_an_absent_backend(self):
         if "DROGUE_CUDA:BOOL=ON" in perf_program.CACHE:

@@ -39,7 +39,7 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   }
   void end_interval(const Points& x, const Points& v) override {
     if constexpr (Grid::available)
-      if (_grid) return _grid->template launch<Resolution::team_size, 1>(Resolution{{_views}, x, v});
+      if (_grid) return _grid->template launch<Resolution::largest_team, 1>(Resolution{{_views}, x, v});
     graphs(x, v).end.launch();
   }
   void reset() override;
@@ -204,7 +204,7 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   if constexpr (Grid::available) {
     const int teams = Grid::most_teams(_instance);
     if (t.by_interval && teams > 0 && (p.driver == Driver::automatic || p.driver == Driver::persistent))
-      _grid.emplace(_instance, teams, Resolution::team_size, 0, 0);
+      _grid.emplace(_instance, teams, p.contact.block > 0 ? p.contact.block : Resolution::largest_team, 0, 0);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/device/block_size.hpp"
 #include "kernels/device/persistent_kernel.hpp"
 #include "kernels/device/relaxed_access.hpp"
 #include "kernels/fabric/contact/broad_phase.hpp"
@@ -15,8 +16,8 @@ template <class ExecutionSpace>
 struct PersistentResolutionFunctor {
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
 
-  /// Threads of a team: detection needs some 100 registers of each.
-  static constexpr int team_size = 512;
+  /// Default number of threads of a team, and the largest: detection needs some 100 registers of each.
+  static constexpr int largest_team = device::largest_block;
 
   /// Compilers do not inline it: a copy of its views on the device would lie in local memory.
   DetectConstraintsFunctor<ExecutionSpace> detect;

@@ -26,6 +26,7 @@ struct MomentumSetup {
   double acceleration[3];  ///< m/s^2
   double specific_volume;  ///< 1/density, m^3/kg
   double epsilon;          ///< of the nonlinear weights, m^2/s^2
+  int rows;                ///< of the tile of a team on a device
   StageWeights weights;
 };
 

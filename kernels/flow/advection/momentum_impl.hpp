@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carr
 /// planes.
 template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
 struct MomentumFunctor {
-  using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<tile_x * tile_y, 4>>;
+  using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<device::largest_block, 1>>;
   using Member = typename Policy::member_type;
 
   MomentumSetup<ExecutionSpace> setup;
@@ -34,7 +34,7 @@ struct MomentumFunctor {
     const StageFactors factors = stage_factors(setup, setup.control());
     const int tile = member.league_rank();
     const int i = tile % tiles_x * tile_x + member.team_rank() % tile_x;
-    const int j = tile / tiles_x % tiles_y * tile_y + member.team_rank() / tile_x;
+    const int j = tile / tiles_x % tiles_y * setup.rows + member.team_rank() / tile_x;
     const int k_begin = tile / (tiles_x * tiles_y) * planes;
     if (i >= g.n[0] || j >= g.n[1]) return;
     const int k_end = k_begin + planes < g.n[2] ? k_begin + planes : g.n[2];
@@ -218,12 +218,12 @@ void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionS
     Kokkos::parallel_for("drogue::flow::momentum", policy, Functor{setup, slabs, planes});
   } else {
     using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth>;
-    const int tiles_x = parts(g.n[0], tile_x), tiles_y = parts(g.n[1], tile_y);
+    const int tiles_x = parts(g.n[0], tile_x), tiles_y = parts(g.n[1], setup.rows);
     // Long marches evaluate fewer fluxes twice; of short ones more teams are under way, on a small grid and
     // at the end. Central fluxes cost less than that.
     const int longest = scheme == Advection::central ? 2 : 8;
     const int planes = march_planes(tiles_x * tiles_y, g.n[2], longest, 4096);
-    typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes), tile_x * tile_y);
+    typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes), tile_x * setup.rows);
     Kokkos::parallel_for(
         "drogue::flow::momentum",
         Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),

@@ -33,6 +33,7 @@ struct ProjectionSetup {
   double step_fraction;   ///< of dt that the projection covers
   bool resists_backflow;  ///< false: the pressure on outflows is zero
   bool ends_step;         ///< the result is the state after the step, whose rate determines the next dt
+  int rows;               ///< of the tile of a team on a device
   /// Pressure of the layer of cells below the low side along each axis, m^2/s^2; null unless another rank
   /// holds it.
   const double* pressure_below[3];
@@ -185,11 +186,11 @@ void launch_correction(const ExecutionSpace& space, const ProjectionSetup<Execut
   const auto parts = [](int count, int size) { return (count + size - 1) / size; };
   const bool on_host = device::is_host<ExecutionSpace>;
   // A team of a host treats rows. A tile of a device marches along z, so that few teams update the maximum.
-  const int width = on_host ? n[0] : tile_x, height = on_host ? 1 : tile_y;
+  const int width = on_host ? n[0] : tile_x, height = on_host ? 1 : setup.rows;
   const int tiles_x = parts(n[0], width), tiles_y = parts(n[1], height);
   const int planes = on_host ? 1 : march_planes(tiles_x * tiles_y, n[2], 16);
   typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes),
-                                  on_host ? 1 : tile_x * tile_y);
+                                  on_host ? 1 : width * height);
   Kokkos::parallel_for(
       "drogue::flow::correction",
       Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),

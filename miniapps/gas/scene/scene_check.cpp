@@ -48,12 +48,6 @@ void check_boundary(const Table& root, const gas::Parameters& parameters) {
   contradict(root, here, here + " = \"periodic\" needs " + other + " = \"periodic\" too");
 }
 
-void check_tuning(const Table& root, const gas::Parameters& parameters) {
-  if (parameters.block % 32 == 0) return;
-  contradict(root, "tuning.stage.block",
-             "tuning.stage.block = " + std::to_string(parameters.block) + " is not a multiple of 32");
-}
-
 void check_riemann(const Table& root, const GasScene& scene) {
   const double x0 = scene.initial.riemann->x0;
   if (!inside(scene.parameters, x0)) {
@@ -144,7 +138,6 @@ void check_initial(const Table& root, const GasScene& scene) {
 void complete_and_check(const Table& root, GasScene& scene) {
   check_mesh(root, scene);
   check_boundary(root, scene.parameters);
-  check_tuning(root, scene.parameters);
   if (scene.initial.riemann) check_riemann(root, scene);
   check_regions(root, scene);
   framework::complete_output(root, scene.output, {"rho", "u", "p"}, {scene.end_time, "run.end_time"});

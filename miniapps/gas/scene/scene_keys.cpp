@@ -40,13 +40,6 @@ const Choices<gas::Driver> driver_choices = {{"auto", gas::Driver::automatic},
 const Choices<Exact> exact_choices = {
     {"riemann", Exact::riemann}, {"advection", Exact::advection}, {"reference", Exact::reference}};
 
-/// Treats 0, or the first choice, as an absent value.
-template <class T>
-Codec zero_is_unset(Codec codec, const T& value) {
-  codec.print = [print = codec.print, &value] { return value != T{} ? print() : std::nullopt; };
-  return codec;
-}
-
 /// Declares the scheme keys that a run shares with its finer reference run.
 void declare_weights(Table& table, gas::Parameters& scheme) {
   table.value("weno", scene::choice_codec(scheme.weno, weno_choices),
@@ -82,7 +75,7 @@ void declare_step(Table& table, gas::Parameters& scheme) {
 void declare_scheme(Table& table, gas::Parameters& scheme) {
   declare_weights(table, scheme);
   table
-      .value("fixed_dt", zero_is_unset(scene::real_codec(scheme.fixed_dt), scheme.fixed_dt),
+      .value("fixed_dt", scene::zero_is_unset(scene::real_codec(scheme.fixed_dt), scheme.fixed_dt),
              "Step that replaces the one of cfl")
       .unit("s")
       .above(0.0);
@@ -255,8 +248,8 @@ void declare_gas_scene(Table& root, GasScene& scene) {
             "stage",
             [&](Table& stage) {
               stage
-                  .value("block", zero_is_unset(scene::integer_codec(parameters.block), parameters.block),
-                         "Threads of a team on a device, cells of a tile on the host")
+                  .value("block", scene::block_codec(parameters.block),
+                         "Threads of a team on a device, a multiple of 32, and cells of a tile on the host")
                   .range(32, 512)
                   .default_text("the backend's own");
             },
@@ -265,8 +258,8 @@ void declare_gas_scene(Table& root, GasScene& scene) {
             "step",
             [&](Table& step) {
               step.value("driver",
-                         zero_is_unset(scene::choice_codec(parameters.driver, driver_choices),
-                                       parameters.driver),
+                         scene::zero_is_unset(scene::choice_codec(parameters.driver, driver_choices),
+                                              parameters.driver),
                          "Launches of steps on a GPU: single kernels, one captured graph per step, or many "
                          "steps per launch where mesh and scheme allow it, else a graph; `stages` is a graph "
                          "with one kernel per stage")
@@ -277,7 +270,8 @@ void declare_gas_scene(Table& root, GasScene& scene) {
             "seed",
             [&](Table& baseline) {
               baseline
-                  .value("pinned", zero_is_unset(scene::boolean_codec(parameters.pinned), parameters.pinned),
+                  .value("pinned",
+                         scene::zero_is_unset(scene::boolean_codec(parameters.pinned), parameters.pinned),
                          "State and fluxes lie in page-locked memory of the host, from which a GPU copies "
                          "faster")
                   .default_text("`false`");

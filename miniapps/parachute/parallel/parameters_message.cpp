@@ -24,10 +24,10 @@ auto members(IsMaybeConst<flow::Boundary> auto& side) {
 auto members(IsMaybeConst<flow::Parameters> auto& parameters) {
   auto& [cells, low, high, density, viscosity, boundary, body_force, pressure_drop, advection, time_scheme,
          diffusion, turbulence, turbulence_constant, pressure_solver, pressure_tolerance, external_force, cfl,
-         fixed_dt, max_dt, max_steps, driver] = parameters;
+         fixed_dt, max_dt, max_steps, driver, block] = parameters;
   return std::tie(cells, low, high, density, viscosity, boundary, body_force, pressure_drop, advection,
                   time_scheme, diffusion, turbulence, turbulence_constant, pressure_solver,
-                  pressure_tolerance, external_force, cfl, fixed_dt, max_dt, max_steps, driver);
+                  pressure_tolerance, external_force, cfl, fixed_dt, max_dt, max_steps, driver, block);
 }
 
 auto members(IsMaybeConst<mesh::Mesh> auto& mesh) {
@@ -51,8 +51,8 @@ auto members(IsMaybeConst<fabric::Motion> auto& motion) {
 }
 
 auto members(IsMaybeConst<fabric::Contact> auto& contact) {
-  auto& [bodies, self, thickness, friction, interval] = contact;
-  return std::tie(bodies, self, thickness, friction, interval);
+  auto& [bodies, self, thickness, friction, interval, block] = contact;
+  return std::tie(bodies, self, thickness, friction, interval, block);
 }
 
 auto members(IsMaybeConst<fabric::Parameters> auto& parameters) {

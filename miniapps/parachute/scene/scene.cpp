@@ -96,6 +96,8 @@ std::string scene_fingerprint(FlowScene scene) {
   };
   keep(&flow::Parameters::max_steps);
   keep(&flow::Parameters::driver);
+  keep(&flow::Parameters::block);
+  scene.contact_block = 0;
   keep(&flow::Parameters::cfl);
   keep(&flow::Parameters::fixed_dt);
   keep(&flow::Parameters::max_dt);

@@ -178,6 +178,7 @@ struct FlowScene {
   bool allow_unstable = false;         ///< explicit coupling runs with cloth lighter than its added mass
   bool contact = false;                ///< of canopies and lines with each other and themselves
   double thickness = 0.01;             ///< m, distance of layers in contact
+  int contact_block = 0;               ///< threads of a team that resolves contact; 0: its default
   double end_time = 0.0;               ///< s
   framework::OutputRequest output;
   Verify verify;

@@ -232,6 +232,29 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
           "tuning",
           [&](Table& table) {
             table.table(
+                "stage",
+                [&](Table& stage) {
+                  stage
+                      .value("block", scene::block_codec(scene.parameters.block),
+                             "Threads of a team of momentum stage and pressure correction on a GPU, a "
+                             "multiple of 32")
+                      .range(32, 512)
+                      .default_text("128");
+                },
+                "The kernels of a step of the fluid");
+            table
+                .table(
+                    "contact",
+                    [&](Table& contact) {
+                      contact
+                          .value("block", scene::block_codec(scene.contact_block),
+                                 "Threads of a team that resolves contact on a GPU, a multiple of 32")
+                          .range(32, 512)
+                          .default_text("512");
+                    },
+                    "The kernel that resolves the contact of an interval")
+                .when([&scene] { return scene.contact; }, "with contact = true", "contact");
+            table.table(
                 "step",
                 [&](Table& step) {
                   scene::Codec driver = scene::choice_codec(scene.parameters.driver, driver_choices);
@@ -244,7 +267,7 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
                 },
                 "The launch of a step");
           },
-          "Launches of kernels; they change speed, not results")
+          "Block sizes and launches of kernels; they change speed, not results")
       .when(of_fluid, fluid_condition, "fluid");
 }
 

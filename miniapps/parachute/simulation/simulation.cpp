@@ -46,6 +46,7 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
   p.fabric.gravity = scene.gravity;
   p.fabric.contact.self = scene.contact;
   p.fabric.contact.thickness = scene.thickness;
+  p.fabric.contact.block = scene.contact_block;
   p.sheet.law_of_vertex = sheets.laws;
   p.cuts = sheets.cuts;
   p.line_strength = sheets.line_strength;

@@ -5,8 +5,13 @@ from ..style import plt
 from .perf_record import BACKENDS, Machine, Record
 from .section import Cell, Picture, Section, Table
 
-_COMMAND = "drogue-perf table block-size --app gas --out FILE.jsonl"
-_FORMS = {"seed": "the flux kernel of [Shi]", "step": "the fused step"}
+_COMMAND = "drogue-perf table block-size --app {app} --out FILE.jsonl"
+_FORMS = {
+    "seed": "the flux kernel of [Shi]",
+    "step": "the fused step",
+    "momentum": "a step of flow by the block of its momentum stage",
+    "contact": "the flight of a canopy by the block of contact",
+}
 _Times = dict[int, dict[int, float]]  # s, by block size and number of cells
 
 
@@ -93,18 +98,25 @@ def _table(form: str, data: _Times) -> Table:
 
 
 def sections(machine: Machine, records: list[Record]) -> list[Section]:
-    """One section per backend."""
+    """One section per mini-app and backend."""
+    found = []
+    for app in dict.fromkeys(record.kind.partition("-")[0] for record in records):
+        found += _sections_of(app, machine, [record for record in records if record.kind.startswith(app + "-")])
+    return found
+
+
+def _sections_of(app: str, machine: Machine, records: list[Record]) -> list[Section]:
     found = []
     for backend in dict.fromkeys(record.facts["backend"] for record in records):
         own = [record for record in records if record.facts["backend"] == backend]
         title, forms = f"Block size, {BACKENDS.get(backend, backend)}", _forms(own)
         unit = own[0].unit.removeprefix("s per ")
         picture = Picture(
-            f"blocks_{backend}_{machine.slug}",
+            f"blocks_{'' if app == 'gas' else app + '_'}{backend}_{machine.slug}",
             lambda title=title, forms=forms, unit=unit: blocks_figure(title, machine, forms, unit),
             f"{title}: time against mesh, one curve a block size, one panel a form of the kernel",
         )
         found.append(
-            Section(title, _COMMAND, own, [picture], [_table(form, data) for form, data in forms.items()])
+            Section(title, _COMMAND.format(app=app), own, [picture], [_table(form, data) for form, data in forms.items()])
         )
     return found

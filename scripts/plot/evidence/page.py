@@ -50,7 +50,10 @@ def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     found += steps.sections(evidence.select(machine, "flow-step"), roofline.bandwidths(ceilings))
     found += steps.sections(evidence.select(machine, "parachute-flight"))
     found += solver_tables.pressure_sections(evidence.select(machine, "flow-pressure"))
-    return found + solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
+    found += solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
+    for kind in ("flow-block", "parachute-block"):
+        found += block_sizes.sections(machine, evidence.select(machine, kind))
+    return found
 
 
 _SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections}

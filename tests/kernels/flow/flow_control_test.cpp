@@ -356,6 +356,24 @@ TEST(FlowControl, RestartContinuesBitForBit) {
     }
 }
 
+// Blocks divide the columns of cells among teams.
+TEST(FlowControl, BlockSizeDoesNotChangeTheResult) {
+  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3}) {
+    Parameters p = mixed_box();
+    p.cells = {40, 24, 9};
+    p.time_scheme = time;
+    const StaggeredField start = random_field(FlowDomain(p), 1);
+    const auto after = [&](int block) {
+      p.block = block;
+      const auto solver = started(backend, p, start);
+      EXPECT_EQ(solver->advance(endless, 3, {}), Stop::pause);
+      return velocity(*solver, p);
+    };
+    const StaggeredField usual = after(0);
+    for (const int block : {32, 96, 512}) EXPECT_EQ(after(block), usual) << block;
+  }
+}
+
 TEST(FlowControl, RejectsArraysThatTheStateLacks) {
   Parameters p = periodic_box({8, 7, 1});
   p.time_scheme = TimeScheme::rk3;
@@ -384,6 +402,8 @@ TEST(FlowControl, RejectsParametersWithoutASolution) {
   rejects([](Parameters& p) { p.cfl = std::nan(""); });
   rejects([](Parameters& p) { p.cfl = HUGE_VAL; });
   rejects([](Parameters& p) { p.cfl = 1.5; });
+  rejects([](Parameters& p) { p.block = 48; });
+  rejects([](Parameters& p) { p.block = 544; });
   rejects([](Parameters& p) {
     p.cfl = 0.8;
     p.time_scheme = TimeScheme::ab2;

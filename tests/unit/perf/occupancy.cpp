@@ -2,7 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#if __has_include(<cuda_occupancy.h>)
+#include <cuda_occupancy.h>
+#endif
+
 #include <cmath>
+#include <iterator>
+#include <random>
+#include <string>
 
 #include "perf/tables/dissertation.hpp"
 
@@ -56,6 +63,122 @@ TEST(Occupancy, EqualsTheOccupancyCalculatorOfCudaForHopper) {
   for (const auto& [block, blocks] : cases)
     EXPECT_EQ(occupancy(hopper(), block).blocks, blocks) << block.threads << " threads, " << block.registers
                                                          << " registers, " << block.shared_bytes << " bytes";
+}
+
+// Blocks that cudaOccMaxActiveBlocksPerMultiprocessor in cuda_occupancy.h of CUDA 13.0 gives with all shared
+// memory preferred.
+TEST(Occupancy, EqualsTheOccupancyCalculatorOfCudaForAllArchitectures) {
+  constexpr Block blocks[] = {{32, 32, 0},       {96, 63, 12'000}, {128, 40, 0},     {256, 60, 8'192},
+                              {512, 63, 24'576}, {1024, 32, 0},    {416, 48, 1'000}, {128, 63, 49'152}};
+  const struct {
+    const char* name;
+    int resident[std::size(blocks)];
+  } cases[] = {{"sm_30", {16, 4, 12, 4, 2, 2, 3, 1}},   {"sm_35", {16, 4, 12, 4, 2, 2, 3, 1}},
+               {"sm_50", {32, 5, 12, 4, 2, 2, 3, 1}},   {"sm_52", {32, 8, 12, 4, 2, 2, 3, 2}},
+               {"sm_60", {32, 5, 12, 4, 2, 2, 3, 1}},   {"sm_61", {32, 8, 12, 4, 2, 2, 3, 2}},
+               {"sm_70", {32, 8, 12, 4, 2, 2, 3, 2}},   {"sm_75", {16, 5, 8, 4, 2, 1, 2, 1}},
+               {"sm_80", {32, 10, 12, 4, 2, 2, 3, 3}},  {"sm_86", {16, 7, 12, 4, 2, 1, 3, 2}},
+               {"sm_87", {16, 10, 12, 4, 2, 1, 3, 3}},  {"sm_89", {24, 7, 12, 4, 2, 1, 3, 2}},
+               {"sm_90", {32, 10, 12, 4, 2, 2, 3, 4}},  {"sm_100", {32, 10, 12, 4, 2, 2, 3, 4}},
+               {"sm_103", {32, 10, 12, 4, 2, 2, 3, 4}}, {"sm_120", {24, 7, 12, 4, 2, 1, 3, 2}},
+               {"sm_121", {24, 7, 12, 4, 2, 1, 3, 2}}};
+  for (const auto& [name, resident] : cases) {
+    ASSERT_NE(find_architecture(name), nullptr) << name;
+    for (std::size_t i = 0; i < std::size(blocks); ++i)
+      EXPECT_EQ(occupancy(*find_architecture(name), blocks[i]).blocks, resident[i])
+          << name << ", block " << i;
+  }
+  EXPECT_EQ(std::size(cases) + 1, architectures().size()) << "the calculator of CUDA begins at 3.0";
+}
+
+#if __has_include(<cuda_occupancy.h>)
+/// Resident blocks by CUDA's own calculator, with all shared memory preferred; -1 for an architecture that is
+/// newer than the header.
+int blocks_by_cuda(const Architecture& on, const Block& block) {
+  const int capability = std::stoi(std::string(on.name.substr(3)));
+  cudaOccDeviceProp device;
+  device.computeMajor = capability / 10;
+  device.computeMinor = capability % 10;
+  device.maxThreadsPerBlock = largest_block;
+  device.maxThreadsPerMultiprocessor = on.threads;
+  device.regsPerBlock = device.regsPerMultiprocessor = on.registers;
+  device.warpSize = 32;
+  device.sharedMemPerBlock = 48 * 1024;
+  device.sharedMemPerMultiprocessor = static_cast<std::size_t>(on.shared_bytes);
+  device.sharedMemPerBlockOptin = static_cast<std::size_t>(on.block_shared_bytes);
+  device.reservedSharedMemPerBlock = static_cast<std::size_t>(on.reserved_bytes);
+  device.numSms = 1;
+  cudaOccFuncAttributes kernel;
+  kernel.maxThreadsPerBlock = largest_block;
+  kernel.numRegs = block.registers;
+  kernel.shmemLimitConfig = FUNC_SHMEM_LIMIT_OPTIN;
+  kernel.maxDynamicSharedSizeBytes = static_cast<std::size_t>(block.shared_bytes);
+  cudaOccDeviceState state;
+  state.cacheConfig = CACHE_PREFER_SHARED;
+  state.carveoutConfig = SHAREDMEM_CARVEOUT_MAX_SHARED;
+  cudaOccResult result{};
+  const cudaOccError error = cudaOccMaxActiveBlocksPerMultiprocessor(
+      &result, &device, &kernel, &state, block.threads, static_cast<std::size_t>(block.shared_bytes));
+  return error == CUDA_OCC_SUCCESS ? result.activeBlocksPerMultiprocessor : -1;
+}
+
+TEST(Occupancy, EqualsTheHeaderOfCudaForRandomBlocks) {
+  std::mt19937 random(1);
+  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+  for (const Architecture& on : architectures().subspan(1))  // the header begins at 3.0
+    for (int i = 0; i < 20'000; ++i) {
+      const Block block{1 + below(largest_block), 1 + below(on.thread_registers),
+                        i % 3 == 0 ? 0 : below(i % 3 == 1 ? 20'000 : 240'000)};
+      const int expected = blocks_by_cuda(on, block);
+      if (expected < 0) break;
+      ASSERT_EQ(occupancy(on, block).blocks, expected)
+          << on.name << ": " << block.threads << " threads, " << block.registers << " registers, "
+          << block.shared_bytes << " bytes";
+    }
+}
+#endif
+
+// The tables "Technical Specifications per Compute Capability" of the CUDA C++ Programming Guide.
+TEST(Occupancy, LimitsOfArchitecturesArePublishedOnes) {
+  const struct {
+    const char* name;
+    int warps, blocks, registers, shared_kib, block_shared_kib;
+  } cases[] = {{"2.0", 48, 8, 32, 48, 48},    {"3.0", 64, 16, 64, 48, 48},    {"3.5", 64, 16, 64, 48, 48},
+               {"5.0", 64, 32, 64, 64, 48},   {"5.2", 64, 32, 64, 96, 48},    {"6.0", 64, 32, 64, 64, 48},
+               {"6.1", 64, 32, 64, 96, 48},   {"7.0", 64, 32, 64, 96, 96},    {"7.5", 32, 16, 64, 64, 64},
+               {"8.0", 64, 32, 64, 164, 163}, {"8.6", 48, 16, 64, 100, 99},   {"8.9", 48, 24, 64, 100, 99},
+               {"9.0", 64, 32, 64, 228, 227}, {"10.0", 64, 32, 64, 228, 227}, {"12.0", 48, 24, 64, 100, 99}};
+  for (const auto& [name, warps, blocks, registers, shared, block_shared] : cases) {
+    const Architecture* a = find_architecture(name);
+    ASSERT_NE(a, nullptr) << name;
+    EXPECT_EQ(a->threads, 32 * warps) << name;
+    EXPECT_EQ(a->blocks, blocks) << name;
+    EXPECT_EQ(a->registers, 1024 * registers) << name;
+    EXPECT_EQ(a->shared_bytes, 1024 * shared) << name;
+    EXPECT_EQ(a->block_shared_bytes, 1024 * block_shared) << name;
+    EXPECT_EQ(a->reserved_bytes, std::stod(name) < 8.0 ? 0 : 1024) << name;
+  }
+  EXPECT_EQ(find_architecture("4.0"), nullptr);
+  EXPECT_EQ(find_architecture("sm_90"), find_architecture("9.0"));
+}
+
+// Allocation units leave table 4.2 as it is: the printed numbers do not need them.
+TEST(Occupancy, UnitsOfFermiLeaveTable42) {
+  for (const dissertation::OccupancyRow& printed : dissertation::table_4_2)
+    EXPECT_EQ(occupancy(*find_architecture("2.0"), {printed.block, dissertation::flux_registers,
+                                                    dissertation::flux_shared_bytes(printed.block)})
+                  .blocks,
+              printed.blocks)
+        << printed.block;
+}
+
+TEST(Occupancy, CarveOutLimitsSharedMemory) {
+  const Block block{64, 32, 15 * 1024};
+  EXPECT_EQ(occupancy(hopper(), block).by_shared_memory, 14);
+  EXPECT_EQ(occupancy(hopper(), block, 132 * 1024).by_shared_memory, 8);
+  EXPECT_EQ(limits_of(occupancy(hopper(), block, 132 * 1024)), "shared memory");
+  EXPECT_EQ(limits_of(occupancy(hopper(), {128, 128, 0})), "registers");
+  EXPECT_EQ(limits_of(occupancy(hopper(), {64, 32, 0})), "registers and threads and blocks");
 }
 
 }  // namespace

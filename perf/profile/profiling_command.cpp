@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/program/failure.hpp"
+#include "common/scene/nearest.hpp"
+#include "perf/profile/kernel_profile.hpp"
+
+namespace drogue::perf {
+namespace {
+
+/// Kinds of cases with the namespaces of their kernels.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kinds = {
+    {{"gas-step", "gas"},
+     {"springs-step", "fabric"},
+     {"springs-contact", "fabric"},
+     {"options", "options"},
+     {"options-surface", "options"},
+     {"flow-step", "(flow|linear)"},
+     {"flow-pressure", "linear"},
+     {"parachute-flight", "(coupling|fabric|flow|linear)"},
+     {"tridiagonal", "perf"},
+     {"ceiling", "perf"}}};
+
+/// Launch parameters, limits of occupancy and mean occupancy: one pass, so no kernel is run again.
+constexpr std::array metrics = {"launch__block_size",
+                                "launch__grid_size",
+                                "launch__registers_per_thread",
+                                "launch__shared_mem_config_size",
+                                "launch__shared_mem_per_block_dynamic",
+                                "launch__shared_mem_per_block_static",
+                                "launch__waves_per_multiprocessor",
+                                "launch__occupancy_limit_blocks",
+                                "launch__occupancy_limit_registers",
+                                "launch__occupancy_limit_shared_mem",
+                                "launch__occupancy_limit_warps",
+                                "device__attribute_compute_capability_major",
+                                "device__attribute_compute_capability_minor",
+                                "device__attribute_multiprocessor_count",
+                                "sm__maximum_warps_per_active_cycle_pct",
+                                "sm__warps_active.avg.pct_of_peak_sustained_active",
+                                "gpu__time_duration.sum"};
+
+/// A word of a command of a shell.
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+") ==
+          std::string::npos &&
+      !word.empty())
+    return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+std::string_view namespaces_of(const std::string& case_name) {
+  const std::string kind = case_name.substr(0, case_name.find('/'));
+  const auto found = std::ranges::find(kinds, kind, &decltype(kinds)::value_type::first);
+  if (found != kinds.end()) return found->second;
+  std::vector<std::string> valid;
+  for (const auto& [name, spaces] : kinds) valid.emplace_back(name);
+  throw Failure(ExitCode::usage, "there is no case '" + case_name + "': of its kind '" + kind + "' " +
+                                     scene::suggestion(kind, valid));
+}
+
+}  // namespace
+
+std::string profiling_command(const std::string& case_name, const std::string& program,
+                              const std::string& out, int launches) {
+  const std::string_view spaces = namespaces_of(case_name);
+  if (("/" + case_name + "/").find("/cuda/") == std::string::npos)
+    throw Failure(ExitCode::usage,
+                  "'" + case_name + "' is no case on cuda, and ncu profiles kernels of CUDA alone");
+  std::string names;
+  for (const char* metric : metrics) names += (names.empty() ? "" : ",") + std::string(metric);
+  std::string text = "ncu";
+  const std::vector<std::string> words = {
+      // Exact numbers and whole names: rounded bytes and shortened templates would be ambiguous.
+      "--csv", "--page", "raw", "--print-units", "base", "--print-kernel-base", "demangled",
+      "--rename-kernels", "no", "--kernel-name-base", "demangled", "--kernel-name",
+      "regex:drogue::" + std::string(spaces), "--launch-count", std::to_string(launches), "--kill", "yes",
+      "--graph-profiling", "node",
+      // As in a run without a profiler.
+      "--clock-control", "none", "--cache-control", "none", "--metrics", names, "--log-file", out, program,
+      "run", "--filter", "^" + case_name + "$"};
+  for (const std::string& word : words) text += " " + quoted(word);
+  return text;
+}
+
+}  // namespace drogue::perf

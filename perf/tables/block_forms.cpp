@@ -1,0 +1,170 @@
+#include "perf/tables/block_forms.hpp"
+
+#include <array>
+#include <memory>
+
+#include "kernels/gas/tile/team_shape.hpp"
+#include "perf/problems/inflation.hpp"
+#include "perf/problems/sod.hpp"
+#include "perf/problems/streams.hpp"
+#include "perf/tables/baseline_case.hpp"
+#include "perf/tables/dissertation.hpp"
+
+namespace drogue::perf {
+namespace {
+
+constexpr const char* bound = "launch latency, and blocks that wait for room";
+
+/// Largest number of registers of a thread under launch bounds of 512 threads.
+constexpr int bounded_registers = 128;
+
+/// Shared memory of a team of Kokkos without scratch memory, bytes: its reduction buffer.
+constexpr int team_buffer(int block) { return 8 * (block + 2); }
+
+gas::Parameters gas_parameters(std::int64_t cells, int block) {
+  gas::Parameters p = sod::parameters(cells);
+  p.block = block;
+  // The persistent driver divides the mesh by multiprocessors, not by blocks.
+  p.driver = gas::Driver::graph;
+  return p;
+}
+
+/// The flux kernel of the baseline solver alone, as in figure 4.4.
+Case flux_case(device::Backend backend, const std::string& name, std::int64_t cells, int block) {
+  return baseline_case(name, bound, backend, gas_parameters(cells, block), [](const gas::PhaseTimes& times) {
+    return std::map<std::string, double>{{"compute", times.compute}};
+  });
+}
+
+Case fused_case(device::Backend backend, const std::string& name, std::int64_t cells, int block) {
+  constexpr long steps = 200;  // some milliseconds
+  const gas::Parameters p = gas_parameters(cells, block);
+  const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
+  return {name,
+          device::needs_device(backend),
+          "step",
+          bound,
+          [=] {
+            *solver = gas::create_solver(backend, p);
+            return sod::steps(p, **solver, steps);
+          },
+          [=] { return sod::l1_error(p, **solver); },
+          sod::tolerance(p)};
+}
+
+Block flux_block(int block) {
+  return {block, bounded_registers,
+          gas::shared_bytes(gas::cell_rows, gas::fitting_slots(gas::cell_rows, block, block), block)};
+}
+
+Block fused_block(int block) {
+  return {block, block <= gas::default_team ? 168 : bounded_registers,
+          gas::shared_bytes(gas::device_rows, gas::fitting_slots(gas::device_rows, block, block), block)};
+}
+
+std::vector<BlockForm> gas_forms(device::Backend backend, bool quick) {
+  std::vector<int> blocks = {32, 128, 512};
+  std::vector<std::int64_t> cells = {1024, 8192};
+  if (!quick) {
+    blocks.assign(std::begin(dissertation::figure_4_4_blocks), std::end(dissertation::figure_4_4_blocks));
+    cells.clear();
+    for (const dissertation::TransferRow& row : dissertation::table_5_5) cells.push_back(row.cells);
+  }
+  const auto form = [&](const char* name, const char* title, const char* kernel, auto make, auto resources) {
+    return BlockForm{"gas-block",
+                     name,
+                     title,
+                     "step",
+                     kernel,
+                     blocks,
+                     cells,
+                     [=](const std::string& case_name, std::size_t mesh, int block) {
+                       return make(backend, case_name, cells[mesh], block);
+                     },
+                     resources};
+  };
+  return {form("seed", "The flux kernel of [Shi], three stages", "drogue::gas::BaselineFluxFunctor",
+               flux_case, flux_block),
+          form("step", "The fused step, one graph per step", "drogue::gas::StepFunctor", fused_case,
+               fused_block)};
+}
+
+using Grid = std::array<int, 3>;
+
+std::int64_t cells_of(const Grid& grid) { return static_cast<std::int64_t>(grid[0]) * grid[1] * grid[2]; }
+
+std::vector<BlockForm> flow_forms(device::Backend backend, bool quick) {
+  struct Mesh {
+    Grid grid;
+    long steps;
+  };
+  const std::vector<Mesh> meshes = quick ? std::vector<Mesh>{{{32, 32, 32}, 100}}
+                                         : std::vector<Mesh>{{{64, 64, 64}, 200}, {{128, 128, 128}, 50}};
+  std::vector<std::int64_t> cells;
+  for (const Mesh& mesh : meshes) cells.push_back(cells_of(mesh.grid));
+  return {{"flow-block", "momentum",
+           "A step of flow; momentum stage and pressure correction have the block, transforms their own",
+           "step", "drogue::flow::MomentumFunctor",
+           quick ? std::vector{32, 128, 512} : std::vector{32, 64, 96, 128, 192, 256, 384, 512}, cells,
+           [=](const std::string& name, std::size_t mesh, int block) {
+             flow::Parameters p = streams::parameters(meshes[mesh].grid, streams::Sides::periodic);
+             p.block = block;
+             const auto solver = std::make_shared<std::unique_ptr<flow::Solver>>();
+             return Case{name,
+                         device::needs_device(backend),
+                         "step",
+                         bound,
+                         [=] {
+                           *solver = flow::create_solver(backend, p);
+                           return streams::steps(p, **solver, meshes[mesh].steps);
+                         },
+                         [=] { return streams::relative_divergence(p, **solver); },
+                         1e-12};
+           },
+           [](int block) {
+             return Block{block, bounded_registers, team_buffer(block)};
+           }}};
+}
+
+std::vector<BlockForm> parachute_forms(device::Backend backend, bool quick) {
+  const Grid grid = quick ? Grid{24, 24, 48} : Grid{60, 60, 120};
+  const double lead = quick ? 0.05 : 0.8;  // s
+  return {{"parachute-block",
+           "contact",
+           "Flight of a canopy; the kernel that resolves contact has the block, one on each multiprocessor",
+           "ms of flight",
+           "drogue::fabric::PersistentResolutionFunctor",
+           quick ? std::vector{32, 128, 512} : std::vector{32, 64, 96, 128, 192, 256, 384, 512},
+           {cells_of(grid)},
+           [=](const std::string& name, std::size_t /*mesh*/, int block) {
+             const auto solver = std::make_shared<std::unique_ptr<coupling::Solver>>();
+             const auto problem = std::make_shared<inflation::Problem>();
+             return Case{name,
+                         device::needs_device(backend),
+                         "ms of flight",
+                         bound,
+                         [=] {
+                           *problem = inflation::problem({.cells = grid, .with_contact = true});
+                           problem->parameters.fabric.contact.block = block;
+                           *solver = coupling::create_solver(backend, problem->parameters);
+                           return inflation::flight(*problem, **solver, lead, 10);
+                         },
+                         [=] { return inflation::imbalance(problem->parameters, **solver); },
+                         1e-12};
+           },
+           [](int block) {
+             return Block{block, bounded_registers, 0};
+           },
+           1}};
+}
+
+}  // namespace
+
+std::vector<BlockForm> block_forms(const std::string& app, device::Backend backend, bool quick) {
+  if (app == "gas") return gas_forms(backend, quick);
+  if (app == "flow") return flow_forms(backend, quick);
+  if (app == "parachute") return parachute_forms(backend, quick);
+  return {};
+}
+
+}  // namespace drogue::perf
