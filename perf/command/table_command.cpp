@@ -21,8 +21,9 @@ struct TableOptions {
 
 /// Tables of a mini-app.
 std::vector<std::string> tables_of(const std::string& app) {
-  if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling"};
-  if (app == "flow") return {"pressure", "memory", "scaling"};
+  if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling", "abstraction"};
+  if (app == "flow") return {"pressure", "memory", "scaling", "abstraction"};
+  if (app == "springs") return {"transfers", "scaling", "abstraction"};
   return {"transfers", "scaling"};
 }
 
@@ -35,8 +36,15 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
     throw Failure(ExitCode::usage, "a block size means nothing to the host backend '" +
                                        std::string(device::name(backend)) +
                                        "', whose teams are single threads; give --backend cuda");
+  const bool abstraction = options.table == "abstraction";
+  if (abstraction && backend != device::Backend::cuda)
+    throw Failure(ExitCode::usage,
+                  "the table abstraction compares kernels in Kokkos with kernels in CUDA and "
+                  "means nothing to the host backend '" +
+                      std::string(device::name(backend)) + "'; give --backend cuda");
   const device::Runtime runtime(kokkos);
   const nlohmann::json here = provenance(device::device_facts());
+  if (abstraction) return print_abstraction(options.app, backend, options.quick, here);
   if (block_size) return print_block_sizes(backend, options.quick, here);
   const auto print = options.table == "pressure" ? print_flow_pressure
                      : options.table == "memory" ? print_flow_memory
@@ -48,7 +56,7 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
 
 ExitCode print_table(TableOptions options, const std::vector<std::string>& kokkos) {
   require_name("table", options.table,
-               {"occupancy", "block-size", "transfers", "scaling", "pressure", "memory"});
+               {"occupancy", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"});
   if (options.app.empty())
     options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
   require_app(options.app);
@@ -79,9 +87,10 @@ Command table_command(CLI::App& program) {
   const auto options = std::make_shared<TableOptions>();
   CLI::App* app = program.add_subcommand(
       "table", "Print a table, most of them of [Shi] (README.md cites it) beside our own numbers");
-  app->add_option("TABLE", options->table,
-                  "occupancy (computed); block-size or transfers; scaling with size and threads; pressure or "
-                  "memory of flow")
+  app->add_option(
+         "TABLE", options->table,
+         "occupancy (computed); block-size or transfers; scaling with size and threads; abstraction: "
+         "kernels in Kokkos against CUDA; pressure or memory of flow")
       ->required();
   app->add_option("--app", options->app, app_help("Kernels that are measured"));
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")

@@ -53,4 +53,9 @@ Table print_scaling(const std::string& app, const std::vector<device::Backend>& 
 /// `backend` must be a GPU.
 Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
+/// Cost of Kokkos: times of kernels of gas, springs or flow against the same algorithm written in CUDA, by
+/// size. `backend` must be `cuda`.
+Table print_abstraction(const std::string& app, device::Backend backend, bool quick,
+                        const nlohmann::json& provenance);
+
 }  // namespace drogue::perf

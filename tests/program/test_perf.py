@@ -343,11 +343,11 @@ class Refusals(perf_program.PerfTest):
     def test_reports_usage_errors(self):
         for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
-                            (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling"),
+                            (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling, abstraction"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["table", "transfers", "--app", "parachute"], "have --app flow"),
-                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling"),
-                            (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory, scaling"),
+                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling, abstraction"),
+                            (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory, scaling, abstraction"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
                              "no problem matches 'day$'; with --quick there are thesis, merton"),
                             (["work-precision", "--app", "options", "--filter", "("], "is not a valid regular expression"),
@@ -376,10 +376,17 @@ class Refusals(perf_program.PerfTest):
         self.assertIn("means nothing to the host backend 'serial'",
                       self.expect(2, "table", "block-size", "--backend", "serial").stderr)
 
+    def test_compares_no_kernels_of_a_host_backend_with_cuda(self):
+        for app in ("gas", "springs", "flow"):
+            process = self.expect(2, "table", "abstraction", "--app", app, "--backend", "serial")
+            self.assertIn("compares kernels in Kokkos with kernels in CUDA and means nothing to the host backend 'serial'",
+                          process.stderr)
+            self.assertEqual("", process.stdout)
+
     def test_reports_an_absent_backend(self):
         if "DROGUE_CUDA:BOOL=ON" in perf_program.CACHE:
             self.skipTest("a CUDA build has that backend")
-        for table in ("block-size", "transfers"):
+        for table in ("block-size", "transfers", "abstraction"):
             self.assertRegex(self.expect(77, "table", table, "--backend", "cuda").stderr, "cuda.*not compiled in")
 
     def test_reports_an_unwritable_record_file(self):
