@@ -384,7 +384,7 @@ template <class ExecutionSpace>
 bool supports_ceiling(Ceiling ceiling) {
   constexpr bool on_host = device::is_host<ExecutionSpace>;
   if (ceiling == Ceiling::issue || ceiling == Ceiling::graph_node) return !on_host;
-  // Of all processors, since Kokkos may not be initialised yet.
+  // With threads on all processors, since Kokkos may not be initialised yet.
   if (ceiling == Ceiling::l3) return on_host && fits_in_l3(std::thread::hardware_concurrency());
   return ceiling != Ceiling::l2 || on_host;
 }

@@ -8,7 +8,7 @@ from PIL import Image
 from .. import html_page, style
 from ..flow import solver_tables
 from ..options import transfers as options_transfers
-from . import block_sizes, roofline, steps, transfers, work_precision_section
+from . import block_sizes, bounds, roofline, steps, transfers, work_precision_section
 from .perf_record import Machine, Record
 from .records import Evidence
 from .section import Cell, Section
@@ -28,6 +28,7 @@ def _springs_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     solved = evidence.select(machine, "springs-solution")
     found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
     found += steps.sections(evidence.select(machine, "springs-step"))
+    found += bounds.sections(machine, evidence.ceilings, evidence.select(machine, "springs-step"))
     found += steps.sections(evidence.select(machine, "springs-contact"))
     return found + transfers.sections(machine, evidence.select(machine, "springs-transfers"))
 
@@ -48,6 +49,7 @@ def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
         found += work_precision_section.sections(machine, evidence.select(machine, kind), failed_of_kind)
     ceilings = [record for record in evidence.ceilings if record.machine == machine]
     found += steps.sections(evidence.select(machine, "flow-step"), roofline.bandwidths(ceilings))
+    found += bounds.sections(machine, ceilings, evidence.select(machine, "flow-step"))
     found += steps.sections(evidence.select(machine, "parachute-flight"))
     found += solver_tables.pressure_sections(evidence.select(machine, "flow-pressure"))
     return found + solver_tables.memory_sections(evidence.select(machine, "flow-memory"))

@@ -49,8 +49,10 @@ _NAMED_BY_CASE = (
     "tridiagonal",
 )  # facts in the case name
 _UNTIMED = ("flow-memory",)
+# Counted work of a step, for its bounds.
+_COUNTS = {"instructions": float, "launches": int, "driver": str}
 _OPTIONAL = {
-    "flow-step": {"bytes": float, "solution_error": float},
+    "flow-step": {"bytes": float, "solution_error": float, **_COUNTS},
     "flow-pressure": {"tolerance": float, "iterations": int},
     "flow-memory": {"driver_bytes": int},
     "flow-solution": {"status": str, "message": str},
@@ -58,8 +60,9 @@ _OPTIONAL = {
     "gas-solution": {
         "weno_power": float, "splitting": str, "time_scheme": str, "precision": str, "status": str, "message": str,
     },
-    "gas-step": {"flops": float, "bytes": float, "vector_bits": int},
-    "ceiling": {"flops": float, "bytes": float},
+    "gas-step": {"flops": float, "bytes": float, "vector_bits": int, **_COUNTS},
+    "springs-step": {"bytes": float, **_COUNTS},
+    "ceiling": {"flops": float, "bytes": float, "instructions": float},
     "gas-transfers": {"thesis": dict},
     "springs-solution": {"status": str, "message": str},
     "springs-transfers": {"thesis": dict},
