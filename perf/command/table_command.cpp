@@ -17,6 +17,12 @@ struct TableOptions {
   std::string app;  ///< empty: that of the table
   std::string backend = "auto";
   bool quick = false;
+  std::string over;  ///< units of scaling; empty: threads
+  bool weak = false;
+  int most = 0;
+
+  /// True if the scaling is that of a program: over ranks, or weak.
+  [[nodiscard]] bool scales_program() const { return over == "ranks" || weak; }
 };
 
 /// Tables of a mini-app.
@@ -25,6 +31,28 @@ std::vector<std::string> tables_of(const std::string& app) {
   if (app == "flow") return {"pressure", "memory", "scaling", "abstraction"};
   if (app == "springs") return {"transfers", "scaling", "abstraction"};
   return {"transfers", "scaling"};
+}
+
+/// Throws Failure(usage) for options of scaling that do not fit the table or the mini-app.
+void check_scaling(const TableOptions& options) {
+  if (options.table != "scaling" && (!options.over.empty() || options.weak || options.most > 0))
+    throw Failure(ExitCode::usage, "--over, --weak and --most belong to the table scaling");
+  if (options.scales_program() && options.app != "flow")
+    throw Failure(ExitCode::usage, "of " + options.app + " there is strong scaling over threads alone; " +
+                                       "weak scaling and ranks have --app flow");
+  if (options.most > 0 && !options.scales_program())
+    throw Failure(ExitCode::usage, "--most needs --weak or --over ranks");
+}
+
+/// Scaling of a program, or of the cases of `run`.
+Table scaling_table(const TableOptions& options) {
+  std::vector<device::Backend> backends = backends_of(options.backend);
+  if (!options.scales_program()) return print_scaling(options.app, backends, options.quick);
+  const ScalingUnit unit = options.over == "ranks" ? ScalingUnit::ranks : ScalingUnit::threads;
+  // Ranks have one thread each: on OpenMP they repeat those of Serial.
+  if (unit == ScalingUnit::ranks && options.backend == "auto" && backends.size() > 1)
+    std::erase(backends, device::Backend::openmp);
+  return print_program_scaling({unit, options.weak, options.most}, backends, options.quick);
 }
 
 /// Tables that need a backend and Kokkos.
@@ -57,8 +85,8 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
 ExitCode print_table(TableOptions options, const std::vector<std::string>& kokkos) {
   require_name("table", options.table,
                {"occupancy", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"});
-  if (options.app.empty())
-    options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
+  const bool of_flow = options.table == "pressure" || options.table == "memory" || options.scales_program();
+  if (options.app.empty()) options.app = of_flow ? "flow" : "gas";
   require_app(options.app);
   if (options.app == "parachute")
     throw Failure(ExitCode::usage, "there is no table of canopies; those of the flow have --app flow");
@@ -67,6 +95,7 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
   require_name("table of " + options.app, options.table, tables_of(options.app));
+  check_scaling(options);
   run::require_writable(options.out);
   install_signal_handlers();
   Table table;
@@ -74,7 +103,7 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
     table =
         print_occupancy(provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
   else if (options.table == "scaling")
-    table = print_scaling(options.app, backends_of(options.backend), options.quick);
+    table = scaling_table(options);
   else
     table = timed_table(options, kokkos);
   write_records(options.out, table.records);
@@ -98,6 +127,11 @@ Command table_command(CLI::App& program) {
       ->capture_default_str();
   app->add_option("--out", options->out, "File for the records, one JSON line a row");
   app->add_flag("--quick", options->quick, "Few rows and few samples");
+  app->add_option("--over", options->over, "Scaling over threads (default) or, of flow, ranks of mpirun")
+      ->check(CLI::IsMember({"threads", "ranks"}));
+  app->add_flag("--weak", options->weak, "Scaling of flow with work that grows with threads or ranks");
+  app->add_option("--most", options->most, "Largest number of threads or ranks; all processors or GPUs")
+      ->check(CLI::Range(1, 4096));
   return {app, [options](const std::vector<std::string>& kokkos) { return print_table(*options, kokkos); }};
 }
 

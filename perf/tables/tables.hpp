@@ -49,6 +49,25 @@ Table print_flow_memory(device::Backend backend, bool quick, const nlohmann::jso
 /// Failure as `run` does, and interrupted after a signal.
 Table print_scaling(const std::string& app, const std::vector<device::Backend>& backends, bool quick);
 
+/// Part of a machine over which scaling is measured.
+enum class ScalingUnit { threads, ranks };
+
+/// "threads" or "ranks". Does not throw.
+const char* name(ScalingUnit unit);
+
+/// Scaling of a program.
+struct ScalingRequest {
+  ScalingUnit unit = ScalingUnit::threads;
+  bool weak = false;  ///< the work grows with the units
+  int most = 0;       ///< largest number of units; 0: all processors or GPUs
+};
+
+/// Strong or weak scaling of steps of flow over threads, or over ranks of mpirun, by runs of
+/// drogue-parachute, which stands beside this program. Call it without an initialised runtime. Throws Failure
+/// as the program does, interrupted after a signal, and no_backend without mpirun.
+Table print_program_scaling(const ScalingRequest& request, const std::vector<device::Backend>& backends,
+                            bool quick);
+
 /// Figure 4.4: time per step against block size and mesh, for the baseline solver and for the fused step.
 /// `backend` must be a GPU.
 Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::json& provenance);
