@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 
+#include "common/program/failure.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/compare/version_cost.hpp"
 #include "perf/measure/record.hpp"
@@ -157,7 +158,8 @@ void add_size(const Size& size, device::Backend backend, bool quick, const nlohm
                               {"block", pair->block()},      {"steps", steps_of(size.cells)}};
       if (version == Version::kokkos) {
         facts["ratio"] = cost.ratio;
-        facts["ratio_interval"] = {cost.low, cost.high};
+        facts["ratio_low"] = cost.low;
+        facts["ratio_high"] = cost.high;
       }
       table.add(version == Version::kokkos ? kokkos : hand_written, provenance, facts);
     }
@@ -174,7 +176,17 @@ Table print_abstraction(const std::string& app, device::Backend backend, bool qu
       "%-26s %-6s  %-34s  %-34s  %-24s  %s\n",
       "kernel and size", "launch", "Kokkos", "hand-written", "ratio", "difference");
   Table table;
-  for (const Size& size : sizes_of(app, backend, quick)) add_size(size, backend, quick, provenance, table);
+  for (const Size& size : sizes_of(app, backend, quick)) {
+    try {
+      add_size(size, backend, quick, provenance, table);
+    } catch (const Failure&) {
+      throw;
+    } catch (const std::exception& error) {
+      // Other sizes may still fit the device.
+      std::printf("%-26s  %s\n", size.name.c_str(), error.what());
+      table.passed = false;
+    }
+  }
   std::printf(
       "plain: with the host's part of each launch; graph: captured, %ld steps a launch.\n"
       "Both versions have the same layout, block size and shared memory.\n",

@@ -163,6 +163,21 @@ def counted_steps(machine=H200):
     return found
 
 
+def abstraction(machine=H200):
+    """Kernels of gas and springs in Kokkos, 2 and 8 % slower than in CUDA at a million cells, and a small one."""
+    found = []
+    for kernel, cells, launches, ratio in (
+        ("gas-step", 1 << 20, "graph", 1.02), ("gas-step", 1024, "plain", 1.3), ("springs-step", 1 << 20, "graph", 1.08),
+    ):  # fmt: skip
+        for version, factor in (("kokkos", ratio), ("hand-written", 1.0)):
+            facts = {"backend": "cuda", "cells": cells, "version": version, "launches": launches, "block": 128, "steps": 64}
+            if version == "kokkos":
+                facts |= {"ratio": ratio, "ratio_low": ratio - 0.01, "ratio_high": ratio + 0.01}
+            case = f"abstraction/cuda/{kernel}/{cells}/{launches}/{version}"
+            found.append(record(case, 1e-4 * factor, machine, facts, error=1e-15))
+    return found
+
+
 def transfers(machine=H200):
     """Copies take a third (pageable) or a twentieth (pinned) of the times of [Shi], similar to its Table 5.5."""
     found = []

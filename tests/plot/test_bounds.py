@@ -1,4 +1,4 @@
-"""Bounds of a step by the measured ceilings, on pages of synthetic records."""
+"""Bounds of a step by the measured ceilings, and the cost of Kokkos, on pages of synthetic records."""
 
 import unittest
 
@@ -85,6 +85,26 @@ class Page(Folder):
         rows = self.rows("springs", "Bounds of a step, CUDA")
         verdicts = {row[0]: row[-1] for row in rows if len(row) == 7}
         self.assertEqual("memory, 80 %", verdicts["1000000"])
+
+
+class CostOfKokkos(Folder):
+    def rows(self, app, lines):
+        page, _ = self.page(lines, app=app)
+        return page.tables[H200, "Cost of Kokkos"]
+
+    def test_pairs_have_ratios_and_verdicts(self):
+        rows = self.rows("gas", records.abstraction())
+        self.assertEqual(["gas-step", "1\u2009048\u2009576", "in a graph", "102", "100", "1.020 [1.010 .. 1.030]"],
+                         rows[1][:6])
+        self.assertEqual("met", rows[1][-1])
+        # A small size has no goal.
+        self.assertEqual(("one by one", ""), (rows[2][2], rows[2][-1]))
+        self.assertEqual("missed", self.rows("springs", records.abstraction())[1][-1])
+
+    def test_failed_pair_has_no_row(self):
+        lines = records.abstraction()
+        lines[1]["check"] = "failed"
+        self.assertEqual(1, len(self.rows("gas", lines)[1:]))
 
 
 if __name__ == "__main__":

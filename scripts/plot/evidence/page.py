@@ -8,7 +8,7 @@ from PIL import Image
 from .. import html_page, style
 from ..flow import solver_tables
 from ..options import transfers as options_transfers
-from . import block_sizes, bounds, roofline, steps, transfers, work_precision_section
+from . import abstraction, block_sizes, bounds, roofline, steps, transfers, work_precision_section
 from .perf_record import Machine, Record
 from .records import Evidence
 from .section import Cell, Section
@@ -109,7 +109,10 @@ def write(evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
 
 def machine_sections(app: str, evidence: Evidence) -> list[tuple[Machine, list[Section]]]:
     """Sections of a mini-app, whose records `evidence` holds, by machine."""
-    return [(machine, _SECTIONS[app](evidence, machine)) for machine in evidence.machines]
+    return [
+        (machine, _SECTIONS[app](evidence, machine) + abstraction.sections(evidence.select(machine, "abstraction")))
+        for machine in evidence.machines
+    ]
 
 
 class Pictures:

@@ -40,6 +40,7 @@ _FACTS = {
         "backend": str, "method": str, "mesh": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
     },
     "tridiagonal": {},
+    "abstraction": {"backend": str, "cells": int, "version": str, "launches": str},
 }  # fmt: skip
 _NAMED_BY_CASE = (
     "gas-step",
@@ -63,6 +64,7 @@ _OPTIONAL = {
     "gas-step": {"flops": float, "bytes": float, "vector_bits": int, **_COUNTS},
     "springs-step": {"bytes": float, **_COUNTS},
     "ceiling": {"flops": float, "bytes": float, "instructions": float},
+    "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
     "gas-transfers": {"thesis": dict},
     "springs-solution": {"status": str, "message": str},
     "springs-transfers": {"thesis": dict},
@@ -114,7 +116,8 @@ class Record:
     @property
     def app(self) -> str:
         """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, canopies to flow."""
-        app = self.kind.partition("-")[0]
+        kind = self.case.split("/")[2] if self.kind == "abstraction" else self.kind
+        app = kind.partition("-")[0]
         return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow"}.get(app, app)
 
     @property
