@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -97,6 +98,9 @@ struct FmaChainsFunctor : CeilingTypes<ExecutionSpace, T> {
     R x[chains];
     for (int c = 0; c < chains; ++c) x[c] = R(static_cast<T>(first(c)));
     for (std::int64_t repeat = 0; repeat < repeats; ++repeat) {
+#if defined(__CUDA_ARCH__)
+#pragma unroll 32  // the counter takes issue slots, too
+#endif
       for (std::int64_t step = 0; step < steps; ++step)
         for (int c = 0; c < chains; ++c) x[c] = factor * x[c] + term;
       if constexpr (repeats > 1)
@@ -151,6 +155,9 @@ struct IssueFunctor : CeilingTypes<ExecutionSpace, float> {
     std::uint32_t word[chains];
     for (int c = 0; c < chains; ++c) x[c] = static_cast<float>(Chains::first(c)), word[c] = first(c);
     for (std::int64_t repeat = 0; repeat < Chains::repeats; ++repeat) {
+#if defined(__CUDA_ARCH__)
+#pragma unroll 32
+#endif
       for (std::int64_t step = 0; step < Chains::steps; ++step)
         for (int c = 0; c < chains; ++c) x[c] = factor * x[c] + term, word[c] = turned(word[c], rotation);
       for (int c = 0; c < chains; ++c) x[c] += 1.0F;
@@ -339,18 +346,20 @@ template <class ExecutionSpace>
 class LaunchKernel final : public CeilingKernel {
  public:
   explicit LaunchKernel(bool in_graph)
-      : _instance(std::numeric_limits<int>::max()),
-        _count("drogue::perf::ceiling_launches"),
-        _in_graph(in_graph),
-        _graph(_instance, [this](const ExecutionSpace&) { enqueue(); }) {}
+      : _instance(std::numeric_limits<int>::max()), _count("drogue::perf::ceiling_launches") {
+    // The first launch of a kernel prepares it, which a capture may not.
+    enqueue();
+    _instance.space().fence("drogue::perf::ceiling: prepared");
+    if (in_graph) _graph.emplace(_instance, [this](const ExecutionSpace&) { enqueue(); });
+  }
 
   void reset() override {
     Kokkos::deep_copy(_instance.space(), _count, std::int64_t{0});
     _instance.space().fence("drogue::perf::ceiling: reset");
   }
   void run() override {
-    if (_in_graph)
-      _graph.launch();
+    if (_graph)
+      _graph->launch();
     else
       enqueue();
     _instance.space().fence("drogue::perf::ceiling: launched");
@@ -375,8 +384,7 @@ class LaunchKernel final : public CeilingKernel {
 
   device::Instance<ExecutionSpace> _instance;
   Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _count;
-  bool _in_graph;
-  device::CapturedGraph<ExecutionSpace> _graph;
+  std::optional<device::CapturedGraph<ExecutionSpace>> _graph;
 };
 
 /// True if an execution space has a ceiling on this machine. Does not throw.

@@ -56,6 +56,7 @@ class FabricPair final : public CudaPair {
   }
 
   [[nodiscard]] int block() const override { return 128; }
+  [[nodiscard]] std::int64_t cells() const override { return static_cast<std::int64_t>(_vertices); }
 
  private:
   using Points = fabric::PointsView<Kokkos::Cuda>;

@@ -61,6 +61,7 @@ class FlowPair final : public CudaPair {
   }
 
   [[nodiscard]] int block() const override { return flow::tile_x * flow::tile_y; }
+  [[nodiscard]] std::int64_t cells() const override { return _grid.cells(); }
 
  private:
   using List = flow::List<Kokkos::Cuda>;

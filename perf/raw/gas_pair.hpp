@@ -73,6 +73,7 @@ class GasPair final : public CudaPair {
   }
 
   [[nodiscard]] int block() const override { return _setup.team_size; }
+  [[nodiscard]] std::int64_t cells() const override { return _setup.boundaries.cells; }
 
  private:
   using Fields = gas::FieldsView<Kokkos::Cuda>;

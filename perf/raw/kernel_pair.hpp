@@ -45,6 +45,9 @@ class KernelPair {
 
   /// Threads of a block.
   [[nodiscard]] virtual int block() const = 0;
+
+  /// Cells or vertices.
+  [[nodiscard]] virtual std::int64_t cells() const = 0;
 };
 
 /// Fused gas step, and the state that it starts from, kg, m, s, J per volume. A step reads one buffer and

@@ -153,7 +153,7 @@ void add_size(const Size& size, device::Backend backend, bool quick, const nlohm
     const VersionCost cost = version_cost(kokkos.samples, hand_written.samples);
     print_row(size, launches, kokkos, hand_written, cost);
     for (const Version version : {Version::kokkos, Version::hand_written}) {
-      nlohmann::json facts = {{"backend", backend_name},     {"cells", size.cells},
+      nlohmann::json facts = {{"backend", backend_name},     {"cells", pair->cells()},
                               {"version", name_of(version)}, {"launches", name_of(launches)},
                               {"block", pair->block()},      {"steps", steps_of(size.cells)}};
       if (version == Version::kokkos) {
