@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -62,6 +63,25 @@ std::vector<std::string> command_of(const ScalingRequest& request, const Scaling
   return words;
 }
 
+/// Reason of a failure in a log: the sentence of the program, else the first line with words, which a
+/// launcher may frame.
+std::string reason_in(const std::filesystem::path& log) {
+  std::ifstream file(log);
+  std::string first;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("drogue-parachute: ")) return line;
+    const bool has_words = std::ranges::any_of(line, [](unsigned char c) { return std::isalpha(c) != 0; });
+    if (first.empty() && has_words) first = line;
+  }
+  return first;
+}
+
+/// Code of a run that failed. A launcher that starts nothing ends with 1.
+ExitCode code_of_run(int status) {
+  if (status == 0) return ExitCode::io_error;
+  return status == 1 ? ExitCode::no_backend : static_cast<ExitCode>(status);
+}
+
 /// Runs the program once and adds a sample. Throws Failure as the program does.
 void run_point(const ScalingRequest& request, device::Backend backend, const std::filesystem::path& folder,
                ScalingPoint& point) {
@@ -72,8 +92,8 @@ void run_point(const ScalingRequest& request, device::Backend backend, const std
   point.result = nlohmann::json::parse(file, nullptr, false);
   const bool ended = status == 0 || status == static_cast<int>(ExitCode::verification_failed);
   if (!ended || point.result.is_discarded() || point.result.value("ranks", 0) < 1)
-    throw Failure(status == 0 ? ExitCode::io_error : static_cast<ExitCode>(status),
-                  "a run on " + std::to_string(point.units) + " units failed: " + last_line(log));
+    throw Failure(code_of_run(status), "a run on " + std::to_string(point.units) + " " + name(request.unit) +
+                                           " failed: " + reason_in(log));
   point.samples.push_back(point.result["timing"]["compute_s"].get<double>() /
                           point.result["steps"].get<double>());
   for (const nlohmann::json& check : point.result["checks"])

@@ -273,6 +273,14 @@ class ProgramScaling(perf_program.PerfTest):
         self.assert_records(self.scaled("--over", "ranks"), ("24x24x24", "24x24x24"), "strong")
         self.assert_records(self.scaled("--over", "ranks", "--weak"), ("24x24x24", "24x24x48"), "weak")
 
+    def test_launcher_that_fails_gives_its_reason(self):
+        launcher = self.folder / "mpirun"
+        launcher.write_text("#!/bin/sh\necho ------\necho 'mpirun finds no slots.'\necho ------\nexit 1\n")
+        launcher.chmod(0o755)
+        process = self.expect(77, "table", "scaling", "--over", "ranks", "--backend", "serial", "--quick",
+                              environment={"PATH": f"{self.folder}:{os.environ['PATH']}"})
+        self.assertIn("a run on 1 ranks failed: mpirun finds no slots.", process.stderr)
+
     def test_ranks_need_a_launcher(self):
         process = self.expect(77, "table", "scaling", "--over", "ranks", "--backend", "serial",
                               environment={"PATH": str(self.folder)})
