@@ -163,6 +163,21 @@ def counted_steps(machine=H200):
     return found
 
 
+def scaling(machine=EPYC):
+    """Strong scaling over threads at 80 %, and weak scaling over ranks at 50 %."""
+    threads = [
+        record(f"scaling/gas-step/openmp/8192/{count}", 1e-3 / (1.6 if count == 2 else 1.0), machine,
+               {"backend": "openmp", "cells": 8192, "variant": "", "threads": count})
+        for count in (1, 2)
+    ]  # fmt: skip
+    ranks = [
+        record(f"scaling/flow-step/serial/64x64x{64 * count}/ranks/{count}/weak", 1e-2 * count, machine,
+               {"backend": "serial", "cells": count << 18, "ranks": count, "threads": 1, "scaling": "weak"})
+        for count in (1, 2)
+    ]  # fmt: skip
+    return threads + ranks
+
+
 def abstraction(machine=H200):
     """Kernels of gas and springs in Kokkos, 2 and 8 % slower than in CUDA at a million cells, and a small one."""
     found = []

@@ -1,4 +1,4 @@
-"""Bounds of a step by the measured ceilings, and the cost of Kokkos, on pages of synthetic records."""
+"""Bounds of a step by the measured ceilings, scaling, and the cost of Kokkos, on pages of synthetic records."""
 
 import unittest
 
@@ -105,6 +105,23 @@ class CostOfKokkos(Folder):
         lines = records.abstraction()
         lines[1]["check"] = "failed"
         self.assertEqual(1, len(self.rows("gas", lines)[1:]))
+
+
+class Scaling(Folder):
+    def test_efficiency_is_against_one_unit(self):
+        page, _ = self.page(records.scaling(), app="gas")
+        rows = page.tables["AMD EPYC", "Scaling"][1:]
+        self.assertEqual([("1 thread", "100 %"), ("2 threads", "80 %")], [(row[4], row[6]) for row in rows])
+
+    def test_weak_scaling_compares_growing_sizes(self):
+        page, _ = self.page(records.scaling(), app="flow")
+        rows = page.tables["AMD EPYC", "Scaling"][1:]
+        self.assertEqual([("weak", "1 rank", "100 %"), ("weak", "2 ranks", "50 %")],
+                         [(row[2], row[4], row[6]) for row in rows])
+
+    def test_without_one_unit_there_is_no_efficiency(self):
+        page, _ = self.page(records.scaling()[1:2], app="gas")
+        self.assertEqual("", page.tables["AMD EPYC", "Scaling"][1][6])
 
 
 if __name__ == "__main__":

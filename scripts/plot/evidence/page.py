@@ -8,7 +8,7 @@ from PIL import Image
 from .. import html_page, style
 from ..flow import solver_tables
 from ..options import transfers as options_transfers
-from . import abstraction, block_sizes, bounds, roofline, steps, transfers, work_precision_section
+from . import abstraction, block_sizes, bounds, roofline, scaling, steps, transfers, work_precision_section
 from .perf_record import Machine, Record
 from .records import Evidence
 from .section import Cell, Section
@@ -53,6 +53,12 @@ def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     found += steps.sections(evidence.select(machine, "parachute-flight"))
     found += solver_tables.pressure_sections(evidence.select(machine, "flow-pressure"))
     return found + solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
+
+
+def _common_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    """Sections that any mini-app may have."""
+    found = scaling.sections(evidence.select(machine, "scaling"))
+    return found + abstraction.sections(evidence.select(machine, "abstraction"))
 
 
 _SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections}
@@ -109,10 +115,7 @@ def write(evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
 
 def machine_sections(app: str, evidence: Evidence) -> list[tuple[Machine, list[Section]]]:
     """Sections of a mini-app, whose records `evidence` holds, by machine."""
-    return [
-        (machine, _SECTIONS[app](evidence, machine) + abstraction.sections(evidence.select(machine, "abstraction")))
-        for machine in evidence.machines
-    ]
+    return [(machine, _SECTIONS[app](evidence, machine) + _common_sections(evidence, machine)) for machine in evidence.machines]
 
 
 class Pictures:

@@ -41,6 +41,7 @@ _FACTS = {
     },
     "tridiagonal": {},
     "abstraction": {"backend": str, "cells": int, "version": str, "launches": str},
+    "scaling": {"backend": str, "cells": int, "threads": int},
 }  # fmt: skip
 _NAMED_BY_CASE = (
     "gas-step",
@@ -64,6 +65,7 @@ _OPTIONAL = {
     "gas-step": {"flops": float, "bytes": float, "vector_bits": int, **_COUNTS},
     "springs-step": {"bytes": float, **_COUNTS},
     "ceiling": {"flops": float, "bytes": float, "instructions": float},
+    "scaling": {"ranks": int, "scaling": str},
     "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
     "gas-transfers": {"thesis": dict},
     "springs-solution": {"status": str, "message": str},
@@ -116,7 +118,8 @@ class Record:
     @property
     def app(self) -> str:
         """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, canopies to flow."""
-        kind = self.case.split("/")[2] if self.kind == "abstraction" else self.kind
+        place = {"abstraction": 2, "scaling": 1}.get(self.kind, 0)
+        kind = self.case.split("/")[place] if self.case.count("/") >= place else self.kind
         app = kind.partition("-")[0]
         return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow"}.get(app, app)
 
