@@ -15,8 +15,14 @@ struct CeilingEntry {
 
 constexpr CeilingEntry ceilings[] = {
     {Ceiling::fp64, "fp64", "FP64 multiply-add units", 1e-9},
+    {Ceiling::fp32, "fp32", "FP32 multiply-add units", 1e-3},
+    {Ceiling::issue, "issue", "issue of instructions", 1e-3},
     {Ceiling::memory, "memory", "memory bandwidth", 0.0},
-    {Ceiling::cache, "cache", "bandwidth of the L1 cache, on a GPU of the L2 cache", 0.0}};
+    {Ceiling::cache, "cache", "bandwidth of the L1 cache, on a GPU of the L2 cache", 0.0},
+    {Ceiling::l2, "l2", "bandwidth of the L2 cache", 0.0},
+    {Ceiling::l3, "l3", "bandwidth of the L3 cache", 0.0},
+    {Ceiling::launch, "launch", "latency of a launch", 0.0},
+    {Ceiling::graph_node, "graph-node", "latency of a kernel in a graph", 0.0}};
 
 Case ceiling_case(device::Backend backend, const CeilingEntry& entry) {
   const auto kernel = std::make_shared<std::unique_ptr<CeilingKernel>>();
@@ -30,13 +36,15 @@ Case ceiling_case(device::Backend backend, const CeilingEntry& entry) {
             return Sample{[=] { (*kernel)->reset(); },
                           [=] {
                             (*kernel)->run();
-                            return 1L;
+                            return (*kernel)->launches();
                           }};
           },
           [=] { return (*kernel)->error(); },
           entry.tolerance,
           [=] {
-            return Facts{name, 0, "", (*kernel)->flops(), (*kernel)->bytes()};
+            Facts facts{name, 0, "", (*kernel)->flops(), (*kernel)->bytes()};
+            facts.instructions = (*kernel)->instructions();
+            return facts;
           }};
 }
 
@@ -46,7 +54,8 @@ std::vector<Case> ceiling_cases() {
   std::vector<Case> cases;
   for (const device::Backend backend : device::compiled_backends())
     for (const CeilingEntry& entry : ceilings)
-      if (device::is_present(backend)) cases.push_back(ceiling_case(backend, entry));
+      if (device::is_present(backend) && has_ceiling(backend, entry.ceiling))
+        cases.push_back(ceiling_case(backend, entry));
   return cases;
 }
 

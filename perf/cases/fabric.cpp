@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "kernels/fabric/elastic/adjacency.hpp"
 #include "kernels/reference/fabric/scatter_step.hpp"
 #include "perf/cases/cases.hpp"
+#include "perf/models/fabric_step.hpp"
 #include "perf/problems/sheet.hpp"
 
 namespace drogue::perf {
@@ -58,6 +60,23 @@ const FabricVariant patch_64 = {"patch-64", [](fabric::Parameters& p) { p.patch 
 const FabricVariant patch_128 = {"patch-128", [](fabric::Parameters& p) { p.patch = 128; }};
 const FabricVariant patch_256 = {"patch-256", [](fabric::Parameters& p) { p.patch = 256; }};
 
+Facts sheet_facts(device::Backend backend, const fabric::Parameters& p, const fabric::Solver& solver,
+                  const std::string& variant) {
+  Facts facts{std::string(device::name(backend)), static_cast<std::int64_t>(p.mass.size()), variant};
+  facts.driver = solver.driver();
+  if (facts.driver == "persistent") return facts;
+  if (p.integrator != fabric::Integrator::rk4) {
+    facts.launches = 1;
+    return facts;
+  }
+  const bool stages = !device::needs_device(backend) || p.driver == fabric::Driver::stages;
+  facts.launches = stages ? 4 : 2;
+  if (device::needs_device(backend) == stages) return facts;  // stages of a device store nothing in slots
+  const auto slots = static_cast<std::int64_t>(fabric::ring_adjacency(p.mesh).neighbour.size());
+  facts.bytes = fabric_step_bytes(stages ? FabricKernels::stages : FabricKernels::halves, facts.cells, slots);
+  return facts;
+}
+
 Case sheet_case(device::Backend backend, int vertices, long steps, const FabricVariant& variant) {
   struct Run {
     fabric::Parameters p;
@@ -81,9 +100,7 @@ Case sheet_case(device::Backend backend, int vertices, long steps, const FabricV
           },
           [=] { return sheet::energy_drift(run->p, *run->solver); },
           sheet::tolerance(changed.integrator),
-          [=] {
-            return Facts{name, static_cast<std::int64_t>(run->p.mass.size()), variant.name};
-          }};
+          [=] { return sheet_facts(backend, run->p, *run->solver, variant.name); }};
 }
 
 std::vector<FabricVariant> variants_of(int vertices, bool gpu) {

@@ -73,7 +73,11 @@ Case flow_case(device::Backend backend, const Cells& cells, const FlowVariant& v
                        : std::numeric_limits<double>::infinity();
           },
           1e-12,  // a wrong projection leaves a divergence of order one
-          [=] { return Facts{name, count, variant.name, 0.0, flow_step_bytes(p), *exact_error}; }};
+          [=] {
+            Facts facts{name, count, variant.name, 0.0, flow_step_bytes(p), *exact_error};
+            facts.driver = (*solver)->driver();
+            return facts;
+          }};
 }
 
 void add_pressure_cases(std::vector<Case>& cases, device::Backend backend, const Cells& grid) {

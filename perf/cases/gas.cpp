@@ -87,8 +87,14 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
           sod::tolerance(p),
           [=] {
             const StepWork work = step_work(p, (*solver)->tiling());
-            return Facts{name, cells, variant.name, static_cast<double>(work.arithmetic.flops()),
-                         static_cast<double>(work.bytes)};
+            Facts facts{name, cells, variant.name, static_cast<double>(work.arithmetic.flops()),
+                        static_cast<double>(work.bytes)};
+            facts.instructions = static_cast<double>(work.arithmetic.instructions());
+            facts.driver = (*solver)->driver();
+            // The kernels of the stages, and the one that accepts the step.
+            if (facts.driver != "persistent")
+              facts.launches = ((*solver)->tiling().fused ? 1 : gas::stage_table(p.time_scheme).stages) + 1;
+            return facts;
           }};
 }
 

@@ -28,6 +28,9 @@ nlohmann::json to_json(const Facts& facts) {
   if (facts.cells > 0) json.update({{"cells", facts.cells}, {"variant", facts.variant}});
   if (facts.flops > 0.0) json["flops"] = facts.flops;
   if (facts.bytes > 0.0) json["bytes"] = facts.bytes;
+  if (facts.instructions > 0.0) json["instructions"] = facts.instructions;
+  if (facts.launches > 0) json["launches"] = facts.launches;
+  if (!facts.driver.empty()) json["driver"] = facts.driver;
   if (facts.solution_error > 0.0) json["solution_error"] = facts.solution_error;
   return json;
 }

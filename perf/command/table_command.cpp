@@ -18,14 +18,43 @@ struct TableOptions {
   std::string backend = "auto";
   std::string architecture = "sm_90";
   bool quick = false;
+  std::string over;  ///< units of scaling; empty: threads
+  bool weak = false;
+  int most = 0;
+
+  /// True if the scaling is that of a program: over ranks, or weak.
+  [[nodiscard]] bool scales_program() const { return over == "ranks" || weak; }
 };
 
 /// Tables of a mini-app.
 std::vector<std::string> tables_of(const std::string& app) {
-  if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling"};
-  if (app == "flow") return {"block-size", "pressure", "memory", "scaling"};
+  if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling", "abstraction"};
+  if (app == "flow") return {"block-size", "pressure", "memory", "scaling", "abstraction"};
+  if (app == "springs") return {"transfers", "scaling", "abstraction"};
   if (app == "parachute") return {"block-size"};
   return {"transfers", "scaling"};
+}
+
+/// Throws Failure(usage) for options of scaling that do not fit the table or the mini-app.
+void check_scaling(const TableOptions& options) {
+  if (options.table != "scaling" && (!options.over.empty() || options.weak || options.most > 0))
+    throw Failure(ExitCode::usage, "--over, --weak and --most belong to the table scaling");
+  if (options.scales_program() && options.app != "flow")
+    throw Failure(ExitCode::usage, "of " + options.app + " there is strong scaling over threads alone; " +
+                                       "weak scaling and ranks have --app flow");
+  if (options.most > 0 && !options.scales_program())
+    throw Failure(ExitCode::usage, "--most needs --weak or --over ranks");
+}
+
+/// Scaling of a program, or of the cases of `run`.
+Table scaling_table(const TableOptions& options) {
+  std::vector<device::Backend> backends = backends_of(options.backend);
+  if (!options.scales_program()) return print_scaling(options.app, backends, options.quick);
+  const ScalingUnit unit = options.over == "ranks" ? ScalingUnit::ranks : ScalingUnit::threads;
+  // Ranks have one thread each: on OpenMP they repeat those of Serial.
+  if (unit == ScalingUnit::ranks && options.backend == "auto" && backends.size() > 1)
+    std::erase(backends, device::Backend::openmp);
+  return print_program_scaling({unit, options.weak, options.most}, backends, options.quick);
 }
 
 /// Tables that need a backend and Kokkos.
@@ -37,9 +66,16 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
     throw Failure(ExitCode::usage, "a block size means nothing to the host backend '" +
                                        std::string(device::name(backend)) +
                                        "', whose teams are single threads; give --backend cuda");
+  const bool abstraction = options.table == "abstraction";
+  if (abstraction && backend != device::Backend::cuda)
+    throw Failure(ExitCode::usage,
+                  "the table abstraction compares kernels in Kokkos with kernels in CUDA and "
+                  "means nothing to the host backend '" +
+                      std::string(device::name(backend)) + "'; give --backend cuda");
   const device::Runtime runtime(kokkos);
   const device::DeviceFacts device = device::device_facts();
   const nlohmann::json here = provenance(device);
+  if (abstraction) return print_abstraction(options.app, backend, options.quick, here);
   if (block_size)
     return print_block_sizes(options.app, backend, options.quick, device.capability, options.profile, here);
   const auto print = options.table == "pressure" ? print_flow_pressure
@@ -52,9 +88,9 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
 
 ExitCode print_table(TableOptions options, const std::vector<std::string>& kokkos) {
   require_name("table", options.table,
-               {"occupancy", "block-size", "transfers", "scaling", "pressure", "memory"});
-  if (options.app.empty())
-    options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
+               {"occupancy", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"});
+  const bool of_flow = options.table == "pressure" || options.table == "memory" || options.scales_program();
+  if (options.app.empty()) options.app = of_flow ? "flow" : "gas";
   require_app(options.app);
   if (options.app == "parachute" && options.table != "block-size")
     throw Failure(ExitCode::usage,
@@ -71,6 +107,7 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
   require_name("table of " + options.app, options.table, tables_of(options.app));
   if (!options.profile.empty() && options.table != "occupancy" && options.table != "block-size")
     throw Failure(ExitCode::usage, "--profile is for table occupancy and table block-size");
+  check_scaling(options);
   run::require_writable(options.out);
   install_signal_handlers();
   Table table;
@@ -79,7 +116,7 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
         print_occupancy(options.architecture, options.profile,
                         provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
   else if (options.table == "scaling")
-    table = print_scaling(options.app, backends_of(options.backend), options.quick);
+    table = scaling_table(options);
   else
     table = timed_table(options, kokkos);
   write_records(options.out, table.records);
@@ -92,9 +129,10 @@ Command table_command(CLI::App& program) {
   const auto options = std::make_shared<TableOptions>();
   CLI::App* app = program.add_subcommand(
       "table", "Print a table, most of them of [Shi] (README.md cites it) beside our own numbers");
-  app->add_option("TABLE", options->table,
-                  "occupancy (computed); block-size or transfers; scaling with size and threads; pressure or "
-                  "memory of flow")
+  app->add_option(
+         "TABLE", options->table,
+         "occupancy (computed); block-size or transfers; scaling with size and threads; abstraction: "
+         "kernels in Kokkos against CUDA; pressure or memory of flow")
       ->required();
   app->add_option("--app", options->app, app_help("Kernels that are measured"));
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
@@ -107,6 +145,11 @@ Command table_command(CLI::App& program) {
       ->capture_default_str();
   app->add_option("--out", options->out, "File for the records, one JSON line a row");
   app->add_flag("--quick", options->quick, "Few rows and few samples");
+  app->add_option("--over", options->over, "Scaling over threads (default) or, of flow, ranks of mpirun")
+      ->check(CLI::IsMember({"threads", "ranks"}));
+  app->add_flag("--weak", options->weak, "Scaling of flow with work that grows with threads or ranks");
+  app->add_option("--most", options->most, "Largest number of threads or ranks; all processors or GPUs")
+      ->check(CLI::Range(1, 4096));
   return {app, [options](const std::vector<std::string>& kokkos) { return print_table(*options, kokkos); }};
 }
 

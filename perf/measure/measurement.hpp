@@ -27,6 +27,11 @@ struct Facts {
   double bytes = 0.0;   ///< per unit of work, between kernels and memory
   /// Relative error of a separate run of the solver against an exact solution; 0 without one.
   double solution_error = 0.0;
+  /// Least number of arithmetic instructions per unit of work, with every operation fused that can be; on a
+  /// GPU of single threads.
+  double instructions = 0.0;
+  long launches = 0;  ///< kernels per unit of work that wait for one another; 0 within a persistent kernel
+  std::string driver = {};  ///< that launches them (`stepping::driver_name`)
 };
 
 /// Benchmark case.

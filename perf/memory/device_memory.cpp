@@ -16,6 +16,14 @@ std::int64_t used_device_memory() {
 #endif
 }
 
+int device_count() {
+#if defined(KOKKOS_ENABLE_CUDA)
+  int count = 0;
+  if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
+#endif
+  return 0;
+}
+
 std::string device_address() {
 #if defined(KOKKOS_ENABLE_CUDA)
   int device = 0;

@@ -10,6 +10,9 @@ namespace drogue::perf {
 /// Throws std::runtime_error if the driver fails.
 [[nodiscard]] std::int64_t used_device_memory();
 
+/// Number of GPUs that this process sees; 0 in builds without CUDA. Does not throw.
+[[nodiscard]] int device_count();
+
 /// PCI address of the GPU of this process, such as "0000:19:00.0"; empty in builds without CUDA, or if the
 /// driver does not state it. Requires an initialised runtime. Does not throw.
 [[nodiscard]] std::string device_address();

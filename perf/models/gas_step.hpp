@@ -21,6 +21,12 @@ struct Arithmetic {
     return additions + multiplications + divisions + roots;
   }
 
+  /// Least number of instructions: every multiplication is fused with an addition, and every other operation
+  /// takes one. Does not throw.
+  [[nodiscard]] constexpr std::int64_t instructions() const {
+    return (additions > multiplications ? additions : multiplications) + divisions + roots + comparisons;
+  }
+
   friend constexpr Arithmetic operator+(const Arithmetic& a, const Arithmetic& b) {
     return {a.additions + b.additions, a.multiplications + b.multiplications, a.divisions + b.divisions,
             a.roots + b.roots, a.comparisons + b.comparisons};

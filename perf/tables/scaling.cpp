@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -12,6 +11,7 @@
 #include "common/run/statistics.hpp"
 #include "perf/bisect/child_process.hpp"
 #include "perf/compare/record_file.hpp"
+#include "perf/models/scaling.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
@@ -27,12 +27,8 @@ std::string cases_of(const std::string& app, device::Backend backend) {
 
 /// 1, 2, 4, ... and the number of processors for a backend with threads, else 1.
 std::vector<int> thread_counts(device::Backend backend) {
-  const int most = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  std::vector<int> counts = {1};
-  if (backend != device::Backend::openmp) return counts;
-  while (2 * counts.back() < most) counts.push_back(2 * counts.back());
-  if (most > 1) counts.push_back(most);
-  return counts;
+  return unit_counts(
+      backend == device::Backend::openmp ? static_cast<int>(std::thread::hardware_concurrency()) : 1);
 }
 
 /// Records of `drogue-perf run` with a number of threads, in a process of its own: the number is fixed when

@@ -52,12 +52,36 @@ Table print_flow_memory(device::Backend backend, bool quick, const nlohmann::jso
 /// Failure as `run` does, and interrupted after a signal.
 Table print_scaling(const std::string& app, const std::vector<device::Backend>& backends, bool quick);
 
+/// Part of a machine over which scaling is measured.
+enum class ScalingUnit { threads, ranks };
+
+/// "threads" or "ranks". Does not throw.
+const char* name(ScalingUnit unit);
+
+/// Scaling of a program.
+struct ScalingRequest {
+  ScalingUnit unit = ScalingUnit::threads;
+  bool weak = false;  ///< the work grows with the units
+  int most = 0;       ///< largest number of units; 0: all processors or GPUs
+};
+
+/// Strong or weak scaling of steps of flow over threads, or over ranks of mpirun, by runs of
+/// drogue-parachute, which stands beside this program. Call it without an initialised runtime. Throws Failure
+/// as the program does, interrupted after a signal, and no_backend without mpirun.
+Table print_program_scaling(const ScalingRequest& request, const std::vector<device::Backend>& backends,
+                            bool quick);
+
 /// Time against block size and mesh for the kernels of `block_forms`, figure 4.4 for gas, beside the
 /// occupancy that the model predicts. `backend` must be a GPU. `capability`: its compute capability; an
 /// unknown one is replaced by 9.0. `profile`: for `read_profiles`, for registers of the kernels; empty: those
 /// of their launch bounds.
 Table print_block_sizes(const std::string& app, device::Backend backend, bool quick,
                         const std::string& capability, const std::string& profile,
+                        const nlohmann::json& provenance);
+
+/// Cost of Kokkos: times of kernels of gas, springs or flow against the same algorithm written in CUDA, by
+/// size. `backend` must be `cuda`.
+Table print_abstraction(const std::string& app, device::Backend backend, bool quick,
                         const nlohmann::json& provenance);
 
 }  // namespace drogue::perf

@@ -116,6 +116,16 @@ def uses_kokkos_unseen(path, texts):
     return bool(re.search(r"\bKokkos::|\bKOKKOS_[A-Z]", code)) and not reaches_kokkos(path, texts)
 
 
+# Folders of kernels in CUDA: the launcher that Kokkos lacks, and what measures its cost.
+RAW_CUDA = ("kernels/device/", "perf/raw/")
+
+
+def is_misplaced_cuda(path, text):
+    """True for a source outside of RAW_CUDA that defines or launches a CUDA kernel of its own."""
+    code = re.sub(r'//.*|"[^"\n]*"', "", text)
+    return bool(path.endswith((".cu", ".cuh")) or re.search(r"__global__|<<<", code)) and not path.startswith(RAW_CUDA)
+
+
 def repository(environment):
     """The repository root: DROGUE_SOURCE, or two folders up."""
     return Path(environment.get("DROGUE_SOURCE", Path(__file__).resolve().parents[2]))

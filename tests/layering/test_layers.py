@@ -58,6 +58,9 @@ class Repository(unittest.TestCase):
         self.assertEqual([], [p for p, t in TEXTS.items() if p.startswith(places)
                               and layers.own_header_comes_late(p, t, TEXTS)])
 
+    def test_kernels_in_cuda_have_their_folders(self):
+        self.assertEqual([], [path for path, text in TEXTS.items() if layers.is_misplaced_cuda(path, text)])
+
     def test_every_layer_has_its_folder(self):
         self.assertEqual([], layers.without_folder(TEXTS))
 
@@ -104,6 +107,13 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
     def test_miniapps(self):
         self.assert_caught("miniapps/gas/x.cpp", '"miniapps/springs/scene/scene.hpp"', "may only use")
         self.assert_caught("miniapps/gas/x.cpp", "<Kokkos_Core.hpp>", "does without")
+
+    def test_cuda_outside_of_its_folders(self):
+        kernel, launch = "__global__ void k();\n", "k<<<1, 32>>>();\n"
+        for path, text in (("kernels/gas/x.hpp", kernel), ("perf/cases/x.cpp", launch), ("perf/ladders/weno/x.cu", "")):
+            self.assertTrue(layers.is_misplaced_cuda(path, text), path)
+        self.assertFalse(layers.is_misplaced_cuda("perf/raw/x.cu", kernel + launch))
+        self.assertFalse(layers.is_misplaced_cuda("kernels/gas/x.hpp", "// as k<<<1, 32>>>()\nint a;\n"))
 
     def test_framework(self):
         path = "miniapps/framework/x.cpp"

@@ -21,7 +21,7 @@ def is_available():
 class Facts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cases = "^(ceiling/(fp64|cache)/serial|gas-step/(serial|dense-loop)/1024)$"
+        cases = "^(ceiling/(fp64|cache|launch)/serial|gas-step/(serial|dense-loop)/1024|springs-step/serial/2640)$"
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "records.jsonl"
             subprocess.run([PROGRAM, "run", "--quick", "--filter", cases, "--out", file], capture_output=True,
@@ -39,6 +39,20 @@ class Facts(unittest.TestCase):
         self.assertEqual(4 * (274 + 256) * 24, facts["bytes"])
         # Three stages with about 500 operations per cell, and a few per cent in the halo.
         self.assertAlmostEqual(1500, facts["flops"] / 1024, delta=150)
+
+    def test_steps_record_instructions_and_launches(self):
+        facts = self.facts("gas-step/serial/1024")
+        # The step, and the kernel that accepts it.
+        self.assertEqual((2, "plain"), (facts["launches"], facts["driver"]))
+        # Fused multiply-adds are one instruction of two operations; comparisons are no operations.
+        self.assertTrue(0.5 < facts["instructions"] / facts["flops"] < 1.0)
+        facts = self.facts("springs-step/serial/2640")
+        self.assertEqual(4, facts["launches"])
+        # 636 bytes per vertex, and 112 per slot of its ring of seven or, in the padding of slices, more.
+        self.assertTrue(636 + 112 * 7 < facts["bytes"] / facts["cells"] < 636 + 112 * 9)
+
+    def test_launches_record_neither_bytes_nor_flops(self):
+        self.assertEqual({"backend": "serial"}, self.facts("ceiling/launch/serial"))
 
     def test_omits_unknown_flops_and_bytes(self):
         expected = {"backend": "serial", "cells": 1024, "variant": "dense-loop"}

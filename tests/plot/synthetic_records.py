@@ -134,6 +134,65 @@ def ceilings(backend="cuda", machine=H200, fp64=33e12, memory=4.2e12, cache=5.3e
     ]
 
 
+def more_ceilings(machine=H200):
+    """Ceilings of CUDA beside the first three: twice the rate of FP64, and 2 us per launch, 0.5 us per kernel of a graph."""
+    facts, work = {"backend": "cuda"}, 1e9
+    return [
+        record("ceiling/fp32/cuda", work / 66e12, machine, facts | {"flops": work}),
+        record("ceiling/issue/cuda", work / 33e12, machine, facts | {"instructions": work}),
+        record("ceiling/launch/cuda", 2e-6, machine, facts),
+        record("ceiling/graph-node/cuda", 0.5e-6, machine, facts),
+    ]
+
+
+def counted_steps(machine=H200):
+    """Steps of gas in a graph and in a persistent kernel, and of springs and flow, bound by different ceilings."""
+    found = []
+    for case, seconds, facts in (
+        # 1.32e9 FLOP at 33e12 FLOP/s are 40 us, 0.66e9 instructions 20 us.
+        ("gas-step/cuda/1048576", 50e-6, {"flops": 1.32e9, "instructions": 0.66e9, "bytes": 42e6, "launches": 2,
+                                          "driver": "graph"}),
+        ("gas-step/cuda/1024", 4e-6, {"flops": 1.32e6, "instructions": 0.66e6, "bytes": 42e3, "driver": "persistent"}),
+        ("gas-step/cuda/2048", 1.25e-6, {"flops": 2.64e6, "bytes": 84e3, "launches": 2, "driver": "graph"}),
+        # 420 bytes a vertex at 4.2 TB/s are 100 us, and 10 000 vertices stay in the cache.
+        ("springs-step/cuda/1000000", 125e-6, {"bytes": 420e6, "launches": 2, "driver": "graph"}),
+        ("springs-step/cuda/10000", 0.9e-6, {"bytes": 4.2e6, "launches": 1, "driver": "plain"}),
+    ):
+        _, backend, cells = case.split("/")
+        found.append(record(case, seconds, machine, {"backend": backend, "cells": int(cells), "variant": "", **facts}))
+    return found
+
+
+def scaling(machine=EPYC):
+    """Strong scaling over threads at 80 %, and weak scaling over ranks at 50 %."""
+    threads = [
+        record(f"scaling/gas-step/openmp/8192/{count}", 1e-3 / (1.6 if count == 2 else 1.0), machine,
+               {"backend": "openmp", "cells": 8192, "variant": "", "threads": count})
+        for count in (1, 2)
+    ]  # fmt: skip
+    ranks = [
+        record(f"scaling/flow-step/serial/64x64x{64 * count}/ranks/{count}/weak", 1e-2 * count, machine,
+               {"backend": "serial", "cells": count << 18, "ranks": count, "threads": 1, "scaling": "weak"})
+        for count in (1, 2)
+    ]  # fmt: skip
+    return threads + ranks
+
+
+def abstraction(machine=H200):
+    """Kernels of gas and springs in Kokkos, 2 and 8 % slower than in CUDA at a million cells, and a small one."""
+    found = []
+    for kernel, cells, launches, ratio in (
+        ("gas-step", 1 << 20, "graph", 1.02), ("gas-step", 1024, "plain", 1.3), ("springs-step", 1 << 20, "graph", 1.08),
+    ):  # fmt: skip
+        for version, factor in (("kokkos", ratio), ("hand-written", 1.0)):
+            facts = {"backend": "cuda", "cells": cells, "version": version, "launches": launches, "block": 128, "steps": 64}
+            if version == "kokkos":
+                facts |= {"ratio": ratio, "ratio_low": ratio - 0.01, "ratio_high": ratio + 0.01}
+            case = f"abstraction/cuda/{kernel}/{cells}/{launches}/{version}"
+            found.append(record(case, 1e-4 * factor, machine, facts, error=1e-15))
+    return found
+
+
 def transfers(machine=H200):
     """Copies take a third (pageable) or a twentieth (pinned) of the times of [Shi], similar to its Table 5.5."""
     found = []

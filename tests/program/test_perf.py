@@ -13,6 +13,7 @@ import unittest
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
+from rank_processes import LAUNCHER, RANK_ENVIRONMENT
 
 FIELDS = {"schema", "case", "unit", "bound", "samples", "median", "interval", "error", "check", "provenance"}
 PROVENANCE = {"version", "git", "compiler", "flags", "kokkos", "cpu", "gpu", "driver", "threads", "date"}
@@ -342,6 +343,39 @@ class Scaling(perf_program.PerfTest):
             self.assertEqual({1, os.cpu_count()} | {2**k for k in range(16) if 2**k < os.cpu_count()}, threads["openmp"])
 
 
+class ProgramScaling(perf_program.PerfTest):
+    def scaled(self, *words):
+        self.expect(0, "table", "scaling", "--quick", "--backend", "serial", "--most", "2", *words, "--out", "rows.jsonl",
+                    environment=RANK_ENVIRONMENT)
+        return self.records("rows.jsonl")
+
+    def assert_records(self, records, cells, scaling):
+        self.assertEqual([f"scaling/flow-step/serial/{text}/ranks/{ranks}/{scaling}" for text, ranks in zip(cells, (1, 2))],
+                         [record["case"] for record in records])
+        for ranks, record in enumerate(records, 1):
+            self.assertEqual(("passed", 3, "s per step"), (record["check"], len(record["samples"]), record["unit"]))
+            self.assertTrue(0.0 < record["error"] < 1.0, record["error"])
+            self.assertEqual((ranks, 1, scaling), tuple(record["facts"][name] for name in ("ranks", "threads", "scaling")))
+
+    @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
+    def test_ranks_share_the_box_or_add_to_it(self):
+        self.assert_records(self.scaled("--over", "ranks"), ("24x24x24", "24x24x24"), "strong")
+        self.assert_records(self.scaled("--over", "ranks", "--weak"), ("24x24x24", "24x24x48"), "weak")
+
+    def test_launcher_that_fails_gives_its_reason(self):
+        launcher = self.folder / "mpirun"
+        launcher.write_text("#!/bin/sh\necho ------\necho 'mpirun finds no slots.'\necho ------\nexit 1\n")
+        launcher.chmod(0o755)
+        process = self.expect(77, "table", "scaling", "--over", "ranks", "--backend", "serial", "--quick",
+                              environment={"PATH": f"{self.folder}:{os.environ['PATH']}"})
+        self.assertIn("a run on 1 ranks failed: mpirun finds no slots.", process.stderr)
+
+    def test_ranks_need_a_launcher(self):
+        process = self.expect(77, "table", "scaling", "--over", "ranks", "--backend", "serial",
+                              environment={"PATH": str(self.folder)})
+        self.assertIn("need mpirun, and no folder of PATH holds it", process.stderr)
+
+
 class WorkPrecisionOfCanopies(perf_program.PerfTest):
     def test_records_are_valid(self):
         self.expect(0, "work-precision", "--app", "parachute", "--quick", "--backend", "serial", "--out", "runs.jsonl")
@@ -432,12 +466,16 @@ class Refusals(perf_program.PerfTest):
     def test_reports_usage_errors(self):
         for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
-                            (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling"),
+                            (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling, abstraction"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["table", "block-size", "--app", "options"], "have no block size"),
                             (["table", "transfers", "--app", "parachute"], "have --app flow"),
-                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling"),
-                            (["table", "occupancy", "--app", "flow"], "valid names are block-size, pressure, memory, scaling"),
+                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling, abstraction"),
+                            (["table", "scaling", "--weak", "--app", "gas"], "weak scaling and ranks have --app flow"),
+                            (["table", "scaling", "--most", "2"], "--most needs --weak or --over ranks"),
+                            (["table", "memory", "--over", "ranks"], "belong to the table scaling"),
+                            (["table", "scaling", "--over", "nodes"], "nodes"),
+                            (["table", "occupancy", "--app", "flow"], "valid names are block-size, pressure, memory, scaling, abstraction"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
                              "no problem matches 'day$'; with --quick there are thesis, merton"),
                             (["work-precision", "--app", "options", "--filter", "("], "is not a valid regular expression"),
@@ -467,10 +505,17 @@ class Refusals(perf_program.PerfTest):
             self.assertIn("means nothing to the host backend 'serial'",
                           self.expect(2, "table", "block-size", "--app", app, "--backend", "serial").stderr)
 
+    def test_compares_no_kernels_of_a_host_backend_with_cuda(self):
+        for app in ("gas", "springs", "flow"):
+            process = self.expect(2, "table", "abstraction", "--app", app, "--backend", "serial")
+            self.assertIn("compares kernels in Kokkos with kernels in CUDA and means nothing to the host backend 'serial'",
+                          process.stderr)
+            self.assertEqual("", process.stdout)
+
     def test_reports_an_absent_backend(self):
         if "DROGUE_CUDA:BOOL=ON" in perf_program.CACHE:
             self.skipTest("a CUDA build has that backend")
-        for table in ("block-size", "transfers"):
+        for table in ("block-size", "transfers", "abstraction"):
             self.assertRegex(self.expect(77, "table", table, "--backend", "cuda").stderr, "cuda.*not compiled in")
 
     def test_reports_an_unwritable_record_file(self):

@@ -8,14 +8,15 @@ namespace drogue::fabric {
 /// Number of vertices padded to whole slices.
 [[nodiscard]] constexpr int padded_vertices(int vertices) { return (vertices + slice - 1) / slice * slice; }
 
-/// Points of all vertices, with the padding of the last slice.
+/// Vectors of all vertices in any unit, zero, with the padding of the last slice. Throws std::runtime_error
+/// if memory runs out.
 template <class ExecutionSpace>
 [[nodiscard]] PointsView<ExecutionSpace> make_points(const std::string& label, std::size_t vertices) {
   return PointsView<ExecutionSpace>(label,
                                     static_cast<std::size_t>(padded_vertices(static_cast<int>(vertices))));
 }
 
-/// Positions at rest, m. Blocks.
+/// Positions at rest, m. Blocks. Throws std::runtime_error if memory runs out.
 template <class ExecutionSpace>
 [[nodiscard]] PointsView<ExecutionSpace> make_rest_positions(const ExecutionSpace& space, const Mesh& mesh) {
   const auto rest = make_points<ExecutionSpace>("drogue::fabric::rest_positions", mesh.rest.size());
@@ -23,8 +24,8 @@ template <class ExecutionSpace>
   return rest;
 }
 
-/// Inverse masses and fixed axes of all vertices. Vertices that pad the last slice have no inverse mass and
-/// no free axis: they stay. Blocks.
+/// Inverse masses, 1/kg, and fixed axes of all vertices. Vertices that pad the last slice have no inverse
+/// mass and no free axis: they stay. Blocks. Throws std::runtime_error if memory runs out.
 template <class ExecutionSpace>
 void make_vertices(const ExecutionSpace& space, const Parameters& p, FabricViews<ExecutionSpace>& fabric) {
   const std::size_t n = p.mesh.rest.size();
@@ -45,7 +46,8 @@ void make_vertices(const ExecutionSpace& space, const Parameters& p, FabricViews
   space.fence("drogue::fabric::vertices");
 }
 
-/// Tables and constants of a fabric without loads. Blocks.
+/// Tables and constants of a fabric without loads, SI units. Blocks. Throws std::runtime_error if memory runs
+/// out.
 template <class ExecutionSpace>
 [[nodiscard]] FabricViews<ExecutionSpace> make_fabric_views(const ExecutionSpace& space,
                                                             const Parameters& p) {

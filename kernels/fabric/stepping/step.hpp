@@ -88,6 +88,7 @@ struct RungeKuttaFunctor {
     store_points(velocity[stage], i, v_n + part * a);
   }
 
+  /// `pull` plus the force of the VertexForce on vertex i and the lanes after it, N. Does not throw.
   KOKKOS_FUNCTION Vector3<R> with_vertex_force(const Vector3<R>& pull, const Vector3<R>& now, int i) const {
     // The last stage writes one entry of the counter, the second stage the other.
     return vertex_force.add_to(pull, load_points<R>(at, i), now, &fabric.inverse_mass(i), i,
@@ -138,6 +139,7 @@ struct RungeKuttaHalfFunctor {
     return v_n + (fraction_after_stage(stage) * dt) * acceleration_in(stage, elastic, at, now, i);
   }
 
+  /// First two stages of vertex i. Does not throw.
   KOKKOS_FUNCTION void begin(int i) const {
     const ExtrapolatedPoints<Points> second{x, v, fraction_after_stage(0) * dt};
     const StatePair<Vector> pull = elastic_forces<model, double>(fabric, x, second, i);
@@ -150,6 +152,7 @@ struct RungeKuttaHalfFunctor {
     if (i == 0) monitor.steps(1) = monitor.steps(0);
   }
 
+  /// Last two stages of vertex i, and its state after the step. Does not throw.
   KOKKOS_FUNCTION void end(int i) const {
     const StatePair<Vector> pull = elastic_forces<model, double>(fabric, third, fourth, i);
     const Vector v_n = load_points<double>(v, i), v2 = load_points<double>(velocity[0], i),
@@ -219,7 +222,8 @@ struct VerletFunctor {
     store_points(v, i, velocity);
   }
 
-  /// Both half kicks with a VertexForce, which is evaluated for each since `end_step` may change its state.
+  /// Both half kicks, in m/s, with a VertexForce, which is evaluated for each since `end_step` may change its
+  /// state.
   KOKKOS_FUNCTION void with_vertex_force(int pack, Vector3<R> velocity) const {
     if constexpr (has_vertex_force<VertexForce>) {
       const int i = pack * lanes;

@@ -36,6 +36,7 @@ struct StageFactors {
   double force;  ///< of the force per volume, s m^3/kg
 };
 
+/// Coefficients of a stage for the dt of `control`, s. Does not throw.
 template <class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION StageFactors stage_factors(const MomentumSetup<ExecutionSpace>& setup,
                                                   const Control& control) {
@@ -48,7 +49,8 @@ KOKKOS_INLINE_FUNCTION StageFactors stage_factors(const MomentumSetup<ExecutionS
   return {w.state, (1.0 + half_ratio) * dt, -half_ratio * dt, force};
 }
 
-/// Enqueues a momentum stage. Asynchronous. Compiled once for each backend.
+/// Enqueues a momentum stage. Asynchronous. Compiled once for each backend. Throws std::runtime_error for a
+/// team that does not fit the device.
 template <class ExecutionSpace>
 void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                        Advection advection);

@@ -35,19 +35,20 @@ struct PersistentSetup {
   StepConstants constants;
 };
 
-/// Enqueues stage `stage` of a step. Asynchronous. Defined in launch_tiles.hpp and instantiated in
-/// instances/stage.cpp.
+/// Enqueues stage `stage` of a step. Asynchronous. Throws std::runtime_error for a team that does not fit
+/// the device. Defined in launch_tiles.hpp and instantiated in instances/stage.cpp.
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision,
                   bool limited, int stage);
 
-/// Enqueues all stages of a step as one kernel. Asynchronous. Requires `Splitting::lf_stencil`.
+/// Enqueues all stages of a step as one kernel. Asynchronous. Requires `Splitting::lf_stencil`. Throws
+/// std::runtime_error for a team that does not fit the device.
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_step(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision,
                  bool limited);
 
 /// Enqueues one launch of up to `max_steps_per_launch` steps. Asynchronous. Requires `Splitting::lf_stencil`;
-/// the limiter must be off.
+/// the limiter must be off. Throws std::runtime_error if the launch fails.
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_persistent_steps(const StageSetup<ExecutionSpace>& setup,
                              const PersistentSetup<ExecutionSpace>& persistent, Precision precision,

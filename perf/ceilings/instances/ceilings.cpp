@@ -2,6 +2,7 @@
 
 namespace drogue::perf {
 
+template bool supports_ceiling<DROGUE_INSTANCE_SPACE>(Ceiling);
 template std::unique_ptr<CeilingKernel> make_ceiling<DROGUE_INSTANCE_SPACE>(Ceiling);
 
 }  // namespace drogue::perf

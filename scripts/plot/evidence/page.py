@@ -8,7 +8,7 @@ from PIL import Image
 from .. import html_page, style
 from ..flow import solver_tables
 from ..options import transfers as options_transfers
-from . import block_sizes, roofline, steps, transfers, work_precision_section
+from . import abstraction, block_sizes, bounds, roofline, scaling, steps, transfers, work_precision_section
 from .perf_record import Machine, Record
 from .records import Evidence
 from .section import Cell, Section
@@ -28,6 +28,7 @@ def _springs_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     solved = evidence.select(machine, "springs-solution")
     found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
     found += steps.sections(evidence.select(machine, "springs-step"))
+    found += bounds.sections(machine, evidence.ceilings, evidence.select(machine, "springs-step"))
     found += steps.sections(evidence.select(machine, "springs-contact"))
     return found + transfers.sections(machine, evidence.select(machine, "springs-transfers"))
 
@@ -48,12 +49,19 @@ def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
         found += work_precision_section.sections(machine, evidence.select(machine, kind), failed_of_kind)
     ceilings = [record for record in evidence.ceilings if record.machine == machine]
     found += steps.sections(evidence.select(machine, "flow-step"), roofline.bandwidths(ceilings))
+    found += bounds.sections(machine, ceilings, evidence.select(machine, "flow-step"))
     found += steps.sections(evidence.select(machine, "parachute-flight"))
     found += solver_tables.pressure_sections(evidence.select(machine, "flow-pressure"))
     found += solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
     for kind in ("flow-block", "parachute-block"):
         found += block_sizes.sections(machine, evidence.select(machine, kind))
     return found
+
+
+def _common_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    """Sections that any mini-app may have."""
+    found = scaling.sections(evidence.select(machine, "scaling"))
+    return found + abstraction.sections(evidence.select(machine, "abstraction"))
 
 
 _SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections}
@@ -110,7 +118,7 @@ def write(evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
 
 def machine_sections(app: str, evidence: Evidence) -> list[tuple[Machine, list[Section]]]:
     """Sections of a mini-app, whose records `evidence` holds, by machine."""
-    return [(machine, _SECTIONS[app](evidence, machine)) for machine in evidence.machines]
+    return [(machine, _SECTIONS[app](evidence, machine) + _common_sections(evidence, machine)) for machine in evidence.machines]
 
 
 class Pictures:

@@ -42,6 +42,8 @@ _FACTS = {
         "backend": str, "method": str, "mesh": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
     },
     "tridiagonal": {},
+    "abstraction": {"backend": str, "cells": int, "version": str, "launches": str},
+    "scaling": {"backend": str, "cells": int, "threads": int},
 }  # fmt: skip
 _NAMED_BY_CASE = (
     "gas-step",
@@ -51,8 +53,10 @@ _NAMED_BY_CASE = (
     "tridiagonal",
 )  # facts in the case name
 _UNTIMED = ("flow-memory",)
+# Counted work of a step, for its bounds.
+_COUNTS = {"instructions": float, "launches": int, "driver": str}
 _OPTIONAL = {
-    "flow-step": {"bytes": float, "solution_error": float},
+    "flow-step": {"bytes": float, "solution_error": float, **_COUNTS},
     "flow-pressure": {"tolerance": float, "iterations": int},
     "flow-memory": {"driver_bytes": int},
     "flow-solution": {"status": str, "message": str},
@@ -60,8 +64,11 @@ _OPTIONAL = {
     "gas-solution": {
         "weno_power": float, "splitting": str, "time_scheme": str, "precision": str, "status": str, "message": str,
     },
-    "gas-step": {"flops": float, "bytes": float, "vector_bits": int},
-    "ceiling": {"flops": float, "bytes": float},
+    "gas-step": {"flops": float, "bytes": float, "vector_bits": int, **_COUNTS},
+    "springs-step": {"bytes": float, **_COUNTS},
+    "ceiling": {"flops": float, "bytes": float, "instructions": float},
+    "scaling": {"ranks": int, "scaling": str},
+    "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
     "gas-transfers": {"thesis": dict},
     "springs-solution": {"status": str, "message": str},
     "springs-transfers": {"thesis": dict},
@@ -113,7 +120,9 @@ class Record:
     @property
     def app(self) -> str:
         """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, canopies to flow."""
-        app = self.kind.partition("-")[0]
+        place = {"abstraction": 2, "scaling": 1}.get(self.kind, 0)
+        kind = self.case.split("/")[place] if self.case.count("/") >= place else self.kind
+        app = kind.partition("-")[0]
         return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow"}.get(app, app)
 
     @property

@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/program/failure.hpp"
+#include "common/program/signals.hpp"
+#include "common/run/files/atomic_file.hpp"
+#include "common/run/files/temporary_folder.hpp"
+#include "common/run/statistics.hpp"
+#include "perf/bisect/child_process.hpp"
+#include "perf/measure/record.hpp"
+#include "perf/memory/device_memory.hpp"
+#include "perf/models/scaling.hpp"
+#include "perf/problems/streams.hpp"
+#include "perf/tables/tables.hpp"
+
+namespace drogue::perf {
+
+namespace {
+
+/// Point of a curve: the program on some units.
+struct ScalingPoint {
+  int units;
+  std::array<int, 3> cells;
+  std::filesystem::path scene;
+  std::vector<double> samples;  ///< s per step
+  double error = 0.0;           ///< largest check over its tolerance
+  nlohmann::json result;        ///< of the last run
+};
+
+/// Throws Failure(no_backend) if no folder of PATH holds mpirun.
+void require_launcher() {
+  std::istringstream folders(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (std::filesystem::exists(std::filesystem::path(folder) / "mpirun")) return;
+  throw Failure(ExitCode::no_backend, "several ranks need mpirun, and no folder of PATH holds it");
+}
+
+int most_units(ScalingUnit unit, device::Backend backend) {
+  if (unit == ScalingUnit::ranks && device::needs_device(backend)) return device_count();
+  if (unit == ScalingUnit::threads && backend != device::Backend::openmp) return 1;
+  return static_cast<int>(std::thread::hardware_concurrency());
+}
+
+/// Words that start drogue-parachute on the units of a point. A rank has one thread.
+std::vector<std::string> command_of(const ScalingRequest& request, const ScalingPoint& point,
+                                    device::Backend backend, const std::filesystem::path& out) {
+  const bool ranks = request.unit == ScalingUnit::ranks;
+  const std::string units = std::to_string(point.units);
+  std::vector<std::string> words = {"env", "OMP_NUM_THREADS=" + (ranks ? "1" : units)};
+  if (ranks) words.insert(words.end(), {"mpirun", "-n", units});
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "drogue-parachute";
+  words.insert(words.end(), {program.string(), point.scene.string(), "--quiet", "--overwrite", "--backend",
+                             std::string(device::name(backend)), "--out", out.string()});
+  return words;
+}
+
+/// Reason of a failure in a log: the sentence of the program, else the first line with words, which a
+/// launcher may frame.
+std::string reason_in(const std::filesystem::path& log) {
+  std::ifstream file(log);
+  std::string first;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("drogue-parachute: ")) return line;
+    const bool has_words = std::ranges::any_of(line, [](unsigned char c) { return std::isalpha(c) != 0; });
+    if (first.empty() && has_words) first = line;
+  }
+  return first;
+}
+
+/// Code of a run that failed. A launcher that starts nothing ends with 1.
+ExitCode code_of_run(int status) {
+  if (status == 0) return ExitCode::io_error;
+  return status == 1 ? ExitCode::no_backend : static_cast<ExitCode>(status);
+}
+
+/// Runs the program once and adds a sample. Throws Failure as the program does.
+void run_point(const ScalingRequest& request, device::Backend backend, const std::filesystem::path& folder,
+               ScalingPoint& point) {
+  const std::filesystem::path out = folder / "out", log = folder / "log";
+  const int status = run_child(command_of(request, point, backend, out), folder, log, true).status;
+  if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
+  std::ifstream file(out / "result.json");
+  point.result = nlohmann::json::parse(file, nullptr, false);
+  const bool ended = status == 0 || status == static_cast<int>(ExitCode::verification_failed);
+  if (!ended || point.result.is_discarded() || point.result.value("ranks", 0) < 1)
+    throw Failure(code_of_run(status), "a run on " + std::to_string(point.units) + " " + name(request.unit) +
+                                           " failed: " + reason_in(log));
+  point.samples.push_back(point.result["timing"]["compute_s"].get<double>() /
+                          point.result["steps"].get<double>());
+  for (const nlohmann::json& check : point.result["checks"])
+    point.error = std::max(point.error, check["value"].get<double>() / check["tolerance"].get<double>());
+  std::filesystem::remove_all(out);
+}
+
+Record record_of(const ScalingRequest& request, device::Backend backend, const ScalingPoint& point) {
+  Record record;
+  record.name = "scaling/flow-step/" + std::string(device::name(backend)) + "/" + streams::text(point.cells) +
+                "/" + name(request.unit) + "/" + std::to_string(point.units) +
+                (request.weak ? "/weak" : "/strong");
+  record.unit_of_work = "step";
+  record.bound = request.unit == ScalingUnit::ranks ? "messages of few cells per rank" : "memory bandwidth";
+  record.samples = point.samples;
+  record.error = point.error, record.tolerance = 1.0;
+  return record;
+}
+
+void print_point(const ScalingRequest& request, const Record& record, const ScalingPoint& point,
+                 double of_one) {
+  std::printf("%-52s", record.name.c_str());
+  // A wrong result has no time.
+  if (!record.passed()) {
+    std::printf("  a check is %.2g times its tolerance\n", record.error);
+    return;
+  }
+  const run::MedianInterval time = run::median_interval(record.samples);
+  char interval[64];
+  std::snprintf(interval, sizeof interval, "[%.2f .. %.2f]", 1e6 * time.low, 1e6 * time.high);
+  std::printf("%14.2f  %-28s %9.0f %%\n", 1e6 * time.median, interval,
+              100.0 * efficiency(request.weak, of_one, time.median, point.units));
+  std::fflush(stdout);
+}
+
+/// Measures one backend, all numbers of units in turn.
+void add_backend(const ScalingRequest& request, device::Backend backend, bool quick, Table& table) {
+  const run::TemporaryFolder folder("drogue-scaling");
+  const bool gpu = device::needs_device(backend);
+  const int edge = quick ? 24 : gpu ? 256 : 64;
+  std::vector<ScalingPoint> points;
+  for (const int units : unit_counts(request.most > 0 ? request.most : most_units(request.unit, backend))) {
+    const std::array<int, 3> cells = scaled_cells({edge, edge, edge}, request.weak, units);
+    const std::filesystem::path scene = folder.path() / ("scene-" + std::to_string(units) + ".toml");
+    run::write_file_atomically(scene.string(), flow_scene(cells));
+    points.push_back({units, cells, scene, {}, 0.0, {}});
+  }
+  for (int round = 0; round < (quick ? 3 : 7); ++round)
+    for (ScalingPoint& point : points) run_point(request, backend, folder.path(), point);
+  for (const ScalingPoint& point : points) {
+    const Record record = record_of(request, backend, point);
+    const nlohmann::json& from = point.result["provenance"];
+    const nlohmann::json facts = {
+        {"backend", device::name(backend)},
+        {"cells", static_cast<std::int64_t>(point.cells[0]) * point.cells[1] * point.cells[2]},
+        {"ranks", point.result["ranks"]},
+        {"threads", point.result["threads"]},
+        {"scaling", request.weak ? "weak" : "strong"}};
+    table.add(record,
+              provenance({.kokkos_version = device::kokkos_version(),
+                          .gpu = from.value("gpu", ""),
+                          .driver = from.value("driver", ""),
+                          .threads = point.result["threads"].get<int>()}),
+              facts);
+    print_point(request, record, point, run::median(points.front().samples));
+  }
+}
+
+}  // namespace
+
+const char* name(ScalingUnit unit) { return unit == ScalingUnit::ranks ? "ranks" : "threads"; }
+
+Table print_program_scaling(const ScalingRequest& request, const std::vector<device::Backend>& backends,
+                            bool quick) {
+  if (request.unit == ScalingUnit::ranks) require_launcher();
+  std::printf("Steps of drogue-parachute, %s scaling over %s\n%-52s%14s  %-28s %11s\n",
+              request.weak ? "weak" : "strong", name(request.unit), "case", "us per step", "95 %",
+              "efficiency");
+  Table table;
+  for (const device::Backend backend : backends) add_backend(request, backend, quick, table);
+  return table;
+}
+
+}  // namespace drogue::perf
