@@ -117,7 +117,7 @@ for count in $(grep -oE '^options/cuda/[0-9]+/' <<<"$cases" | sort -ut / -k 3n |
 done
 record occupancy table occupancy
 [ "$backend" != cuda ] || record gas-block table block-size --backend cuda
-for app in gas springs options; do record "$app-transfers" table transfers --app $app --backend "$one"; done
+for app in gas springs options parachute; do record "$app-transfers" table transfers --app $app --backend "$one"; done
 record flow-pressure table pressure --backend "$one"
 record flow-memory table memory --backend "$one"
 for app in gas springs options flow; do record "scaling-$app" table scaling --app $app --backend "$one"; done
@@ -146,6 +146,7 @@ if [ -n "$machine" ]; then
   cp "$folder/report.html" "$to/report-$machine.html"
   "$root/scripts/readme_tables.py"
   "$root/scripts/lesson_tables.py"
+  "$root/scripts/transfer_tables.py"
   "$bin/drogue-plot" "$to" --quiet
 fi
 exit "$worst"

@@ -23,6 +23,7 @@ struct TableOptions {
 std::vector<std::string> tables_of(const std::string& app) {
   if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling"};
   if (app == "flow") return {"pressure", "memory", "scaling"};
+  if (app == "parachute") return {"transfers"};
   return {"transfers", "scaling"};
 }
 
@@ -42,7 +43,8 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
                      : options.table == "memory" ? print_flow_memory
                      : options.app == "gas"      ? print_gas_transfers
                      : options.app == "springs"  ? print_fabric_transfers
-                                                 : print_options_transfers;
+                     : options.app == "options"  ? print_options_transfers
+                                                 : print_parachute_transfers;
   return print(backend, options.quick, here);
 }
 
@@ -52,8 +54,6 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
   if (options.app.empty())
     options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
   require_app(options.app);
-  if (options.app == "parachute")
-    throw Failure(ExitCode::usage, "there is no table of canopies; those of the flow have --app flow");
   if (options.app == "springs" && options.table == "block-size")
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "

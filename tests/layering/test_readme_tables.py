@@ -15,6 +15,7 @@ import layers
 ROOT = layers.repository(os.environ)
 sys.path.insert(0, str(ROOT / "scripts"))
 import readme_tables  # noqa: E402
+import transfer_tables  # noqa: E402
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -94,6 +95,44 @@ class Generator(unittest.TestCase):
         self.assertEqual(list(times.values()), [readme_tables.time_of({"samples": [s]}, 1e3) for s in times])
         errors = [(0.045, 3, "0.045"), (0.017, 2, "1.7e-2"), (2.5e-18, 2, "2.5e-18"), (3.6e-6, 2, "3.6e-6"), (0.0, 2, "0.0e+00")]
         self.assertEqual([text for *_, text in errors], [readme_tables.error_of({"error": e}, n) for e, n, _ in errors])
+
+
+class Transfers(unittest.TestCase):
+    """Records of a GPU with one time per part: copies of 10 and 30 us, compute of 60 us."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.evidence = Path(folder.name)
+
+    def write(self, app, *rows):
+        lines = []
+        for facts in rows:
+            facts = {"backend": "cuda", "h2d_s": 1e-5, "compute_s": 6e-5, "d2h_s": 3e-5} | facts
+            lines.append({"case": f"{app}-transfers/cuda/x", "check": "passed", "error": 2.5e-6, "samples": [1e-4], "facts": facts,
+                          "provenance": {"gpu": "a GPU", "date": "2026-01-02T00:00:00Z", "git": "abc"}})
+        text = "".join(json.dumps(line) + "\n" for line in lines)
+        (self.evidence / f"{app}-transfers-here.jsonl").write_text(text, encoding="utf-8")
+
+    def test_page_equals_its_records(self):
+        self.assertEqual(transfer_tables.page(), transfer_tables.PAGE.read_text(encoding="utf-8"), "run scripts/transfer_tables.py")
+
+    def test_shows_our_scheme_of_gas_beside_that_of_the_dissertation(self):
+        thesis = {"h2d_us": 500, "compute_us": 300, "d2h_us": 200, "total_us": 1000}
+        self.write("gas", *({"cells": 8192, "memory": memory, "method": method, "thesis": thesis}
+                            for method in ("seed", "ours") for memory in ("pageable", "pinned")))
+        text = transfer_tables.page(self.evidence)
+        self.assertIn("| ours | pinned | 8192 | 10 (500) | 60 (300) | 30 (200) | 100 (1000) | 2.5e-6 |", text)
+        words = " ".join(text.split())
+        self.assertIn("[Shi] spends 70 % of 1000 us on copies", words)
+        self.assertIn("40 % of 100 us with pageable memory and 40 % of 100 us with pinned memory", words)
+        self.assertIn("a step of ours takes 100 us, copies included (40 %)", words)
+
+    def test_parachutes_have_no_times_of_the_dissertation(self):
+        self.write("parachute", *({"cells": 3456, "grid": "12x12x24", "memory": "pageable", "substeps": steps} for steps in (1, 20)))
+        text = transfer_tables.page(self.evidence)
+        self.assertIn("| pageable | 12x12x24 | 20 | 10 | 60 | 30 | 100 | 2.5e-6 |", text)
+        self.assertIn("would take 40 us, 40 % of the step", " ".join(text.split()))
 
 
 if __name__ == "__main__":

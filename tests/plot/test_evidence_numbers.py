@@ -241,9 +241,11 @@ class Devices(Folder):
         page, files = self.page(records.transfers())
         self.assertEqual(files, ["gas.html", "transfers_cuda_nvidia-h200.png"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
-        self.assertEqual(len(rows), 1 + 3 * 8)
+        self.assertEqual(len(rows), 1 + 5 * 8)
+        self.assertEqual([row[1] for row in rows[1:6]], ["[Shi]", "pageable", "pinned", "ours, pageable", "ours, pinned"])
         self.assertEqual(rows[1], ["1\u2009024", "[Shi]", "336", "118", "272", "726", ""])
         self.assertEqual(rows[3], ["1\u2009024", "pinned", "16.8", "40", "13.6", "70.4", "10.3"])
+        self.assertEqual(rows[5], ["1\u2009024", "ours, pinned", "1", "5", "1", "7", "104"])
 
     def test_block_sizes_have_panel_per_form_and_curve_per_size(self):
         evidence = self.evidence(records.blocks())
@@ -308,7 +310,8 @@ class Springs(Folder):
         page, files = self.springs_page(records.springs_transfers())
         self.assertEqual(files, ["springs-transfers_cuda_nvidia-h200.png", "springs.html"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
-        sources = ["between two copies", "[Shi]", "1 step", "10 steps", "100 steps"]
+        steps = ["1 step", "10 steps", "100 steps"]
+        sources = ["between two copies", "[Shi]", *steps, *(f"{words}, pinned" for words in steps)]
         self.assertEqual([row[1] for row in rows], sources)
         self.assertNotIn("times as fast", " ".join(rows[0]))
         self.assertIn("no ratio to it means anything", page.words)

@@ -84,7 +84,7 @@ class Bench(unittest.TestCase):
         calls = self.calls()
         self.assertEqual(f"report {self.out}", calls[-1])
         self.assertIn("^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)/", calls[0])
-        for app in ("gas", "springs", "options"):
+        for app in ("gas", "springs", "options", "parachute"):
             words = f"table transfers --app {app} --backend auto"
             self.assertEqual(1, sum(words in call for call in calls))
             self.assertIn(words, (self.out / f"{app}-transfers.jsonl").read_text())

@@ -51,7 +51,7 @@ class Record(perf_program.PerfTest):
         text = self.expect(0, "table", "transfers", "--quick", "--backend", "serial", "--out", "rows.jsonl").stdout
         self.assertIn("no pinned memory", text)
         records = self.records("rows.jsonl")
-        self.assertEqual(["gas-transfers/serial/pageable/1024", "gas-transfers/serial/pageable/8192"],
+        self.assertEqual([f"gas-transfers/serial/pageable/{cells}{ours}" for ours in ("", "/ours") for cells in (1024, 8192)],
                          [record["case"] for record in records])
         printed = {1024: (336, 118, 272, 726), 8192: (509, 363, 365, 1237)}
         for record in records:
@@ -59,6 +59,7 @@ class Record(perf_program.PerfTest):
             self.assertEqual(FIELDS | {"facts"}, set(record))
             facts = record["facts"]
             self.assertEqual(("serial", "pageable"), (facts["backend"], facts["memory"]))
+            self.assertEqual("ours" if record["case"].endswith("ours") else "seed", facts["method"])
             thesis = dict(zip(("h2d_us", "compute_us", "d2h_us", "total_us"), printed[facts["cells"]]))
             self.assertEqual(thesis, facts["thesis"])
             parts = [facts["h2d_s"], facts["compute_s"], facts["d2h_s"]]
@@ -102,7 +103,7 @@ class Record(perf_program.PerfTest):
                            "rows.jsonl").stdout
         self.assertIn("Tables 5.7 and 5.8", text)
         records = self.records("rows.jsonl")
-        self.assertEqual([f"options-transfers/serial/{method}/{count}/128"
+        self.assertEqual([f"options-transfers/serial/{method}/{count}/128/pageable"
                           for count in (1, 32, 64) for method in ("seed", "pide")],
                          [record["case"] for record in records])
         for seed, ours in zip(records[::2], records[1::2]):
@@ -110,6 +111,17 @@ class Record(perf_program.PerfTest):
             self.assertLess(ours["error"], 0.1 * seed["error"])
         self.assertEqual({"h2d_us": 752740, "compute_us": 540774, "d2h_us": 55, "total_us": 1293569},
                          records[0]["facts"]["thesis"])
+
+    def test_parachute_transfers_copy_the_whole_state(self):
+        self.expect(0, "table", "transfers", "--app", "parachute", "--quick", "--backend", "serial", "--out", "rows.jsonl")
+        one, many = self.records("rows.jsonl")
+        for record, steps in ((one, 1), (many, 20)):
+            self.assert_timed(record, 7)
+            self.assertEqual(f"parachute-transfers/serial/pageable/12x12x24/{steps}", record["case"])
+            self.assertEqual((12 * 12 * 24, steps), (record["facts"]["cells"], record["facts"]["substeps"]))
+            self.assertNotIn("thesis", record["facts"])
+        # Two copies for twenty steps instead of two for each.
+        self.assertLess(many["facts"]["h2d_s"], 0.5 * one["facts"]["h2d_s"])
 
 
 class Occupancy(perf_program.PerfTest):

@@ -49,6 +49,7 @@ def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     ceilings = [record for record in evidence.ceilings if record.machine == machine]
     found += steps.sections(evidence.select(machine, "flow-step"), roofline.bandwidths(ceilings))
     found += steps.sections(evidence.select(machine, "parachute-flight"))
+    found += transfers.sections(machine, evidence.select(machine, "parachute-transfers"))
     found += solver_tables.pressure_sections(evidence.select(machine, "flow-pressure"))
     return found + solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
 

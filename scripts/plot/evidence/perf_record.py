@@ -34,6 +34,9 @@ _FACTS = {
     "springs-transfers": {
         "backend": str, "substeps": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
     },
+    "parachute-transfers": {
+        "backend": str, "memory": str, "substeps": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
+    },
     "options": {},
     "options-solution": {"problem": str, "backend": str, "method": str, "cells": int},
     "options-transfers": {
@@ -60,11 +63,11 @@ _OPTIONAL = {
     },
     "gas-step": {"flops": float, "bytes": float, "vector_bits": int},
     "ceiling": {"flops": float, "bytes": float},
-    "gas-transfers": {"thesis": dict},
+    "gas-transfers": {"thesis": dict, "method": str},
     "springs-solution": {"status": str, "message": str},
-    "springs-transfers": {"thesis": dict},
+    "springs-transfers": {"thesis": dict, "memory": str},
     "options-solution": {"exercise": str, "grids": str, "intervals_a_step": str, "status": str, "message": str},
-    "options-transfers": {"thesis": dict},
+    "options-transfers": {"thesis": dict, "memory": str},
 }  # fmt: skip
 KINDS = frozenset(_FACTS)
 _TYPES = {str: "text", int: "positive whole number", float: "number", dict: "JSON object"}
