@@ -75,6 +75,10 @@ def notes(evidence: Evidence) -> list[str]:
     if evidence.failed_checks:
         count = _counted(len(evidence.failed_checks), "record is", "records are")
         found.append(f"{count} left out for a failed check: {_cases(evidence.failed_checks)}.")
+    if evidence.untimed:
+        count = _counted(len(evidence.untimed), "record is", "records are")
+        places = "; ".join(f"{record.case} on {record.machine.name}" for record in evidence.untimed)
+        found.append(f"{count} left out for having no samples: {places}.")
     if evidence.superseded:
         count = _counted(len(evidence.superseded), "record is", "records are")
         found.append(f"{count} left out, because a later one of the same case and machine exists.")

@@ -131,6 +131,11 @@ class Record:
         return int(self.provenance.get("threads") or 1)
 
     @property
+    def lacks_times(self) -> bool:
+        """Whether a record of a kind that is timed holds no samples and no median."""
+        return self.kind in KINDS and self.kind not in _UNTIMED and self.median is None and self.check == "passed"
+
+    @property
     def succeeded(self) -> bool:
         """Whether the scheme solved the problem; failed runs are listed, not drawn."""
         return self.facts.get("status", "ok") == "ok"
@@ -202,7 +207,9 @@ def parse(line: str, place: str) -> Record:
     if kind in _FACTS:
         facts = _checked_facts(case, facts, place)
         if kind not in _UNTIMED and check == "passed" and facts.get("status", "ok") == "ok":
-            median, interval = _times(document, place)
+            # A measurement that ended early may leave a record without samples, which the pages name.
+            if document.get("median") is not None or document.get("samples"):
+                median, interval = _times(document, place)
             if kind.endswith("-solution") and not _has_type(error, float):
                 raise Failure(IO_ERROR, f"{place}: the error of {case} is no number.")
     unit, error = str(document.get("unit", "")), error if _has_type(error, float) else None
