@@ -77,7 +77,7 @@ class Report(Folder):
         lines = [records.step(f"cuda/{cells}", 1e-6 * cells, records.H200, cells) for cells in range(1000, 1400)]
         lines[7]["check"] = "failed"
         whole = self.report(lines)
-        self.assertEqual(400, whole.count("<td class=\"\">gas-step/cuda/"))
+        self.assertEqual(400, whole.count("<td class=\"case\">gas-step/cuda/"))
         with unittest.mock.patch.multiple(report, MOST_STRIPS=100, MOST_ROWS=300, MOST_BYTES=20_000):
             text = self.report(lines)
         self.assertLess(len(text), len(whole) / 2)
