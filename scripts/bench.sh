@@ -66,7 +66,12 @@ record() {
   shift
   [[ -z "$only" || "$name" =~ $only ]] || return 0
   [ "$list" = no ] || { printf '%s\n' "$name" && return 0; }
-  [ ! -e "$file" ] || { say "$name is there" && return 0; }
+  if [ -e "$file" ]; then
+    if [ ! -e "$file.failed" ]; then say "$name is there" && return 0; fi
+    say "$name is there; a row failed its check: remove $file to measure it again"
+    if [ "$worst" = 0 ]; then worst=5; fi
+    return 0
+  fi
   mkdir -p "$(dirname "$file")" "$partial"
   # Beside this shell, which a signal reaches at once then.
   "$perf" "$@" ${quick[@]+"${quick[@]}"} --out "$partial/record.jsonl" >"$partial/text" 2>"$partial/reason" &
@@ -76,6 +81,8 @@ record() {
   if [ "$code" = 130 ]; then stop; fi
   if [ "$code" = 0 ] || [ "$code" = 5 ]; then
     mv "$partial/text" "$folder/$name.txt"
+    rm -f "$file.failed"
+    [ "$code" = 0 ] || : >"$file.failed"
     mv "$partial/record.jsonl" "$file"
     say "[$((SECONDS - started)) s] $name: $((SECONDS - begin)) s$([ "$code" = 0 ] || echo '; a row failed its check')"
   else

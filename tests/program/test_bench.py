@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -145,13 +146,17 @@ class Bench(unittest.TestCase):
         self.assertNotIn("flow-memory.jsonl", self.made())
         self.plan()
         self.calls()
-        self.bench(0)
+        self.bench(5)
         self.assertEqual(["ladder weno", "report " + str(self.out), "table memory"],
                          sorted(call.partition(" --")[0] for call in self.calls()))
 
     def test_returns_the_code_of_a_failed_check(self):
         self.plan({"table occupancy": "5"})
         self.bench(5)
+        self.plan()
+        self.assertIn("occupancy is there; a row failed its check", self.bench(5))
+        (self.out / "occupancy.jsonl").unlink()
+        self.bench(0)
 
     def test_refuses_records_of_another_build_or_with_other_options(self):
         self.bench(0, "--only", "^occupancy$")
@@ -159,6 +164,35 @@ class Bench(unittest.TestCase):
         self.assertIn("another build or with other options", self.bench(1, "--quick"))
         self.put("version.txt", "drogue-perf 1.0 (git def)")
         self.assertIn("another build", self.bench(1))
+
+    def test_publishes_records_and_renews_documents(self):
+        """In a copy of the tree that holds the script alone; its generators note that they were called."""
+        tree = self.folder / "tree"
+        for name in ("scripts/lib", "docs/evidence/alone", "docs/evidence/ladders"):
+            (tree / name).mkdir(parents=True)
+        shutil.copy(BENCH, tree / "scripts")
+        shutil.copy(SOURCE / "scripts/lib/common.sh", tree / "scripts/lib")
+        generators = ["readme_tables.py", "lesson_tables.py", "transfer_tables.py"]
+        for name in [tree / "scripts" / generator for generator in generators] + [self.bin / "drogue-plot"]:
+            name.write_text(f'#!/bin/sh\necho "${{0##*/}} $*" >>{self.folder}/renewed.txt\n')
+            name.chmod(0o755)
+        self.put("cases.txt", *CUDA)
+        words = [tree / "scripts/bench.sh", self.out, "--bin", self.bin, "--publish", "h200"]
+        self.plan({"table occupancy": "5"})
+        failed = subprocess.run(words, capture_output=True, text=True, check=False)
+        self.assertIn("nothing is published", failed.stderr)
+        self.assertEqual([], list((tree / "docs").rglob("*.jsonl")))
+        (self.out / "occupancy.jsonl").unlink()
+        self.plan()
+        subprocess.run(words, capture_output=True, check=True)
+        published = {path.relative_to(tree / "docs/evidence").as_posix() for path in (tree / "docs").rglob("*.jsonl")}
+        flat = {f"{name}-h200.jsonl" for name in self.names("--backend", "cuda") if "/" not in name}
+        ladders = {f"ladders/{name}-cuda-h200.jsonl" for name in ("weno", "springs", "options", "transfers")}
+        self.assertEqual(flat | ladders | {"alone/options-h200.jsonl"}, published)
+        self.assertEqual(2, len((tree / "docs/evidence/alone/options-h200.jsonl").read_text().splitlines()))
+        self.assertTrue((tree / "docs/evidence/report-h200.html").exists())
+        renewed = (self.folder / "renewed.txt").read_text().splitlines()
+        self.assertEqual([f"{name} " for name in generators] + [f"drogue-plot {tree}/docs/evidence --quiet"], renewed)
 
     def test_solutions_replace_the_two_of_the_readme(self):
         usual, all_ = set(self.names()), set(self.names("--solutions"))
