@@ -128,7 +128,7 @@ for app in gas springs options parachute; do record "$app-transfers" table trans
 record flow-pressure table pressure --backend "$one"
 record flow-memory table memory --backend "$one"
 for app in gas springs options flow; do record "scaling-$app" table scaling --app $app --backend "$one"; done
-for ladder in weno springs options transfers; do record "ladders/$ladder" ladder $ladder --backend "$one"; done
+for ladder in weno springs options transfers; do record "ladder-$ladder" ladder $ladder --backend "$one"; done
 solver="$([ "$one" != auto ] && echo "$one" || echo serial)"
 if [ "$solutions" = no ]; then
   record gas-shu-osher work-precision --app gas --filter '^shu-osher$' --backend "$solver"
@@ -145,11 +145,14 @@ say "all tables after $((SECONDS - started)) s"
 if [ -n "$machine" ]; then
   [ "$worst" = 0 ] || fail "nothing is published, since a command failed (exit code $worst): the reason is above."
   to="$root/docs/evidence"
-  for file in "$folder"/*.jsonl; do cp "$file" "$to/$(basename "$file" .jsonl)-$machine.jsonl"; done
-  if compgen -G "$folder/alone/*.jsonl" >/dev/null; then cat "$folder"/alone/*.jsonl >"$to/alone/options-$machine.jsonl"; fi
-  for file in "$folder"/ladders/*.jsonl; do
-    [ ! -e "$file" ] || cp "$file" "$to/ladders/$(basename "$file" .jsonl)-$solver-$machine.jsonl"
+  for file in "$folder"/*.jsonl; do
+    name="$(basename "$file" .jsonl)"
+    case "$name" in
+      ladder-*) cp "$file" "$to/ladders/${name#ladder-}-$solver-$machine.jsonl" ;;
+      *) cp "$file" "$to/$name-$machine.jsonl" ;;
+    esac
   done
+  if compgen -G "$folder/alone/*.jsonl" >/dev/null; then cat "$folder"/alone/*.jsonl >"$to/alone/options-$machine.jsonl"; fi
   cp "$folder/report.html" "$to/report-$machine.html"
   "$root/scripts/readme_tables.py"
   "$root/scripts/lesson_tables.py"

@@ -192,6 +192,19 @@ def springs_steps(machine=H200):
     return [record(case, seconds, machine) for case, seconds in times.items()]
 
 
+def ladder(name="weno", machine=EPYC, backend="serial"):
+    """Three rungs, each twice as fast as the one before, predicted at half of their time."""
+    found = []
+    for place, rung in enumerate(("naive port", "resident", "fused stages")):
+        seconds = 8e-3 / 2**place
+        facts = {
+            "ladder": name, "rung": rung, "backend": backend, "cells": 8192, "predicted_s": 0.5 * seconds,
+            "predicted_bound": "arithmetic", "flops": 1e6, "bytes": 1e6,
+        }  # fmt: skip
+        found.append(record(f"ladder/{name}/{backend}/8192/{rung}", seconds, machine, facts))
+    return found
+
+
 def springs_transfers(machine=H200):
     thesis = {"cpu_us": 223565, "h2d_us": 171, "compute_us": 41328, "d2h_us": 644, "total_us": 42143}
     found = []

@@ -260,6 +260,29 @@ class Devices(Folder):
         self.assertEqual(rows[1][:4], ["1\u2009024", "6.35", "6.24", "6.02"])
 
 
+class Ladders(Folder):
+    def test_rungs_show_prediction_and_gain(self):
+        page, files = self.page(records.ladder() + records.ladder("springs"), app="ladder")
+        self.assertEqual(["ladder-springs_serial_amd-epyc.png", "ladder-weno_serial_amd-epyc.png", "ladder.html"], files)
+        rows = page.tables["AMD EPYC", "Ladder weno, Serial"]
+        self.assertEqual(["naive port", "resident", "fused stages"], [row[0] for row in rows[1:]])
+        self.assertEqual(
+            ["fused stages", "1\u2009000", "arithmetic", "2\u2009000", "1\u2009960 .. 2\u2009040", "4", "1\u00d710\u22124"], rows[3]
+        )
+
+    def test_figure_holds_every_rung(self):
+        from plot.evidence.ladders import ladder_figure
+
+        evidence = self.evidence(records.ladder())
+        figure = ladder_figure("Ladder weno", evidence.machines[0], evidence.records)
+        figure.canvas.draw()
+        axis = figure.axes[0]
+        self.assertEqual(["naive port", "resident", "fused stages"], [text.get_text() for text in axis.get_yticklabels()])
+        renderer = figure.canvas.get_renderer()
+        for text in axis.get_yticklabels():
+            self.assertGreaterEqual(text.get_window_extent(renderer).x0, 0)
+
+
 class Springs(Folder):
     def springs_page(self, lines):
         return self.page(lines, "springs")

@@ -141,7 +141,7 @@ class Bench(unittest.TestCase):
         text = self.bench(77)
         self.assertRegex(text, "occupancy: .*a row failed its check")
         self.assertIn("flow-memory: exit code 77: the reason", text)
-        self.assertIn("ladders/weno: exit code 4: the reason", text)
+        self.assertIn("ladder-weno: exit code 4: the reason", text)
         self.assertIn("occupancy.jsonl", self.made())
         self.assertNotIn("flow-memory.jsonl", self.made())
         self.plan()
@@ -186,7 +186,7 @@ class Bench(unittest.TestCase):
         self.plan()
         subprocess.run(words, capture_output=True, check=True)
         published = {path.relative_to(tree / "docs/evidence").as_posix() for path in (tree / "docs").rglob("*.jsonl")}
-        flat = {f"{name}-h200.jsonl" for name in self.names("--backend", "cuda") if "/" not in name}
+        flat = {f"{name}-h200.jsonl" for name in self.names("--backend", "cuda") if "/" not in name and not name.startswith("ladder")}
         ladders = {f"ladders/{name}-cuda-h200.jsonl" for name in ("weno", "springs", "options", "transfers")}
         self.assertEqual(flat | ladders | {"alone/options-h200.jsonl"}, published)
         self.assertEqual(2, len((tree / "docs/evidence/alone/options-h200.jsonl").read_text().splitlines()))

@@ -8,7 +8,7 @@ from PIL import Image
 from .. import html_page, style
 from ..flow import solver_tables
 from ..options import transfers as options_transfers
-from . import block_sizes, roofline, steps, transfers, work_precision_section
+from . import block_sizes, ladders, roofline, steps, transfers, work_precision_section
 from .perf_record import Machine, Record
 from .records import Evidence
 from .section import Cell, Section
@@ -54,7 +54,14 @@ def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     return found + solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
 
 
-_SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections}
+def _ladder_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    return ladders.sections(machine, evidence.select(machine, "ladder"))
+
+
+_SECTIONS = {
+    "gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections,
+    "ladder": _ladder_sections,
+}  # fmt: skip
 
 
 def _counted(count: int, words: str, plural: str) -> str:

@@ -43,6 +43,9 @@ _FACTS = {
         "backend": str, "method": str, "mesh": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
     },
     "tridiagonal": {},
+    "ladder": {
+        "ladder": str, "rung": str, "backend": str, "cells": int, "predicted_s": float, "predicted_bound": str,
+    },
 }  # fmt: skip
 _NAMED_BY_CASE = (
     "gas-step",

@@ -21,6 +21,7 @@ _FEW_ROWS = 50  # of a table of a page that is too large otherwise
 _WIDTH, _HEIGHT, _MARGIN = 180, 16, 3
 _APPS = {
     "gas": "Gas dynamics", "springs": "Cloth and strings", "options": "Options", "flow": "Flow and parachutes",
+    "ladder": "Ladders",
 }  # fmt: skip
 
 
