@@ -131,7 +131,8 @@ for app in gas springs options flow; do record "scaling-$app" table scaling --ap
 for ladder in weno springs options transfers; do record "ladder-$ladder" ladder $ladder --backend "$one"; done
 solver="$([ "$one" != auto ] && echo "$one" || echo serial)"
 if [ "$solutions" = no ]; then
-  record gas-shu-osher work-precision --app gas --filter '^shu-osher$' --backend "$solver"
+  # It is none of the quick problems.
+  [ ${#quick[@]} -gt 0 ] || record gas-shu-osher work-precision --app gas --filter '^shu-osher$' --backend "$solver"
   record springs-drum work-precision --app springs --filter '^drum$' --backend "$solver"
 else
   for app in gas springs options flow parachute; do record "$app-solution" work-precision --app $app --backend "$solver"; done

@@ -195,6 +195,7 @@ class Bench(unittest.TestCase):
         self.assertEqual([f"{name} " for name in generators] + [f"drogue-plot {tree}/docs/evidence --quiet"], renewed)
 
     def test_solutions_replace_the_two_of_the_readme(self):
+        self.assertEqual({"gas-shu-osher"}, set(self.names()) - set(self.names("--quick")))
         usual, all_ = set(self.names()), set(self.names("--solutions"))
         self.assertEqual({"gas-shu-osher", "springs-drum"}, usual - all_)
         self.assertEqual({f"{app}-solution" for app in ("gas", "springs", "options", "flow", "parachute")}, all_ - usual)
