@@ -10,7 +10,7 @@
 #     --bin        folder of built programs; without it they are built, with what they need
 #     --publish    then copies records and page into docs/evidence, named NAME-MACHINE, and renews the tables of documents
 #
-# A finished record is not made again; FOLDER/NAME.txt holds what its command printed. Exit code: 0; 5 if a row failed its check;
+# A finished record is not made again; FOLDER/NAME.txt holds its command and what that printed. Exit code: 0; 5 if a row failed its check;
 # 130 after a signal; else that of the first command that failed, after all others have run.
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 
@@ -60,6 +60,14 @@ stop() {
   exit 130
 }
 
+# command_line WORDS...: prints them as a shell reads them.
+command_line() {
+  local word
+  for word in "$@"; do
+    case "$word" in *[!A-Za-z0-9_./=:,-]*) printf "'%s' " "$word" ;; *) printf '%s ' "$word" ;; esac
+  done
+}
+
 # record NAME WORDS...: makes FOLDER/NAME.jsonl by drogue-perf WORDS --out, unless it is there.
 record() {
   local name="$1" file="$folder/$1.jsonl" begin=$SECONDS code=0
@@ -80,7 +88,7 @@ record() {
   child=''
   if [ "$code" = 130 ]; then stop; fi
   if [ "$code" = 0 ] || [ "$code" = 5 ]; then
-    mv "$partial/text" "$folder/$name.txt"
+    { command_line drogue-perf "$@" ${quick[@]+"${quick[@]}"} && printf '\n' && cat "$partial/text"; } >"$folder/$name.txt"
     rm -f "$file.failed"
     [ "$code" = 0 ] || : >"$file.failed"
     mv "$partial/record.jsonl" "$file"
@@ -155,6 +163,7 @@ if [ -n "$machine" ]; then
   done
   if compgen -G "$folder/alone/*.jsonl" >/dev/null; then cat "$folder"/alone/*.jsonl >"$to/alone/options-$machine.jsonl"; fi
   cp "$folder/report.html" "$to/report-$machine.html"
+  "$root/scripts/evidence_rows.py" "$folder" "$machine"
   "$root/scripts/readme_tables.py"
   "$root/scripts/lesson_tables.py"
   "$root/scripts/transfer_tables.py"

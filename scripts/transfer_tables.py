@@ -96,7 +96,7 @@ def springs_words(rows):
              f"{number(few.copies)} us, whatever lies between them: {share(few.copies, few.time['total'])} of the total with one step "
              f"between them, {share(many.copies, many.time['total'])} with {many.steps}. What changed is the compute, "
              f"{number(many.time['compute'] / many.steps)} us per step of {many.steps}: persistent packets of vertices instead of "
-             "arrays of structs with stored neighbours.")  # fmt: skip
+             "arrays of structs with stored neighbours (rung `structs` of the [ladder](lessons/tables.md)).")  # fmt: skip
     pinned = pick(rows, size=size, memory="pinned", steps=few.steps)
     return words + (f" From pinned memory the copies take {number(pinned[0].copies)} us." if pinned else "")
 

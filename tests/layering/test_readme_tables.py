@@ -14,6 +14,7 @@ import layers
 
 ROOT = layers.repository(os.environ)
 sys.path.insert(0, str(ROOT / "scripts"))
+import evidence_rows  # noqa: E402
 import readme_tables  # noqa: E402
 import transfer_tables  # noqa: E402
 
@@ -133,6 +134,41 @@ class Transfers(unittest.TestCase):
         text = transfer_tables.page(self.evidence)
         self.assertIn("| pageable | 12x12x24 | 20 | 10 | 60 | 30 | 100 | 2.5e-6 |", text)
         self.assertIn("would take 40 us, 40 % of the step", " ".join(text.split()))
+
+
+class EvidenceRows(unittest.TestCase):
+    PAGE = "# Evidence\n\n| file | written by | machine |\n|---|---|---|\n| `a-h200.jsonl` | `old` | old |\n| `z.png` | x | y |\n\nEnd\n"
+
+    def test_every_record_of_the_repository_has_a_row(self):
+        folder = readme_tables.EVIDENCE
+        text = (folder / "README.md").read_text(encoding="utf-8")
+        for file in folder.rglob("*.jsonl"):
+            name = file.relative_to(folder).as_posix()
+            pattern = "*-" + name.partition("-")[2]
+            named = f"`{name}`" in text or f"`{Path(name).parent.as_posix()}/{pattern}`" in text or f"`{name}`, " in text
+            self.assertTrue(named, name)
+
+    def test_replaces_rows_and_adds_new_ones(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "alone").mkdir()
+            for record, command in (
+                ("a", "drogue-perf run --filter '^(a|b)/'"), ("ladder-weno", "drogue-perf ladder weno"),
+                ("alone/options-1", "drogue-perf run --filter '^options/cuda/1/'"),
+                ("alone/options-4096", "drogue-perf run --filter '^options/cuda/4096/'"),
+            ):
+                origin = {"gpu": "NVIDIA H200", "cpu": "", "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
+                line = json.dumps({"facts": {"backend": "cuda"}, "provenance": origin})
+                (folder / f"{record}.jsonl").write_text(line + "\n", encoding="utf-8")
+                (folder / f"{record}.txt").write_text(command + " \nprinted\n", encoding="utf-8")
+            text = evidence_rows.renewed(self.PAGE, evidence_rows.rows(folder, "h200"))
+        machine = "one NVIDIA H200, CUDA 13.0, 2026-11-27, commit abc"
+        self.assertEqual(
+            ["# Evidence", "", "| file | written by | machine |", "|---|---|---|",
+             f"| `a-h200.jsonl` | `drogue-perf run --filter '^(a\\|b)/' --out a-h200.jsonl` | {machine} |", "| `z.png` | x | y |",
+             f"| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/', one run per N, --out options-h200.jsonl` | {machine} |",
+             f"| `ladders/weno-cuda-h200.jsonl` | `drogue-perf ladder weno --out weno-cuda-h200.jsonl` | {machine} |", "", "End", ""],
+            text.split("\n"))  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -89,7 +89,10 @@ class Bench(unittest.TestCase):
             words = f"table transfers --app {app} --backend auto"
             self.assertEqual(1, sum(words in call for call in calls))
             self.assertIn(words, (self.out / f"{app}-transfers.jsonl").read_text())
-            self.assertIn(f"printed: {words}", (self.out / f"{app}-transfers.txt").read_text())
+            text = (self.out / f"{app}-transfers.txt").read_text()
+            self.assertTrue(text.startswith(f"drogue-perf {words} \nprinted: {words}"), text)
+        steps = (self.out / "gas-step.txt").read_text()
+        self.assertTrue(steps.startswith("drogue-perf run --filter '^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)/' \n"))
         self.assertFalse((self.out / ".partial").exists())
 
     def test_measures_the_gpu_alone_in_a_build_for_it(self):
@@ -172,7 +175,7 @@ class Bench(unittest.TestCase):
             (tree / name).mkdir(parents=True)
         shutil.copy(BENCH, tree / "scripts")
         shutil.copy(SOURCE / "scripts/lib/common.sh", tree / "scripts/lib")
-        generators = ["readme_tables.py", "lesson_tables.py", "transfer_tables.py"]
+        generators = ["evidence_rows.py", "readme_tables.py", "lesson_tables.py", "transfer_tables.py"]
         for name in [tree / "scripts" / generator for generator in generators] + [self.bin / "drogue-plot"]:
             name.write_text(f'#!/bin/sh\necho "${{0##*/}} $*" >>{self.folder}/renewed.txt\n')
             name.chmod(0o755)
@@ -192,7 +195,8 @@ class Bench(unittest.TestCase):
         self.assertEqual(2, len((tree / "docs/evidence/alone/options-h200.jsonl").read_text().splitlines()))
         self.assertTrue((tree / "docs/evidence/report-h200.html").exists())
         renewed = (self.folder / "renewed.txt").read_text().splitlines()
-        self.assertEqual([f"{name} " for name in generators] + [f"drogue-plot {tree}/docs/evidence --quiet"], renewed)
+        arguments = [f"{self.out} h200", "", "", ""]
+        self.assertEqual([f"{name} {more}" for name, more in zip(generators, arguments)] + [f"drogue-plot {tree}/docs/evidence --quiet"], renewed)
 
     def test_solutions_replace_the_two_of_the_readme(self):
         self.assertEqual({"gas-shu-osher"}, set(self.names()) - set(self.names("--quick")))
