@@ -1,29 +1,29 @@
 #!/usr/bin/env bash
 # Measures all tables on this machine: a file of records each, then one page of them. Starts where a killed one ended.
 #
-#   scripts/bench.sh [FOLDER] [--solutions] [--only REGEX] [--quick] [--backend B] [--bin DIR] [--publish MACHINE]
+#   scripts/bench.sh [FOLDER] [--solutions] [--only REGEX] [--quick] [--backend B] [--bin DIR]
 #     FOLDER       of the records and of report.html (default: out/bench)
 #     --solutions  times to solution of all problems too, which take longer than all other tables
 #     --only       the records whose name matches a regular expression; --list prints the names
 #     --quick      few cases, few samples
 #     --backend    cuda, openmp or serial (default: cuda if this machine has a GPU, else all of the host)
 #     --bin        folder of built programs; without it they are built, with what they need
-#     --publish    then copies records and page into docs/evidence, named NAME-MACHINE, and renews the tables of documents
 #
 # A finished record is not made again; FOLDER/NAME.txt holds its command and what that printed. Exit code: 0; 5 if a row failed its check;
-# 130 after a signal; else that of the first command that failed, after all others have run.
+# 130 after a signal; else that of the first command that failed, after all others have run. scripts/publish_records.py copies the
+# records into docs/evidence, and renews the tables of documents.
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 
-folder="$root/out/bench" bin='' backend='' only='' machine='' solutions=no list=no quick=()
+folder="$root/out/bench" bin='' backend='' only='' solutions=no list=no quick=()
 usage() { printf 'bench.sh: %s\n' "$*" >&2 && exit 2; }
 while [ $# -gt 0 ]; do
   case "$1" in
     --solutions) solutions=yes ;;
     --list) list=yes ;;
     --quick) quick=(--quick) ;;
-    --only | --backend | --bin | --publish)
+    --only | --backend | --bin)
       [ $# -gt 1 ] || usage "$1 needs a value."
-      case "$1" in --only) only="$2" ;; --backend) backend="$2" ;; --bin) bin="$2" ;; *) machine="$2" ;; esac
+      case "$1" in --only) only="$2" ;; --backend) backend="$2" ;; *) bin="$2" ;; esac
       shift
       ;;
     -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" && exit 0 ;;
@@ -33,7 +33,6 @@ while [ $# -gt 0 ]; do
   shift
 done
 case "$backend" in '' | cuda | openmp | serial) ;; *) usage "there is no backend '$backend'; valid are cuda, openmp and serial." ;; esac
-[[ "$machine" =~ ^[a-z0-9-]*$ ]] || usage "the machine '$machine' is part of names of files: use a-z, 0-9 and -."
 
 if [ -z "$bin" ]; then
   preset=host
@@ -151,22 +150,4 @@ code=0
 "$perf" report "$folder" || code=$?
 [ "$worst" != 0 ] || worst=$code
 say "all tables after $((SECONDS - started)) s"
-if [ -n "$machine" ]; then
-  [ "$worst" = 0 ] || fail "nothing is published, since a command failed (exit code $worst): the reason is above."
-  to="$root/docs/evidence"
-  for file in "$folder"/*.jsonl; do
-    name="$(basename "$file" .jsonl)"
-    case "$name" in
-      ladder-*) cp "$file" "$to/ladders/${name#ladder-}-$solver-$machine.jsonl" ;;
-      *) cp "$file" "$to/$name-$machine.jsonl" ;;
-    esac
-  done
-  if compgen -G "$folder/alone/*.jsonl" >/dev/null; then cat "$folder"/alone/*.jsonl >"$to/alone/options-$machine.jsonl"; fi
-  cp "$folder/report.html" "$to/report-$machine.html"
-  "$root/scripts/evidence_rows.py" "$folder" "$machine"
-  "$root/scripts/readme_tables.py"
-  "$root/scripts/lesson_tables.py"
-  "$root/scripts/transfer_tables.py"
-  "$bin/drogue-plot" "$to" --quiet
-fi
 exit "$worst"

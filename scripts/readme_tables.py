@@ -4,7 +4,7 @@
     scripts/readme_tables.py [--check]     --check: writes nothing, exit code 1 if a table differs from the records
 
 A table names its records by case. Of several records of a case the latest one counts; one that failed its check stops the
-script. scripts/bench.sh --publish MACHINE makes the records anew.
+script. scripts/bench.sh and scripts/publish_records.py make the records anew.
 """
 
 import json
@@ -41,7 +41,7 @@ class Records:
     def __call__(self, case):
         """The record of a case; stops the script if there is none or it failed its check."""
         if case not in self._found:
-            sys.exit(f"{self._evidence} holds no record of {case}: run scripts/bench.sh, and publish its records")
+            sys.exit(f"{self._evidence} holds no record of {case}: run scripts/bench.sh and scripts/publish_records.py")
         record = self._found[case]
         if record["check"] != "passed" or not record["samples"]:
             sys.exit(f"{record['place']}: {case} failed its check or has no samples")

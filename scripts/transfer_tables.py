@@ -3,7 +3,7 @@
 
     scripts/transfer_tables.py [--check]     --check: writes nothing, exit code 1 if the page differs from the records
 
-scripts/bench.sh --publish MACHINE makes the records anew.
+scripts/bench.sh and scripts/publish_records.py make the records anew.
 """
 
 import json

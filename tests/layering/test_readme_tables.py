@@ -14,7 +14,7 @@ import layers
 
 ROOT = layers.repository(os.environ)
 sys.path.insert(0, str(ROOT / "scripts"))
-import evidence_rows  # noqa: E402
+import publish_records  # noqa: E402
 import readme_tables  # noqa: E402
 import transfer_tables  # noqa: E402
 
@@ -161,7 +161,7 @@ class EvidenceRows(unittest.TestCase):
                 line = json.dumps({"facts": {"backend": "cuda"}, "provenance": origin})
                 (folder / f"{record}.jsonl").write_text(line + "\n", encoding="utf-8")
                 (folder / f"{record}.txt").write_text(command + " \nprinted\n", encoding="utf-8")
-            text = evidence_rows.renewed(self.PAGE, evidence_rows.rows(folder, "h200"))
+            text = publish_records.renewed(self.PAGE, publish_records.rows(folder, "h200"))
         machine = "one NVIDIA H200, CUDA 13.0, 2026-11-27, commit abc"
         self.assertEqual(
             ["# Evidence", "", "| file | written by | machine |", "|---|---|---|",

@@ -1,6 +1,7 @@
 # ctest-label: no-sanitizer
 """scripts/bench.sh with a program that stands for drogue-perf: what is measured, and how it goes on after an end."""
 
+import json
 import os
 import pathlib
 import shutil
@@ -169,34 +170,43 @@ class Bench(unittest.TestCase):
         self.assertIn("another build", self.bench(1))
 
     def test_publishes_records_and_renews_documents(self):
-        """In a copy of the tree that holds the script alone; its generators note that they were called."""
+        """In a tree that holds the script alone; what it starts notes its words."""
         tree = self.folder / "tree"
-        for name in ("scripts/lib", "docs/evidence/alone", "docs/evidence/ladders"):
+        for name in ("scripts", "docs/evidence"):
             (tree / name).mkdir(parents=True)
-        shutil.copy(BENCH, tree / "scripts")
-        shutil.copy(SOURCE / "scripts/lib/common.sh", tree / "scripts/lib")
-        generators = ["evidence_rows.py", "readme_tables.py", "lesson_tables.py", "transfer_tables.py"]
+        shutil.copy(SOURCE / "scripts/publish_records.py", tree / "scripts")
+        (tree / "docs/evidence/README.md").write_text("| file | written by | machine |\n|---|---|---|\n")
+        generators = ["readme_tables.py", "lesson_tables.py", "transfer_tables.py"]
         for name in [tree / "scripts" / generator for generator in generators] + [self.bin / "drogue-plot"]:
             name.write_text(f'#!/bin/sh\necho "${{0##*/}} $*" >>{self.folder}/renewed.txt\n')
             name.chmod(0o755)
         self.put("cases.txt", *CUDA)
-        words = [tree / "scripts/bench.sh", self.out, "--bin", self.bin, "--publish", "h200"]
+        words = [tree / "scripts/publish_records.py", self.out, "h200", "--bin", self.bin]
         self.plan({"table occupancy": "5"})
+        self.bench(5)
         failed = subprocess.run(words, capture_output=True, text=True, check=False)
-        self.assertIn("nothing is published", failed.stderr)
-        self.assertEqual([], list((tree / "docs").rglob("*.jsonl")))
+        self.assertEqual((1, "nothing is published: a row of occupancy failed its check\n"), (failed.returncode, failed.stderr))
+        self.assertEqual(["README.md"], [path.name for path in (tree / "docs/evidence").iterdir()])
         (self.out / "occupancy.jsonl").unlink()
         self.plan()
+        self.bench(0)
+        origin = {"gpu": "NVIDIA H200", "cpu": "", "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
+        for file in self.out.rglob("*.jsonl"):
+            file.write_text(json.dumps({"case": file.name, "facts": {"backend": "cuda"}, "provenance": origin}) + "\n")
         subprocess.run(words, capture_output=True, check=True)
-        published = {path.relative_to(tree / "docs/evidence").as_posix() for path in (tree / "docs").rglob("*.jsonl")}
+        published = {path.relative_to(tree / "docs/evidence").as_posix(): path for path in (tree / "docs").rglob("*.jsonl")}
         flat = {f"{name}-h200.jsonl" for name in self.names("--backend", "cuda") if "/" not in name and not name.startswith("ladder")}
         ladders = {f"ladders/{name}-cuda-h200.jsonl" for name in ("weno", "springs", "options", "transfers")}
-        self.assertEqual(flat | ladders | {"alone/options-h200.jsonl"}, published)
-        self.assertEqual(2, len((tree / "docs/evidence/alone/options-h200.jsonl").read_text().splitlines()))
-        self.assertTrue((tree / "docs/evidence/report-h200.html").exists())
-        renewed = (self.folder / "renewed.txt").read_text().splitlines()
-        arguments = [f"{self.out} h200", "", "", ""]
-        self.assertEqual([f"{name} {more}" for name, more in zip(generators, arguments)] + [f"drogue-plot {tree}/docs/evidence --quiet"], renewed)
+        self.assertEqual(flat | ladders | {"alone/options-h200.jsonl"}, set(published))
+        batches = published["alone/options-h200.jsonl"].read_text().splitlines()
+        self.assertEqual(["options-1.jsonl", "options-4096.jsonl"], [json.loads(line)["case"] for line in batches])
+        self.assertEqual("page", (tree / "docs/evidence/report-h200.html").read_text().strip())
+        rows = (tree / "docs/evidence/README.md").read_text().splitlines()[2:]
+        self.assertEqual(set(published), {row.split("`")[1] for row in rows})
+        self.assertIn("| `occupancy-h200.jsonl` | `drogue-perf table occupancy --out occupancy-h200.jsonl` |", "\n".join(rows))
+        calls = [f"drogue-plot {self.out} --report --quiet", *(f"{name} " for name in generators),
+                 f"drogue-plot {tree}/docs/evidence --quiet"]  # fmt: skip
+        self.assertEqual(calls, (self.folder / "renewed.txt").read_text().splitlines())
 
     def test_solutions_replace_the_two_of_the_readme(self):
         self.assertEqual({"gas-shu-osher"}, set(self.names()) - set(self.names("--quick")))
@@ -206,7 +216,7 @@ class Bench(unittest.TestCase):
 
     def test_refuses_unknown_words(self):
         for words, sentence in ((["--quik"], "unknown argument --quik"), (["--backend", "hip"], "no backend 'hip'"),
-                                (["--only"], "--only needs a value"), (["--publish", "a b"], "part of names of files"),
+                                (["--only"], "--only needs a value"),
                                 (["--bin", "nowhere"], "there is no program")):
             self.assertIn(sentence, self.bench(2, *words))
 
