@@ -357,7 +357,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
-                            (["table", "transfers", "--app", "parachute"], "have --app flow"),
+                            (["table", "scaling", "--app", "parachute"], "the only valid name is transfers"),
                             (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling"),
                             (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory, scaling"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
