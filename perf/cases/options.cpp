@@ -7,8 +7,8 @@ namespace {
 
 Case batch_case(device::Backend backend, std::size_t count, int mesh, int steps) {
   const std::string name(device::name(backend)), grid = std::to_string(mesh) + "x" + std::to_string(steps);
-  Case batch = puts::batch("options/" + name + "/" + std::to_string(count) + "/" + grid, backend, count,
-                           {.mesh = mesh, .steps = steps}, puts::tolerance(mesh));
+  Case batch = puts::batch("options/" + name + "/" + std::to_string(count) + "/" + grid, backend,
+                           HostMemory::pinned, count, {.mesh = mesh, .steps = steps}, puts::tolerance(mesh));
   batch.facts = [=] { return Facts{name, static_cast<std::int64_t>(count), grid}; };
   return batch;
 }

@@ -68,9 +68,11 @@ void keep_matching(std::vector<MeasuredCase>& records, const std::regex& filter,
 
 ExitCode compare_files(const CompareOptions& options, const std::regex& filter) {
   std::vector<MeasuredCase> after = read_records(options.after);
-  std::vector<MeasuredCase> before = read_records(find_baseline(options.before, after.front()));
+  const Baseline baseline = find_baseline(options.before, after.front());
+  std::vector<MeasuredCase> before = read_records(baseline.file);
   keep_matching(after, filter, options);
   keep_matching(before, filter, options);
+  for (const std::string& sentence : baseline.broken) std::printf("left out: %s\n", sentence.c_str());
   std::printf("old: %s\nnew: %s%s\n", describe_origin(before.back()).c_str(),
               describe_origin(after.back()).c_str(), describe_age(before.back(), after.back()).c_str());
   const std::vector<ComparedCase> rows = compare_records(before, after);
@@ -85,6 +87,7 @@ ExitCode compare_files(const CompareOptions& options, const std::regex& filter) 
   if (std::ranges::all_of(rows,
                           [](const ComparedCase& row) { return row.verdict == Verdict::not_comparable; }))
     std::printf("no case could be compared\n");
+  if (!baseline.broken.empty()) throw Failure(ExitCode::invalid_scene, baseline.broken.front());
   return ExitCode::ok;
 }
 

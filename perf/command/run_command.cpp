@@ -11,6 +11,7 @@
 #include "perf/cases/cases.hpp"
 #include "perf/command/command.hpp"
 #include "perf/command/filter.hpp"
+#include "perf/compare/baseline.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/memory/device_memory.hpp"
 
@@ -18,7 +19,7 @@ namespace drogue::perf {
 namespace {
 
 struct RunOptions {
-  std::string filter, out;
+  std::string filter, out, baselines;
   bool quick = false;
 };
 
@@ -58,10 +59,11 @@ Failure no_case(const RunOptions& options, const std::regex& filter) {
               "; see " + list};
 }
 
-ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
+ExitCode run_cases(RunOptions options, const std::regex& filter) {
   const std::vector<Case> cases = matching_cases(filter, options.quick);
   if (cases.empty()) throw no_case(options, filter);
   const nlohmann::json here = provenance(device::device_facts());
+  if (!options.baselines.empty()) options.out = file_for_baseline(options.baselines, here);
   const double overhead = timer_overhead();
   std::printf("timer: %.3f us per work; a sample repeats works of less than %.0f ms\n", 1e6 * overhead,
               1e3 * shortest_sample);
@@ -81,8 +83,12 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
                 verdict(record));
     for (const std::string& reason : seen.throttled) std::printf("  throttled: %s\n", reason.c_str());
   }
-  write_records(options.out, lines);
-  return code_of(passed);
+  const ExitCode code = code_of(passed);
+  if (options.baselines.empty() || code == ExitCode::ok) write_records(options.out, lines);
+  if (!options.baselines.empty())
+    std::printf(code == ExitCode::ok ? "baseline: %s\n" : "no baseline is written to %s\n",
+                options.out.c_str());
+  return code;
 }
 
 }  // namespace
@@ -103,6 +109,9 @@ Command run_command(CLI::App& program) {
   app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
   app->add_option("--out", options->out, "File for the records, one JSON line a case");
   app->add_flag("--quick", options->quick, "Small cases");
+  app->add_option("--baseline", options->baselines,
+                  "Folder of baselines, in which the records replace those of this machine if all passed")
+      ->excludes("--out");
   return {app, [options](const std::vector<std::string>& kokkos) {
             const std::regex filter = filter_of(options->filter);
             run::require_writable(options->out);

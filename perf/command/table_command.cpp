@@ -31,7 +31,7 @@ std::vector<std::string> tables_of(const std::string& app) {
   if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling", "abstraction"};
   if (app == "flow") return {"block-size", "pressure", "memory", "scaling", "abstraction"};
   if (app == "springs") return {"transfers", "scaling", "abstraction"};
-  if (app == "parachute") return {"block-size"};
+  if (app == "parachute") return {"block-size", "transfers"};
   return {"transfers", "scaling"};
 }
 
@@ -82,7 +82,8 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
                      : options.table == "memory" ? print_flow_memory
                      : options.app == "gas"      ? print_gas_transfers
                      : options.app == "springs"  ? print_fabric_transfers
-                                                 : print_options_transfers;
+                     : options.app == "options"  ? print_options_transfers
+                                                 : print_parachute_transfers;
   return print(backend, options.quick, here);
 }
 
@@ -92,9 +93,6 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
   const bool of_flow = options.table == "pressure" || options.table == "memory" || options.scales_program();
   if (options.app.empty()) options.app = of_flow ? "flow" : "gas";
   require_app(options.app);
-  if (options.app == "parachute" && options.table != "block-size")
-    throw Failure(ExitCode::usage,
-                  "of canopies there is table block-size alone; tables of the flow have --app flow");
   if (options.app == "springs" && options.table == "block-size")
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "

@@ -1,6 +1,7 @@
 #include "perf/compare/baseline.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -35,23 +36,81 @@ std::string machine_of(const MeasuredCase& record) {
          " threads";
 }
 
-}  // namespace
+/// Baselines of a machine in a folder.
+struct Found {
+  std::vector<std::string> files, broken;
+};
 
-std::string find_baseline(const std::string& path, const MeasuredCase& after) {
-  if (!fs::is_directory(path)) return path;
-  std::vector<std::string> files, found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path))
+Found baselines_of(const std::string& folder, const MeasuredCase& machine) {
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".jsonl") files.push_back(entry.path().string());
   std::ranges::sort(files);
-  std::ranges::copy_if(files, std::back_inserter(found), [&](const std::string& file) {
-    return same_machine(read_records(file).front(), after);
-  });
-  if (found.size() == 1) return found.front();
-  if (found.empty())
+  Found found;
+  for (const std::string& file : files) try {
+      if (same_machine(read_records(file).front(), machine)) found.files.push_back(file);
+    } catch (const Failure& failure) {
+      found.broken.emplace_back(failure.what());
+    }
+  return found;
+}
+
+Failure several(const std::string& folder, const std::vector<std::string>& files) {
+  return {ExitCode::usage, "'" + folder + "' has several baselines of one machine, " + files[0] + " and " +
+                               files[1] + "; remove all but one"};
+}
+
+std::string all_of(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += "; " + sentence;
+  return text;
+}
+
+/// Lower-case letters, digits and single hyphens.
+std::string file_name(const std::string& text) {
+  std::string name;
+  for (const unsigned char c : text) {
+    if (std::isalnum(c) != 0)
+      name += static_cast<char>(std::tolower(c));
+    else if (!name.empty() && name.back() != '-')
+      name += '-';
+  }
+  while (!name.empty() && name.back() == '-') name.pop_back();
+  return name.empty() ? "machine" : name;
+}
+
+}  // namespace
+
+Baseline find_baseline(const std::string& path, const MeasuredCase& after) {
+  if (!fs::is_directory(path)) return {path, {}};
+  Found found = baselines_of(path, after);
+  if (found.files.size() == 1) return {found.files.front(), found.broken};
+  if (found.files.empty())
     throw Failure(ExitCode::usage, "'" + path + "' has no baseline of the machine " + machine_of(after) +
-                                       "; copy records of drogue-perf run there as a file *.jsonl");
-  throw Failure(ExitCode::usage, "'" + path + "' has several baselines of one machine, " + found[0] +
-                                     " and " + found[1] + "; remove all but one");
+                                       "; make one by drogue-perf run --quick --baseline " + path +
+                                       all_of(found.broken));
+  throw several(path, found.files);
+}
+
+std::string file_for_baseline(const std::string& folder, const nlohmann::json& provenance) {
+  if (!fs::is_directory(folder)) throw Failure(ExitCode::usage, "there is no folder '" + folder + "'");
+  MeasuredCase here;
+  here.provenance = provenance;
+  const Found found = baselines_of(folder, here);
+  for (const std::string& sentence : found.broken) std::printf("left out: %s\n", sentence.c_str());
+  if (found.files.size() > 1) throw several(folder, found.files);
+  if (found.files.size() == 1) {
+    const MeasuredCase old = read_records(found.files.front()).front();
+    std::printf("%s replaces that of %s%s\n", found.files.front().c_str(), describe_origin(old).c_str(),
+                describe_age(old, here).c_str());
+    return found.files.front();
+  }
+  const std::string gpu = here.origin("gpu");
+  const std::string name = file_name(gpu.empty() ? here.origin("cpu") : gpu) + "-" + here.origin("threads");
+  fs::path file = fs::path(folder) / (name + ".jsonl");
+  for (int number = 2; fs::exists(file); ++number)
+    file = fs::path(folder) / (name + "-" + std::to_string(number) + ".jsonl");
+  return file.string();
 }
 
 std::string describe_origin(const MeasuredCase& record) {
@@ -71,7 +130,10 @@ std::string describe_age(const MeasuredCase& before, const MeasuredCase& after) 
   char text[64];
   std::snprintf(text, sizeof text, "; %.1f %s %s", std::abs(in_days ? hours / 24.0 : hours),
                 in_days ? "days" : "hours", hours < 0.0 ? "before the old one" : "later");
-  return text;
+  // The system changes too.
+  return hours > 24.0 * largest_age
+             ? text + std::string("; measure the old commit again before a verdict matters")
+             : text;
 }
 
 }  // namespace drogue::perf

@@ -1,21 +1,35 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "perf/compare/record_file.hpp"
 
 namespace drogue::perf {
 
-/// File of records for a comparison: `path` itself, or, if it is a folder, its only file *.jsonl whose first
-/// record has the processor, GPU and number of threads of `after`. Throws Failure: usage if a folder has none
-/// or several, and as `read_records`.
-std::string find_baseline(const std::string& path, const MeasuredCase& after);
+/// Records before a change, and what else a folder of baselines holds.
+struct Baseline {
+  std::string file;
+  std::vector<std::string> broken;  ///< sentences on files of the folder that hold no records
+};
+
+/// Records for a comparison: `path` itself, or, if it is a folder, its only file *.jsonl whose first record
+/// has the processor, GPU and number of threads of `after`. Files of a folder that cannot be read as records
+/// are left out and named. Throws Failure: usage if a folder has no such file or several.
+Baseline find_baseline(const std::string& path, const MeasuredCase& after);
+
+/// File of a folder for a new baseline of the machine of `provenance`: that of its present baseline, else a
+/// new one, named by processor or GPU and threads. Prints what it replaces. Throws Failure: usage if there is
+/// no such folder, and if it has several baselines of the machine.
+std::string file_for_baseline(const std::string& folder, const nlohmann::json& provenance);
 
 /// Commit and date of a record in words. Does not throw.
 std::string describe_origin(const MeasuredCase& record);
 
-/// Words on how much later `after` was measured, opening with a semicolon; empty if a date is unknown. Does
-/// not throw.
+/// Words on how much later `after` was measured, opening with a semicolon; empty if a date is unknown.
+/// Advises to measure the old commit again after `largest_age` days. Does not throw.
 std::string describe_age(const MeasuredCase& before, const MeasuredCase& after);
+inline constexpr double largest_age = 30.0;
 
 }  // namespace drogue::perf

@@ -82,6 +82,17 @@ std::vector<double> sample_times(const nlohmann::json& json, const std::string& 
   return times;
 }
 
+/// Throws unless a record with samples has the median and interval that drogue-perf writes beside them, where
+/// it has them at all.
+void require_statistics(const nlohmann::json& json, const std::string& name, const std::string& place) {
+  const auto median = json.find("median"), interval = json.find("interval");
+  if (median != json.end() && !median->is_number())
+    throw invalid(place, "'median' of " + name + " is no number beside its samples");
+  if (interval != json.end() && (!interval->is_array() || interval->size() != 2 ||
+                                 !interval->at(0).is_number() || !interval->at(1).is_number()))
+    throw invalid(place, "'interval' of " + name + " is not two numbers beside its samples");
+}
+
 nlohmann::json object_member(const nlohmann::json& json, const char* key, const std::string& place) {
   const auto found = json.find(key);
   if (found == json.end() || found->is_null()) return nlohmann::json::object();
@@ -100,6 +111,7 @@ MeasuredCase parse_record(const std::string& line, const std::string& place) {
     throw invalid(place, "'case' holds a control character");
   found.unit = text_member(json, "unit", place);
   found.samples = sample_times(json, found.name, place);
+  if (!found.samples.empty()) require_statistics(json, found.name, place);
   const std::string check = text_member(json, "check", place);
   if (check != "passed" && check != "failed")
     throw invalid(place, "'check' of " + found.name + " is neither \"passed\" nor \"failed\"");

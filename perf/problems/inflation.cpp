@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
+#include <memory_resource>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
 #include "kernels/coupling/sheet/restart_state.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
+#include "perf/measure/timed_parts.hpp"
 
 namespace drogue::perf::inflation {
 
@@ -19,20 +24,20 @@ constexpr double speed = 10.0;  // m/s
 
 /// State that a sample begins from.
 struct State {
-  std::vector<std::vector<double>> flow;  ///< arrays of `flow::state_fields`
+  std::pmr::vector<std::pmr::vector<double>> flow;  ///< arrays of `flow::state_fields`
   flow::Progress progress;
   coupling::RestartState sheets;
 };
 
-State save(coupling::Solver& solver, const coupling::Parameters& p) {
-  State state;
-  for (const flow::StateField field : flow::state_fields(p.flow)) {
-    state.flow.emplace_back(flow::state_size(p.flow, field));
-    solver.download(field, state.flow.back());
+void save(coupling::Solver& solver, const coupling::Parameters& p, State& state) {
+  const auto fields = flow::state_fields(p.flow);
+  state.flow.resize(fields.size());
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    state.flow[k].resize(flow::state_size(p.flow, fields[k]));
+    solver.download(fields[k], state.flow[k]);
   }
   state.progress = solver.progress();
   state.sheets = coupling::download_restart_state(solver, p.fabric.mass.size());
-  return state;
 }
 
 void restore(coupling::Solver& solver, const coupling::Parameters& p, const State& state) {
@@ -91,12 +96,43 @@ Sample flight(const Problem& problem, coupling::Solver& solver, double lead, lon
             if (!state->flow.empty()) return restore(solver, problem.parameters, *state);
             start(solver, problem);
             fly_to(solver, lead);
-            *state = save(solver, problem.parameters);
+            save(solver, problem.parameters, *state);
           },
           [=, &solver] {
             fly_to(solver, state->progress.time + 1e-3 * static_cast<double>(milliseconds));
             return milliseconds;
           }};
+}
+
+Sample copied_steps(const Problem& problem, coupling::Solver& solver, double lead, long steps,
+                    const std::shared_ptr<std::pmr::memory_resource>& memory) {
+  struct Run {
+    std::shared_ptr<std::pmr::memory_resource> memory;
+    State start, now;
+    std::map<std::string, double> parts;
+  };
+  using Arrays = std::pmr::vector<std::pmr::vector<double>>;
+  const auto run = std::make_shared<Run>(memory, State(), State{Arrays(memory.get()), {}, {}});
+  return {[=, &problem, &solver] {
+            if (run->start.flow.empty()) {
+              start(solver, problem);
+              fly_to(solver, lead);
+              save(solver, problem.parameters, run->start);
+            }
+            run->now = run->start;
+          },
+          [=, &problem, &solver] {
+            State& now = run->now;
+            // The time never arrives: the number of steps ends the work.
+            const auto step = [&] {
+              if (solver.advance(now.progress.time + 1e3, now.progress.step + steps, {}) != flow::Stop::pause)
+                throw Failure(ExitCode::numerical_failure, "a step of the parachute benchmark failed");
+            };
+            run->parts = timed_parts([&] { restore(solver, problem.parameters, now); }, step,
+                                     [&] { save(solver, problem.parameters, now); });
+            return steps;
+          },
+          [=] { return run->parts; }};
 }
 
 std::optional<Opening> opening(const Problem& problem, coupling::Solver& solver, double end_time) {

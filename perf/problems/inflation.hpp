@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <memory_resource>
 #include <optional>
 #include <vector>
 
@@ -34,6 +36,13 @@ Problem problem(const Discretization& discretization);
 /// reset computes it. `solver`, made for the problem, must outlive the sample. The work throws
 /// Failure(numerical_failure) after a failed step.
 Sample flight(const Problem& problem, coupling::Solver& solver, double lead, long milliseconds);
+
+/// Sample of `steps` steps of the flow between two copies of the whole state: to the device, and back. The
+/// arrays of the flow, nearly all of it, are in `memory`. Each sample begins from the same state, after
+/// `lead` seconds, which the first reset computes. Its parts are h2d, compute and d2h. `solver`, made for the
+/// problem, must outlive the sample. The work throws Failure(numerical_failure) after a failed step.
+Sample copied_steps(const Problem& problem, coupling::Solver& solver, double lead, long steps,
+                    const std::shared_ptr<std::pmr::memory_resource>& memory);
 
 /// Momentum that the canopy gives the air along the stream while it opens.
 struct Opening {

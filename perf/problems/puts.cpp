@@ -17,6 +17,7 @@ namespace {
 
 struct Run {
   std::unique_ptr<options::Pricer> pricer;
+  std::shared_ptr<std::pmr::memory_resource> memory;
   std::pmr::vector<options::Contract> contracts;
   std::pmr::vector<options::Price> prices;
   options::WallTimes timing;
@@ -74,7 +75,16 @@ double error(const Run& run) {
   return largest;
 }
 
-Case timed(const std::string& name, device::Backend backend,
+/// Memory of the contracts and prices of a pricer. Finite differences recognise their own pinned memory
+/// alone, from which they copy without a buffer in between.
+std::shared_ptr<std::pmr::memory_resource> memory_for(options::Pricer& pricer, device::Backend backend,
+                                                      const options::Settings& settings, HostMemory memory) {
+  if (memory == HostMemory::pinned && settings.method == options::Method::pide)
+    return {std::shared_ptr<void>(), &pricer.memory()};
+  return host_memory(backend, memory);
+}
+
+Case timed(const std::string& name, device::Backend backend, HostMemory kind,
            const std::function<std::vector<options::Contract>()>& contracts,
            const options::Settings& settings, double limit) {
   const auto run = std::make_shared<std::optional<Run>>();
@@ -89,11 +99,13 @@ Case timed(const std::string& name, device::Backend backend,
           "arithmetic of the convolution",
           [=] {
             std::unique_ptr<options::Pricer> pricer = options::create_pricer(backend, settings);
-            std::pmr::memory_resource& memory = pricer->memory();
+            const std::shared_ptr<std::pmr::memory_resource> memory =
+                memory_for(*pricer, backend, settings, kind);
             const std::vector<options::Contract> asked = contracts();
             run->emplace(Run{std::move(pricer),
-                             {asked.begin(), asked.end(), &memory},
-                             std::pmr::vector<options::Price>(asked.size(), &memory),
+                             memory,
+                             {asked.begin(), asked.end(), memory.get()},
+                             std::pmr::vector<options::Price>(asked.size(), memory.get()),
                              {}});
             return Sample{[] {},
                           [=] {
@@ -109,16 +121,16 @@ Case timed(const std::string& name, device::Backend backend,
 
 }  // namespace
 
-Case batch(const std::string& name, device::Backend backend, std::size_t count,
+Case batch(const std::string& name, device::Backend backend, HostMemory memory, std::size_t count,
            const options::Settings& settings, double limit) {
   return timed(
-      name, backend, [=] { return distinct(count); }, settings, limit);
+      name, backend, memory, [=] { return distinct(count); }, settings, limit);
 }
 
 Case surface(const std::string& name, device::Backend backend, const SurfaceSize& size,
              const options::Settings& settings, double limit) {
   return timed(
-      name, backend, [=] { return surfaces(size); }, settings, limit);
+      name, backend, HostMemory::pinned, [=] { return surfaces(size); }, settings, limit);
 }
 
 }  // namespace drogue::perf::puts

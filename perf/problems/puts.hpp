@@ -4,6 +4,7 @@
 
 #include "kernels/options/pricer.hpp"
 #include "perf/measure/measurement.hpp"
+#include "perf/memory/host_memory.hpp"
 
 /// Batches and surfaces of American puts, some of which have known prices. No function throws before a case
 /// runs.
@@ -14,8 +15,9 @@ namespace drogue::perf::puts {
 constexpr double tolerance(int mesh) { return mesh < 128 ? 2e-4 : 3e-5; }
 
 /// Prices `count` distinct puts of strike 1: first those of `thesis_puts`, then random ones with similar
-/// parameters. A sample is the sum of copies and compute; the error is the largest of the known prices.
-Case batch(const std::string& name, device::Backend backend, std::size_t count,
+/// parameters. Contracts and prices stand in `memory`. A sample is the sum of copies and compute; the error
+/// is the largest of the known prices.
+Case batch(const std::string& name, device::Backend backend, HostMemory memory, std::size_t count,
            const options::Settings& settings, double limit);
 
 /// Numbers of parameter sets, of strikes from half to twice the spot, and of maturities from a quarter to two

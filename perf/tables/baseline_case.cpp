@@ -6,9 +6,6 @@
 
 namespace drogue::perf {
 
-/// Steps of a sample of some milliseconds; the waves stay away from the ends.
-constexpr long baseline_steps = 20;
-
 Case baseline_case(const std::string& name, const std::string& bound, device::Backend backend,
                    const gas::Parameters& p,
                    const std::function<std::map<std::string, double>(const gas::PhaseTimes&)>& parts) {

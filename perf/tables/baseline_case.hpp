@@ -5,8 +5,11 @@
 
 namespace drogue::perf {
 
-/// Case of some steps of Sod's problem by the baseline solver. `parts` selects the timed phases of a sample,
-/// s. Does not throw.
+/// Steps of a sample of some milliseconds; the waves stay away from the ends.
+inline constexpr long baseline_steps = 20;
+
+/// Case of `baseline_steps` steps of Sod's problem by the baseline solver. `parts` selects the timed phases
+/// of a sample, s. Does not throw.
 Case baseline_case(const std::string& name, const std::string& bound, device::Backend backend,
                    const gas::Parameters& parameters,
                    const std::function<std::map<std::string, double>(const gas::PhaseTimes&)>& parts);

@@ -28,8 +28,8 @@ struct Table {
 Table print_occupancy(const std::string& architecture, const std::string& profile,
                       const nlohmann::json& provenance);
 
-/// Table 5.5: copy to the device, compute and copy to the host by the baseline solver, from pageable memory
-/// and, on a GPU, pinned memory.
+/// Table 5.5: copy to the device, compute and copy to the host by the baseline solver and by ours, from
+/// pageable memory and, on a GPU, pinned memory, as in all tables of transfers.
 Table print_gas_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
 /// Table 5.6: copy of the state to the device, Runge-Kutta steps and copy to the host, for several numbers of
@@ -38,6 +38,9 @@ Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann
 
 /// Tables 5.7 and 5.8: copy of batches of American puts to the device, pricing and copy to the host.
 Table print_options_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
+
+/// Copies of the whole state of a parachute and the air around it, and one or more steps between them.
+Table print_parachute_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
 /// Pressure solvers of flow: time, iterations and residual for each solver and tolerance, kind of sides and
 /// grid.

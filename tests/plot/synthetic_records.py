@@ -206,6 +206,8 @@ def transfers(machine=H200):
             }  # fmt: skip
             seconds = facts["h2d_s"] + facts["compute_s"] + facts["d2h_s"]
             found.append(record(f"gas-transfers/cuda/{memory}/{cells}", seconds, machine, facts))
+            ours = facts | {"method": "ours", "h2d_s": 1e-6, "compute_s": 5e-6, "d2h_s": 1e-6}
+            found.append(record(f"gas-transfers/cuda/{memory}/{cells}/ours", 7e-6, machine, ours))
     return found
 
 
@@ -258,6 +260,19 @@ def springs_steps(machine=H200):
     return [record(case, seconds, machine) for case, seconds in times.items()]
 
 
+def ladder(name="weno", machine=EPYC, backend="serial"):
+    """Three rungs, each twice as fast as the one before, predicted at half of their time."""
+    found = []
+    for place, rung in enumerate(("naive port", "resident", "fused stages")):
+        seconds = 8e-3 / 2**place
+        facts = {
+            "ladder": name, "rung": rung, "backend": backend, "cells": 8192, "predicted_s": 0.5 * seconds,
+            "predicted_bound": "arithmetic", "flops": 1e6, "bytes": 1e6,
+        }  # fmt: skip
+        found.append(record(f"ladder/{name}/{backend}/8192/{rung}", seconds, machine, facts))
+    return found
+
+
 def springs_transfers(machine=H200):
     thesis = {"cpu_us": 223565, "h2d_us": 171, "compute_us": 41328, "d2h_us": 644, "total_us": 42143}
     found = []
@@ -267,6 +282,20 @@ def springs_transfers(machine=H200):
             "d2h_s": 2e-5, "thesis": thesis,
         }  # fmt: skip
         found.append(record(f"springs-transfers/cuda/2641/{steps}", 5e-5 + 5e-6 * steps, machine, facts))
+        pinned = facts | {"memory": "pinned", "h2d_s": 1e-5}
+        found.append(record(f"springs-transfers/cuda/2641/{steps}/pinned", 3e-5 + 5e-6 * steps, machine, pinned))
+    return found
+
+
+def parachute_transfers(machine=H200):
+    """Copies of 1 ms around one and twenty steps of 1 ms."""
+    found = []
+    for steps in (1, 20):
+        facts = {
+            "backend": "cuda", "memory": "pinned", "cells": 432000, "grid": "60x60x120", "substeps": steps,
+            "h2d_s": 5e-4 / steps, "compute_s": 1e-3, "d2h_s": 5e-4 / steps,
+        }  # fmt: skip
+        found.append(record(f"parachute-transfers/cuda/pinned/60x60x120/{steps}", 1e-3 + 1e-3 / steps, machine, facts))
     return found
 
 
@@ -320,7 +349,10 @@ def options_transfers(machine=H200):
             "backend": "cuda", "method": method, "cells": options, "mesh": mesh, "h2d_s": 0.1 * seconds,
             "compute_s": 0.8 * seconds, "d2h_s": 0.1 * seconds, "thesis": thesis,
         }  # fmt: skip
-        found.append(record(f"options-transfers/cuda/{method}/{options}/{mesh}", seconds, machine, facts))
+        for memory, factor in (("pageable", 1.0), ("pinned", 0.9)):
+            own = facts | {"memory": memory, "h2d_s": factor * facts["h2d_s"]}
+            case = f"options-transfers/cuda/{method}/{options}/{mesh}/{memory}"
+            found.append(record(case, seconds * (0.9 + 0.1 * factor), machine, own))
     return found
 
 

@@ -58,8 +58,8 @@ class Contents(Folder):
         self.assertIn("1 record is left out, because a later one", page.words)
 
     def test_names_unknown_kinds_of_records(self):
-        page, _ = self.page([*records.steps_of_h200(), records.record("ladder/weno/3", 1e-6, records.H200)])
-        self.assertIn("1 record is ignored, of a kind that this page does not know: ladder.", page.words)
+        page, _ = self.page([*records.steps_of_h200(), records.record("tower/weno/3", 1e-6, records.H200)])
+        self.assertIn("1 record is ignored, of a kind that this page does not know: tower.", page.words)
 
     def test_machines_have_separate_sections_and_pictures(self):
         other = records.H200 | {"cpu": "AMD EPYC"}

@@ -241,9 +241,11 @@ class Devices(Folder):
         page, files = self.page(records.transfers())
         self.assertEqual(files, ["gas.html", "transfers_cuda_nvidia-h200.png"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
-        self.assertEqual(len(rows), 1 + 3 * 8)
+        self.assertEqual(len(rows), 1 + 5 * 8)
+        self.assertEqual([row[1] for row in rows[1:6]], ["[Shi]", "pageable", "pinned", "ours, pageable", "ours, pinned"])
         self.assertEqual(rows[1], ["1\u2009024", "[Shi]", "336", "118", "272", "726", ""])
         self.assertEqual(rows[3], ["1\u2009024", "pinned", "16.8", "40", "13.6", "70.4", "10.3"])
+        self.assertEqual(rows[5], ["1\u2009024", "ours, pinned", "1", "5", "1", "7", "104"])
 
     def test_block_sizes_have_panel_per_form_and_curve_per_size(self):
         evidence = self.evidence(records.blocks())
@@ -263,6 +265,29 @@ class Devices(Folder):
             files,
             ["blocks_flow_cuda_nvidia-h200.png", "blocks_parachute_cuda_nvidia-h200.png", "flow.html"],
         )
+
+
+class Ladders(Folder):
+    def test_rungs_show_prediction_and_gain(self):
+        page, files = self.page(records.ladder() + records.ladder("springs"), app="ladder")
+        self.assertEqual(["ladder-springs_serial_amd-epyc.png", "ladder-weno_serial_amd-epyc.png", "ladder.html"], files)
+        rows = page.tables["AMD EPYC", "Ladder weno, Serial"]
+        self.assertEqual(["naive port", "resident", "fused stages"], [row[0] for row in rows[1:]])
+        self.assertEqual(
+            ["fused stages", "1\u2009000", "arithmetic", "2\u2009000", "1\u2009960 .. 2\u2009040", "4", "1\u00d710\u22124"], rows[3]
+        )
+
+    def test_figure_holds_every_rung(self):
+        from plot.evidence.ladders import ladder_figure
+
+        evidence = self.evidence(records.ladder())
+        figure = ladder_figure("Ladder weno", evidence.machines[0], evidence.records)
+        figure.canvas.draw()
+        axis = figure.axes[0]
+        self.assertEqual(["naive port", "resident", "fused stages"], [text.get_text() for text in axis.get_yticklabels()])
+        renderer = figure.canvas.get_renderer()
+        for text in axis.get_yticklabels():
+            self.assertGreaterEqual(text.get_window_extent(renderer).x0, 0)
 
 
 class Springs(Folder):
@@ -315,7 +340,8 @@ class Springs(Folder):
         page, files = self.springs_page(records.springs_transfers())
         self.assertEqual(files, ["springs-transfers_cuda_nvidia-h200.png", "springs.html"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
-        sources = ["between two copies", "[Shi]", "1 step", "10 steps", "100 steps"]
+        steps = ["1 step", "10 steps", "100 steps"]
+        sources = ["between two copies", "[Shi]", *steps, *(f"{words}, pinned" for words in steps)]
         self.assertEqual([row[1] for row in rows], sources)
         self.assertNotIn("times as fast", " ".join(rows[0]))
         self.assertIn("no ratio to it means anything", page.words)

@@ -31,6 +31,13 @@ class Page(Folder):
         self.assertIn("ms per s of flight", page.words)
         self.assertIn("goal met", page.words)
 
+    def test_transfers_of_parachutes_have_a_panel_per_number_of_steps(self):
+        page, files = self.page(records.parachute_transfers(), app="flow")
+        self.assertIn("parachute-transfers_cuda_nvidia-h200.png", files)
+        rows = page.tables[H200, "Transfers of a step, CUDA"][1:]
+        self.assertEqual(["1 step, pinned", "20 steps, pinned"], [row[1] for row in rows])
+        self.assertNotIn("Times of [Shi]", page.words)
+
     def test_pressure_solvers_have_tolerances_and_iterations(self):
         page, _ = self.page(records.flow_solvers(), app="flow")
         rows = page.tables[H200, "Pressure solvers"][1:]

@@ -87,10 +87,21 @@ class Batches(Folder):
         page, files = self.page(records.options_transfers(), "options")
         self.assertEqual(["options-transfers_cuda_nvidia-h200.png", "options.html"], files)
         rows = page.tables[MACHINE, "Tables 5.7 and 5.8, CUDA"]
-        self.assertEqual([3, 3, 4], [sum(row[:2] == place for row in rows) for place in (
+        self.assertEqual([5, 5, 6], [sum(row[:2] == place for row in rows) for place in (
             ["1", "128"], ["1", "256"], ["32", "128"])])  # fmt: skip
-        own = next(row for row in rows if row[:3] == ["32", "128", "ours, two solves for an error"])
-        self.assertEqual(["20", "160", "20", "200", "19\u2009478", "1\u00d710\u22124"], own[3:])
+        pageable, pinned = (row for row in rows if row[:3] == ["32", "128", "ours, two solves for an error"])
+        self.assertEqual(["pageable", "20", "160", "20", "200", "19\u2009478", "1\u00d710\u22124"], pageable[3:])
+        self.assertEqual(["pinned", "18", "160", "20", "198"], pinned[3:8])
+
+    def test_labels_of_published_results_are_within_the_panel_and_apart(self):
+        figure = figure_of(self, records.H200, "cuda")
+        figure.canvas.draw()
+        renderer, panel = figure.canvas.get_renderer(), figure.axes[0]
+        boxes = [text.get_window_extent(renderer) for text in panel.texts]
+        self.assertGreater(len(boxes), 3)
+        for index, box in enumerate(boxes):
+            self.assertTrue(panel.bbox.x0 <= box.x0 and box.x1 <= panel.bbox.x1, panel.texts[index].get_text())
+            self.assertFalse(any(box.overlaps(other) for other in boxes[:index]), panel.texts[index].get_text())
 
     def test_draws_transfers_without_times_of_dissertation(self):
         lines = [line | {"facts": line["facts"] | {"thesis": {}}} for line in records.options_transfers()]

@@ -2,11 +2,14 @@
 
 import re
 import unittest
+import unittest.mock
 from html.parser import HTMLParser
 
 import packages  # noqa: F401, before modules that need the packages  isort: skip
 import synthetic_records as records
 from evidence_pages import Folder, Page, plot
+
+MACHINE = "NVIDIA H200, Intel Xeon Processor"
 
 
 class Outline(HTMLParser):
@@ -59,6 +62,36 @@ class Report(Folder):
         self.assertTrue(all(after <= before + 1 for before, after in zip(outline.levels, outline.levels[1:])))
         self.assertIn("@media print", text)
         self.assertNotIn("<th>", text)
+
+    def test_outline_has_machines_and_sections_below_their_mini_app(self):
+        outline = Outline(self.report([*records.steps_of_h200(), *records.transfers(), *records.steps_of_core()]))
+        self.assertEqual([1, 2, 3, 3, 2, 3, 4, 5, 5, 4, 3, 4, 5, 5], outline.levels)
+        code, _, _ = plot(self.folder, "--dpi", 60)
+        self.assertEqual(0, code)
+        page = Outline((self.folder / "gas.html").read_text(encoding="utf-8"))
+        self.assertEqual([1, 2, 3, 4, 4, 3, 2, 3, 4, 4], page.levels)
+
+    def test_large_folders_have_a_summary_and_shortened_tables(self):
+        from plot.evidence import report
+
+        lines = [records.step(f"cuda/{cells}", 1e-6 * cells, records.H200, cells) for cells in range(1000, 1400)]
+        lines[7]["check"] = "failed"
+        whole = self.report(lines)
+        self.assertEqual(400, whole.count("<td class=\"case\">gas-step/cuda/"))
+        with unittest.mock.patch.multiple(report, MOST_STRIPS=100, MOST_ROWS=300, MOST_BYTES=20_000):
+            text = self.report(lines)
+        self.assertLess(len(text), len(whole) / 2)
+        page = Page(text)
+        self.assertIn(["gas-step", "cuda", "400", "1", "1 ms", "1.4 ms", "1×10−4"], page.tables["Every case", MACHINE])
+        self.assertIn("gas-step/cuda/1007", page.words)
+        self.assertNotIn("gas-step/cuda/1008", page.words)
+        self.assertRegex(page.words, r"\d+ more rows are left out to keep the page below 5 MB")
+        self.assertIn("records.csv", page.words)
+
+    def test_names_records_without_samples(self):
+        empty = records.step("cuda/2048", None, records.H200, 2048, samples=[], interval=None)
+        page = Page(self.report([*records.steps_of_h200(), empty]))
+        self.assertIn("1 record is left out for having no samples: gas-step/cuda/2048 on NVIDIA H200", page.words)
 
     def test_strip_draws_every_sample(self):
         from plot.evidence import report

@@ -54,7 +54,7 @@ class Record(perf_program.PerfTest):
         text = self.expect(0, "table", "transfers", "--quick", "--backend", "serial", "--out", "rows.jsonl").stdout
         self.assertIn("no pinned memory", text)
         records = self.records("rows.jsonl")
-        self.assertEqual(["gas-transfers/serial/pageable/1024", "gas-transfers/serial/pageable/8192"],
+        self.assertEqual([f"gas-transfers/serial/pageable/{cells}{ours}" for ours in ("", "/ours") for cells in (1024, 8192)],
                          [record["case"] for record in records])
         printed = {1024: (336, 118, 272, 726), 8192: (509, 363, 365, 1237)}
         for record in records:
@@ -62,6 +62,7 @@ class Record(perf_program.PerfTest):
             self.assertEqual(FIELDS | {"facts"}, set(record))
             facts = record["facts"]
             self.assertEqual(("serial", "pageable"), (facts["backend"], facts["memory"]))
+            self.assertEqual("ours" if record["case"].endswith("ours") else "seed", facts["method"])
             thesis = dict(zip(("h2d_us", "compute_us", "d2h_us", "total_us"), printed[facts["cells"]]))
             self.assertEqual(thesis, facts["thesis"])
             parts = [facts["h2d_s"], facts["compute_s"], facts["d2h_s"]]
@@ -105,7 +106,7 @@ class Record(perf_program.PerfTest):
                            "rows.jsonl").stdout
         self.assertIn("Tables 5.7 and 5.8", text)
         records = self.records("rows.jsonl")
-        self.assertEqual([f"options-transfers/serial/{method}/{count}/128"
+        self.assertEqual([f"options-transfers/serial/{method}/{count}/128/pageable"
                           for count in (1, 32, 64) for method in ("seed", "pide")],
                          [record["case"] for record in records])
         for seed, ours in zip(records[::2], records[1::2]):
@@ -113,6 +114,17 @@ class Record(perf_program.PerfTest):
             self.assertLess(ours["error"], 0.1 * seed["error"])
         self.assertEqual({"h2d_us": 752740, "compute_us": 540774, "d2h_us": 55, "total_us": 1293569},
                          records[0]["facts"]["thesis"])
+
+    def test_parachute_transfers_copy_the_whole_state(self):
+        self.expect(0, "table", "transfers", "--app", "parachute", "--quick", "--backend", "serial", "--out", "rows.jsonl")
+        one, many = self.records("rows.jsonl")
+        for record, steps in ((one, 1), (many, 20)):
+            self.assert_timed(record, 7)
+            self.assertEqual(f"parachute-transfers/serial/pageable/12x12x24/{steps}", record["case"])
+            self.assertEqual((12 * 12 * 24, steps), (record["facts"]["cells"], record["facts"]["substeps"]))
+            self.assertNotIn("thesis", record["facts"])
+        # Two copies for twenty steps instead of two for each.
+        self.assertLess(many["facts"]["h2d_s"], 0.5 * one["facts"]["h2d_s"])
 
 
 class Occupancy(perf_program.PerfTest):
@@ -469,7 +481,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling, abstraction"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["table", "block-size", "--app", "options"], "have no block size"),
-                            (["table", "transfers", "--app", "parachute"], "have --app flow"),
+                            (["table", "scaling", "--app", "parachute"], "valid names are block-size, transfers"),
                             (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling, abstraction"),
                             (["table", "scaling", "--weak", "--app", "gas"], "weak scaling and ranks have --app flow"),
                             (["table", "scaling", "--most", "2"], "--most needs --weak or --over ranks"),

@@ -96,6 +96,40 @@ class Compare(perf_program.PerfTest):
         self.write("baselines/c.jsonl", [record(CASES[0])])
         self.assertIn("several baselines", self.expect(2, "compare", "baselines", "new.jsonl").stderr)
 
+    def test_broken_baselines_are_named_and_left_out(self):
+        (self.folder / "baselines").mkdir()
+        self.write("new.jsonl", [record(CASES[0], 1.3)])
+        (self.folder / "baselines/a.jsonl").write_text('{"schema":')
+        self.assertIn("baselines/a.jsonl:1: the line ends within a record",
+                      self.expect(2, "compare", "baselines", "new.jsonl").stderr)
+        self.write("baselines/b.jsonl", [record(CASES[0])])
+        done = self.expect(3, "compare", "baselines", "new.jsonl")
+        self.assertEqual({CASES[0]: "SLOWER"}, self.verdicts(done.stdout))
+        self.assertIn("left out: baselines/a.jsonl:1: the line ends within a record", done.stdout)
+        self.assertIn("baselines/a.jsonl:1: the line ends within a record", done.stderr)
+        self.assertIn(CASES[0], self.expect(5, "compare", "baselines", "new.jsonl", "--fail-on", "slower").stderr)
+
+    def test_advises_to_measure_an_old_baseline_again(self):
+        new = record(CASES[0])
+        for date, advised in (("2026-12-19T12:00:00Z", False), ("2026-12-21T12:00:00Z", True)):
+            new["provenance"] = new["provenance"] | {"date": date}
+            text = self.compare(0, [new]).stdout
+            self.assertEqual(advised, "days later; measure the old commit again before a verdict matters\n" in text, text)
+
+    def test_run_records_the_baseline_of_this_machine(self):
+        (self.folder / "baselines").mkdir()
+        words = "run", "--quick", "--filter", "^gas-step/dense-loop/1024$", "--baseline"
+        self.assertIn("there is no folder 'nowhere'", self.expect(2, *words, "nowhere").stderr)
+        self.assertIn("excludes", self.expect(2, *words, "baselines", "--out", "x.jsonl").stderr)
+        name = self.expect(0, *words, "baselines").stdout.splitlines()[-1].removeprefix("baseline: ")
+        self.assertEqual([name], [f"baselines/{file.name}" for file in (self.folder / "baselines").iterdir()])
+        first, = self.records(name)
+        text = self.expect(0, *words, "baselines").stdout
+        self.assertTrue(text.startswith(f"{name} replaces that of commit {first['provenance']['git']}, date "), text)
+        second, = self.records(name)
+        self.assertNotEqual(first["samples"], second["samples"])
+        self.assertEqual({first["case"]: "SAME"}, self.verdicts(self.expect(0, "compare", "baselines", name).stdout))
+
     def test_filter_selects_cases(self):
         new = [record(case, 1.3) for case in CASES]
         self.assertEqual({CASES[2]: "SLOWER"}, self.verdicts(self.compare(0, new, "--filter", "^options").stdout))
@@ -110,6 +144,8 @@ class Compare(perf_program.PerfTest):
             (3, "", "new.jsonl: the file holds no records"),
             (3, json.dumps(record("a\nSLOWER b")), "new.jsonl:1: 'case' holds a control character"),
             (3, json.dumps(record(CASES[0], samples=[float("nan")])), "new.jsonl:1: NaN at column"),
+            (3, json.dumps(record(CASES[0], median=None)), f"new.jsonl:1: 'median' of {CASES[0]} is no number beside its samples"),
+            (3, json.dumps(record(CASES[0], interval=None)), f"new.jsonl:1: 'interval' of {CASES[0]} is not two numbers"),
             (3, json.dumps(record(CASES[0], samples=[None])), f"new.jsonl:1: samples[0] of {CASES[0]} is no positive"),
             (2, None, "there is no file 'new.jsonl'"),
         ):

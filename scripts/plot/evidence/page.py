@@ -8,7 +8,7 @@ from PIL import Image
 from .. import html_page, style
 from ..flow import solver_tables
 from ..options import transfers as options_transfers
-from . import abstraction, block_sizes, bounds, roofline, scaling, steps, transfers, work_precision_section
+from . import abstraction, block_sizes, bounds, ladders, roofline, scaling, steps, transfers, work_precision_section
 from .perf_record import Machine, Record
 from .records import Evidence
 from .section import Cell, Section
@@ -51,6 +51,7 @@ def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     found += steps.sections(evidence.select(machine, "flow-step"), roofline.bandwidths(ceilings))
     found += bounds.sections(machine, ceilings, evidence.select(machine, "flow-step"))
     found += steps.sections(evidence.select(machine, "parachute-flight"))
+    found += transfers.sections(machine, evidence.select(machine, "parachute-transfers"))
     found += solver_tables.pressure_sections(evidence.select(machine, "flow-pressure"))
     found += solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
     for kind in ("flow-block", "parachute-block"):
@@ -64,7 +65,14 @@ def _common_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     return found + abstraction.sections(evidence.select(machine, "abstraction"))
 
 
-_SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections}
+def _ladder_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    return ladders.sections(machine, evidence.select(machine, "ladder"))
+
+
+_SECTIONS = {
+    "gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections,
+    "ladder": _ladder_sections,
+}  # fmt: skip
 
 
 def _counted(count: int, words: str, plural: str) -> str:
@@ -85,6 +93,10 @@ def notes(evidence: Evidence) -> list[str]:
     if evidence.failed_checks:
         count = _counted(len(evidence.failed_checks), "record is", "records are")
         found.append(f"{count} left out for a failed check: {_cases(evidence.failed_checks)}.")
+    if evidence.untimed:
+        count = _counted(len(evidence.untimed), "record is", "records are")
+        places = "; ".join(f"{record.case} on {record.machine.name}" for record in evidence.untimed)
+        found.append(f"{count} left out for having no samples: {places}.")
     if evidence.superseded:
         count = _counted(len(evidence.superseded), "record is", "records are")
         found.append(f"{count} left out, because a later one of the same case and machine exists.")

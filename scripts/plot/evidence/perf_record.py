@@ -36,6 +36,9 @@ _FACTS = {
     "springs-transfers": {
         "backend": str, "substeps": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
     },
+    "parachute-transfers": {
+        "backend": str, "memory": str, "substeps": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
+    },
     "options": {},
     "options-solution": {"problem": str, "backend": str, "method": str, "cells": int},
     "options-transfers": {
@@ -44,6 +47,9 @@ _FACTS = {
     "tridiagonal": {},
     "abstraction": {"backend": str, "cells": int, "version": str, "launches": str},
     "scaling": {"backend": str, "cells": int, "threads": int},
+    "ladder": {
+        "ladder": str, "rung": str, "backend": str, "cells": int, "predicted_s": float, "predicted_bound": str,
+    },
 }  # fmt: skip
 _NAMED_BY_CASE = (
     "gas-step",
@@ -69,11 +75,11 @@ _OPTIONAL = {
     "ceiling": {"flops": float, "bytes": float, "instructions": float},
     "scaling": {"ranks": int, "scaling": str},
     "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
-    "gas-transfers": {"thesis": dict},
+    "gas-transfers": {"thesis": dict, "method": str},
     "springs-solution": {"status": str, "message": str},
-    "springs-transfers": {"thesis": dict},
+    "springs-transfers": {"thesis": dict, "memory": str},
     "options-solution": {"exercise": str, "grids": str, "intervals_a_step": str, "status": str, "message": str},
-    "options-transfers": {"thesis": dict},
+    "options-transfers": {"thesis": dict, "memory": str},
 }  # fmt: skip
 KINDS = frozenset(_FACTS)
 _TYPES = {str: "text", int: "positive whole number", float: "number", dict: "JSON object"}
@@ -137,6 +143,11 @@ class Record:
     @property
     def threads(self) -> int:
         return int(self.provenance.get("threads") or 1)
+
+    @property
+    def lacks_times(self) -> bool:
+        """Whether a record of a kind that is timed holds no samples and no median."""
+        return self.kind in KINDS and self.kind not in _UNTIMED and self.median is None and self.check == "passed"
 
     @property
     def succeeded(self) -> bool:
@@ -210,7 +221,9 @@ def parse(line: str, place: str) -> Record:
     if kind in _FACTS:
         facts = _checked_facts(case, facts, place)
         if kind not in _UNTIMED and check == "passed" and facts.get("status", "ok") == "ok":
-            median, interval = _times(document, place)
+            # A measurement that ended early may leave a record without samples, which the pages name.
+            if document.get("median") is not None or document.get("samples"):
+                median, interval = _times(document, place)
             if kind.endswith("-solution") and not _has_type(error, float):
                 raise Failure(IO_ERROR, f"{place}: the error of {case} is no number.")
     unit, error = str(document.get("unit", "")), error if _has_type(error, float) else None

@@ -11,13 +11,14 @@ from .perf_record import KINDS, Machine, Record, parse
 
 @dataclass
 class Evidence:
-    """Records of a folder: valid ones, failed runs, failed checks, and superseded ones."""
+    """Records of a folder: valid ones, failed runs, failed checks, ones without times, and superseded ones."""
 
     folder: Path
     records: list[Record] = field(default_factory=list)
     failed_runs: list[Record] = field(default_factory=list)
     failed_checks: list[Record] = field(default_factory=list)
     unknown_kinds: Counter = field(default_factory=Counter)
+    untimed: list[Record] = field(default_factory=list)  # of timed kinds, without samples
     superseded: list[Record] = field(default_factory=list)
     ceilings: list[Record] = field(default_factory=list)  # valid ones, which concern all mini-apps
     everything: list[Record] = field(default_factory=list)  # in the order of the files, also of unknown kinds
@@ -25,7 +26,7 @@ class Evidence:
     @property
     def apps(self) -> list[str]:
         """Mini-apps that have records."""
-        every = self.records + self.failed_runs + self.failed_checks
+        every = self.records + self.failed_runs + self.failed_checks + self.untimed
         return sorted({record.app for record in every})
 
     def for_app(self, app: str) -> "Evidence":
@@ -40,6 +41,7 @@ class Evidence:
             own(self.failed_runs),
             own(self.failed_checks),
             self.unknown_kinds,
+            own(self.untimed),
             own(self.superseded),
             self.ceilings or [record for record in self.records if record.kind == "ceiling"],
         )
@@ -98,6 +100,8 @@ def read_records(folder: Path) -> Evidence | None:
             evidence.failed_runs.append(record)
         elif record.check == "failed":
             evidence.failed_checks.append(record)
+        elif record.lacks_times:
+            evidence.untimed.append(record)
         else:
             evidence.records.append(record)
     return evidence

@@ -1,6 +1,7 @@
 """One page of all records of a folder: samples of every case, then the sections of every mini-app."""
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
@@ -10,12 +11,17 @@ from .. import html_page
 from . import page
 from .perf_record import Machine, Record
 from .records import Evidence
-from .section import Cell, Table
+from .section import Cell, Section, Table
 
-MOST_STRIPS = 1000  # cases whose samples are drawn: a strip takes half a kilobyte, and a page less than 5 MB
+MOST_BYTES = 5_000_000  # of a page
+MOST_STRIPS = 1000  # cases whose samples are drawn: a strip takes half a kilobyte
+MOST_ROWS = 5000  # records that have rows of their own, of a third of a kilobyte; failed ones always do
+_MOST_OPEN_ROWS = 200  # of a table that is not folded
+_FEW_ROWS = 50  # of a table of a page that is too large otherwise
 _WIDTH, _HEIGHT, _MARGIN = 180, 16, 3
 _APPS = {
     "gas": "Gas dynamics", "springs": "Cloth and strings", "options": "Options", "flow": "Flow and parachutes",
+    "ladder": "Ladders",
 }  # fmt: skip
 
 
@@ -43,24 +49,73 @@ def _row(record: Record, drawn: bool) -> list[Cell | str]:
     timed = [] if record.check == "failed" else record.samples
     interval = record.interval or (min(timed), max(timed)) if timed else None
     return [
-        record.case,
+        Cell(record.case, "case"),
         html_page.format_seconds(median(timed)) if timed else Cell("none"),
         f"{html_page.format_seconds(interval[0])} .. {html_page.format_seconds(interval[1])}" if interval else "",
         record.unit.removeprefix("s "),
-        Cell(strip(timed)) if timed and drawn else "",
         html_page.format_number(record.error) if record.error is not None else "not finite",
         Cell(record.check, "good" if record.check == "passed" else "bad"),
+        *([Cell(strip(timed)) if timed else ""] if drawn else []),
     ]
 
 
 def samples_table(records: list[Record], drawn: bool) -> Table:
-    """All records of a machine, one a row, failed ones included; `drawn`: with their samples."""
+    """All records of a machine, one a row, failed ones included; `drawn`: with their samples. Many rows are folded."""
     columns = [
-        ("case", False), ("median", True), ("interval", True), ("of", False), ("samples, 0 to twice the median", False),
-        ("error", True), ("check", False),
+        ("case", False), ("median", True), ("interval", True), ("of", False), ("error", True), ("check", False),
+        *([("samples, 0 to twice the median", False)] if drawn else []),
     ]  # fmt: skip
     note = "" if drawn else f"Samples are drawn for up to {MOST_STRIPS} records."
-    return Table(columns, [_row(record, drawn) for record in records], note=note)
+    folded = len(records) > _MOST_OPEN_ROWS
+    return Table(columns, [_row(record, drawn) for record in records], title="Records" if folded else "", note=note, folded=folded)
+
+
+def summary_table(records: list[Record]) -> Table:
+    """Records of a machine by kind, backend and variant instead of by case."""
+    groups: dict[tuple[str, str], list[Record]] = {}
+    for record in records:
+        groups.setdefault((record.kind, str(record.facts.get("backend", ""))), []).append(record)
+    columns = [
+        ("kind", False), ("backend", False), ("records", True), ("failed", True), ("least median", True),
+        ("largest median", True), ("largest error", True),
+    ]  # fmt: skip
+    rows = []
+    for (kind, backend), own in groups.items():
+        medians = [median(record.samples) for record in own if record.samples and record.check == "passed"]
+        errors = [record.error for record in own if record.error is not None]
+        rows.append(
+            [
+                kind, backend, html_page.format_grouped(len(own)),
+                html_page.format_grouped(sum(record.check == "failed" for record in own)),
+                html_page.format_seconds(min(medians)) if medians else "", html_page.format_seconds(max(medians)) if medians else "",
+                html_page.format_number(max(errors)) if errors else "not finite",
+            ]
+        )  # fmt: skip
+    return Table(columns, rows, note="records.csv, which drogue-perf report writes beside this page, lists every record.")
+
+
+def _samples_tables(records: list[Record], count: int) -> list[Table]:
+    """Tables of a machine whose records are among `count` on the page."""
+    if count <= MOST_ROWS:
+        return [samples_table(records, count <= MOST_STRIPS)]
+    failed = [record for record in records if record.check == "failed"][:_FEW_ROWS]
+    return [summary_table(records), *([samples_table(failed, False)] if failed else [])]
+
+
+def _shortened(section: Section) -> Section:
+    """The section with few rows in each table."""
+
+    def short(table: Table) -> Table:
+        hidden = len(table.rows) - _FEW_ROWS
+        if hidden <= 0:
+            return table
+        note = f"{table.note} {hidden} more rows are left out to keep the page below 5 MB.".strip()
+        return replace(table, rows=table.rows[:_FEW_ROWS], note=note)
+
+    failures = section.failures[:_FEW_ROWS]
+    if len(section.failures) > _FEW_ROWS:
+        failures.append(f"and {len(section.failures) - _FEW_ROWS} more")
+    return replace(section, tables=[short(table) for table in section.tables], failures=failures)
 
 
 def _by_machine(records: list[Record]) -> dict[Machine, list[Record]]:
@@ -72,8 +127,8 @@ def _by_machine(records: list[Record]) -> dict[Machine, list[Record]]:
 
 def write(evidence: Evidence, file: Path, dpi: int) -> Path:
     """Writes the page, which refers to no other file; returns its path. Raises Failure (IO_ERROR)."""
-    drawn = len(evidence.everything) <= MOST_STRIPS
-    machines = [(machine, samples_table(own, drawn)) for machine, own in _by_machine(evidence.everything).items()]
+    count = len(evidence.everything)
+    machines = [(machine, _samples_tables(own, count)) for machine, own in _by_machine(evidence.everything).items()]
     with tempfile.TemporaryDirectory() as folder:
         pictures = page.Pictures(Path(folder), dpi)
         apps = []
@@ -86,8 +141,14 @@ def write(evidence: Evidence, file: Path, dpi: int) -> Path:
                         list(pictures.save(picture))
             if sections:
                 apps.append((app, _APPS.get(app, app), sections))
-        dates = sorted({record.run_id[0] for record in evidence.everything} - {""})
-        return html_page.write(
-            file, "evidence/report.html.j2", pictures.filters, machines=machines, apps=apps, dates=dates,
-            notes=page.notes(evidence), folder=evidence.folder.resolve().name, count=len(evidence.everything),
-        )  # fmt: skip
+        values = {
+            "machines": machines, "dates": sorted({record.run_id[0][:10] for record in evidence.everything} - {""}),
+            "notes": page.notes(evidence), "folder": evidence.folder.resolve().name, "count": count,
+            "drawn": count <= MOST_STRIPS,
+        }  # fmt: skip
+        written = html_page.write(file, "evidence/report.html.j2", pictures.filters, apps=apps, **values)
+        if written.stat().st_size < MOST_BYTES:
+            return written
+        apps = [(app, name, [(machine, [_shortened(s) for s in found]) for machine, found in sections])
+                for app, name, sections in apps]  # fmt: skip
+        return html_page.write(file, "evidence/report.html.j2", pictures.filters, apps=apps, **values)

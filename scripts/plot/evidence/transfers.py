@@ -35,10 +35,11 @@ _KINDS = {
         app="gas",
         prefix="transfers",
         mesh="cells",
-        source="memory",
-        panels="[Shi], with pageable and with pinned memory",
+        source="scheme and memory",
+        panels="[Shi], its scheme and ours with pageable and with pinned memory",
         table="5.5",
-        note="",
+        note="Its scheme copies the state to the device and the fluxes back in each of three stages; ours keeps the state "
+        "on the device for 20 steps between two copies.",
         unit="\u00b5s per step",
         compared=True,
     ),
@@ -49,26 +50,42 @@ _KINDS = {
         source="between two copies",
         panels="[Shi], and of each number of steps between two copies",
         table="5.6",
-        note="Its steps took a number of substeps that is not recorded, so that no ratio to it means anything. Every "
-        "panel has a scale of its own.",
+        note="Its steps took a number of substeps that is not recorded, so that no ratio to it means anything.",
         unit="\u00b5s from host to host",
         compared=False,
     ),
+    "parachute-transfers": _Kind(
+        app="parachute",
+        prefix="parachute-transfers",
+        mesh="cells",
+        source="between two copies",
+        panels="each number of steps between two copies",
+        table="",
+        note="",
+        unit="\u00b5s per step",
+        compared=False,
+    ),
 }
+_PANELS_IN_A_ROW = 3
 
 
 def _source(record: Record) -> str:
-    """Kind of host memory, or number of steps between two copies."""
-    steps = record.facts.get("substeps")
-    return record.facts["memory"] if steps is None else f"{steps} step" + ("s" if steps > 1 else "")
+    """Scheme and kind of host memory, or number of steps between two copies, and memory if it is not pageable."""
+    steps, memory = record.facts.get("substeps"), record.facts.get("memory", "pageable")
+    if steps is None:
+        return f"ours, {memory}" if record.facts.get("method") == "ours" else memory
+    words = f"{steps} step" + ("s" if steps > 1 else "")
+    return words if memory == "pageable" else f"{words}, {memory}"
 
 
 def sources(records: list[Record]) -> list[str]:
-    """Sources in the order of panels: [Shi], pageable before pinned memory, few steps before many."""
-    ordered = sorted(
-        records, key=lambda record: (record.facts.get("substeps", 0), record.facts.get("memory", ""))
-    )
-    return [_THESIS, *dict.fromkeys(_source(record) for record in ordered)]
+    """Sources in the order of panels: [Shi], its scheme before ours, pageable before pinned memory, few steps before many."""
+
+    def place(record: Record) -> tuple:
+        facts = record.facts
+        return facts.get("method", "") == "ours", facts.get("memory", ""), facts.get("substeps", 0)
+
+    return [_THESIS, *dict.fromkeys(_source(record) for record in sorted(records, key=place))]
 
 
 def times(records: list[Record]) -> dict[tuple[int, str], dict[str, float]]:
@@ -86,19 +103,24 @@ def times(records: list[Record]) -> dict[tuple[int, str], dict[str, float]]:
 
 
 def transfers_figure(title: str, machine: Machine, records: list[Record]):
-    """Stacked bar charts by mesh, one panel per source; on a common scale if the sources are comparable."""
+    """Stacked bar charts by mesh, one panel per source; those of a row on a common scale if the sources are comparable."""
     found, kind = times(records), _KINDS[records[0].kind]
     panels = [name for name in sources(records) if any(source == name for _, source in found)]
     meshes = sorted({cells for cells, _ in found})
-    height, details = 3.3, f"total above each bar; {machine.name}"
-    figure, axes = plt.subplots(1, len(panels), sharey=kind.compared, squeeze=False)
+    columns, rows_of_panels = min(len(panels), _PANELS_IN_A_ROW), -(-len(panels) // _PANELS_IN_A_ROW)
+    height, details = 0.5 + 2.8 * rows_of_panels, f"total above each bar; {'rows' if kind.compared else 'panels'} have scales of their own; {machine.name}"
+    figure, axes = plt.subplots(
+        rows_of_panels, columns, sharey="row" if kind.compared else False, squeeze=False
+    )
     legend = [("\u25a0", words, _COLOURS[part]) for part, words in _PARTS.items()]
-    chart_width = 0.7 + (0.5 + 0.33 * len(meshes)) * len(panels)
+    chart_width = 0.7 + (0.5 + 0.33 * max(len(meshes), 3)) * columns
     width = max(
         chart_width, style.heading_width(figure, title, legend), style.subtitle_width(figure, details)
     )
     figure.set_size_inches(width, height)
-    for panel, source in zip(axes[0], panels):
+    for empty in axes.flat[len(panels):]:
+        empty.set_visible(False)
+    for panel, source in zip(axes.flat, panels):
         place = [index for index, cells in enumerate(meshes) if (cells, source) in found]
         rows = [found[meshes[index], source] for index in place]
         base = np.zeros(len(rows))
@@ -117,7 +139,8 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
         panel.set_xlim(-0.6, len(meshes) - 0.4)
         panel.grid(axis="x", visible=False)
         panel.set_xlabel(kind.mesh)
-    axes[0, 0].set_ylabel(kind.unit)
+    for first in axes[:, 0]:
+        first.set_ylabel(kind.unit)
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.5 / height), w_pad=1.2)
     style.heading(figure, title, details, legend)
     return figure

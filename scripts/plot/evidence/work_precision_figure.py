@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from .. import style
 from ..style import plt
 from .perf_record import BACKENDS, Machine
@@ -57,16 +59,58 @@ def _column_of(result: PublishedResult, columns: list[str]) -> str | None:
     return None if result.backend == "cuda" else columns[0]
 
 
+# Places of a label beside its point: shift in points, horizontal and vertical alignment.
+_ABOVE, _BELOW = (0, 5, "center", "bottom"), (0, -5, "center", "top")
+_PLACES = (_ABOVE, _BELOW, (6, 0, "left", "center"), (-6, 0, "right", "center"))
+
+
 def _draw_published(axes, results: list[PublishedResult]) -> None:
     for result in results:
         x, y = zip(*result.points)
         axes.plot(x, y, ":D", color=style.MUTED, markersize=3.4, linewidth=0.8, zorder=1)
-        # The label is above the first of several points, below a single point.
-        shift, side = (5, "bottom") if len(x) > 1 else (-5, "top")
-        axes.annotate(
-            result.label, result.points[0], (0, shift), textcoords="offset points", ha="center", va=side, fontsize=6.5,
-            color=style.MUTED, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
+        text = axes.annotate(
+            result.label, result.points[0], (0, 0), textcoords="offset points", fontsize=6.5, color=style.MUTED,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
         )  # fmt: skip
+        # Above the first of several points, below a single point, unless `_clear_labels` finds something there.
+        _move(text, _ABOVE if len(x) > 1 else _BELOW)
+
+
+def _move(text, place) -> None:
+    text.xyann = place[:2]
+    text.set_ha(place[2])
+    text.set_va(place[3])
+
+
+def _drawn_points(axes) -> np.ndarray:
+    """Points along all lines of a panel, pixels."""
+    found = []
+    for line in axes.lines:
+        ends = axes.transData.transform(np.column_stack(line.get_data()))
+        found.append(ends)
+        for first, second in zip(ends, ends[1:]):
+            found.append(first + np.linspace(0, 1, 40)[:, None] * (second - first))
+    return np.vstack(found) if found else np.zeros((0, 2))
+
+
+def _clear_labels(axes) -> None:
+    """Moves labels of published results to where they hide least: within the panel, off lines and other labels."""
+    renderer, points, placed = axes.figure.canvas.get_renderer(), _drawn_points(axes), []
+
+    def hidden(text) -> float:
+        box, panel = text.get_window_extent(renderer), axes.bbox
+        outside = box.x0 < panel.x0 or box.x1 > panel.x1 or box.y0 < panel.y0 or box.y1 > panel.y1
+        inside = (points[:, 0] > box.x0) & (points[:, 0] < box.x1) & (points[:, 1] > box.y0) & (points[:, 1] < box.y1)
+        return 1000 * outside + 100 * sum(box.overlaps(other) for other in placed) + int(inside.sum())
+
+    for text in axes.texts:
+        usual = (*text.xyann, text.get_ha(), text.get_va())
+        costs = []
+        for place in (usual, *_PLACES):
+            _move(text, place)
+            costs.append(hidden(text))
+        _move(text, (usual, *_PLACES)[costs.index(min(costs))])
+        placed.append(text.get_window_extent(renderer))
 
 
 def _scheme_legend(curves: list[Curve]) -> list[tuple[str, str, str]]:
@@ -192,6 +236,8 @@ def solution_figure(problem: str, machine: Machine, curves: list[Curve], best: s
         panel_axes.set_ylabel(family.error_titles.get(problem, "error"))
     for panel_axes in axes[-1]:
         panel_axes.set_xlabel(family.time_label)
+    for panel_axes in axes[0]:
+        _clear_labels(panel_axes)
     figure.align_ylabels(axes[:, 0])
     style.heading(figure, title, details, rows[0].legend)
     width, height = figure.get_size_inches()

@@ -25,6 +25,7 @@ class _Row:
     source: str
     parts: dict[str, float]
     error: float | None = None
+    memory: str = ""
 
 
 def _thesis_rows(record: Record) -> list[_Row]:
@@ -47,11 +48,11 @@ def transfer_rows(records: list[Record]) -> list[_Row]:
         parts = {part: 1e6 * facts[f"{part}_s"] for part in _PARTS if part != "total"} | {
             "total": 1e6 * record.median
         }
-        own = _Row(facts["cells"], facts["mesh"], facts["method"], parts, record.error)
+        own = _Row(facts["cells"], facts["mesh"], facts["method"], parts, record.error, facts.get("memory", ""))
         for row in [*_thesis_rows(record), own]:
-            found[row.options, row.mesh, row.source] = row
+            found[row.options, row.mesh, row.source, row.memory] = row
     order = list(_CURVES)
-    return sorted(found.values(), key=lambda row: (row.options, row.mesh, order.index(row.source)))
+    return sorted(found.values(), key=lambda row: (row.options, row.mesh, order.index(row.source), row.memory))
 
 
 def transfers_figure(title: str, machine: Machine, records: list[Record]):
@@ -68,14 +69,15 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
     for panel, (name, across) in zip(axes, _PANELS.items()):
         single = name == "one option"
         for source, (_, colour, line) in _CURVES.items():
-            points = [
-                (row.mesh if single else row.options, 1e-6 * row.parts["total"])
+            # The pinned one of both kinds of memory, which sorts after the pageable one.
+            points = {
+                row.mesh if single else row.options: 1e-6 * row.parts["total"]
                 for row in rows
                 if row.source == source and (row.options == 1 if single else row.mesh == 128)
-            ]
+            }
             if points:
                 panel.plot(
-                    *zip(*points), line, color=colour, markersize=3.6, markerfacecolor="white", linewidth=1.2
+                    *zip(*points.items()), line, color=colour, markersize=3.6, markerfacecolor="white", linewidth=1.2
                 )
         panel.set_xscale("log", base=2)
         panel.set_yscale("log")
@@ -91,7 +93,7 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
 
 def transfers_table(records: list[Record]) -> Table:
     """Parts and total, us, with the factor over the GPU of [Shi] and the error."""
-    columns = [("options", True), ("intervals", True), ("", False)]
+    columns = [("options", True), ("intervals", True), ("", False), ("memory", False)]
     columns += [(f"{words} (\u00b5s)", True) for words in _PARTS.values()]
     columns += [("times as fast as its GPU", True), ("error", True)]
     rows, shown = transfer_rows(records), []
@@ -106,7 +108,7 @@ def transfers_table(records: list[Record]) -> Table:
         )
         error = "" if row.error is None else html_page.format_number(row.error)
         place = [html_page.format_grouped(row.options), html_page.format_grouped(row.mesh)]
-        shown.append([*place, _CURVES[row.source][0], *parts, gain, error])
+        shown.append([*place, _CURVES[row.source][0], row.memory, *parts, gain, error])
     return Table(columns, shown)
 
 

@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""Writes docs/transfers.md: the tables of transfers as recorded in docs/evidence/*-transfers-MACHINE.jsonl.
+
+    scripts/transfer_tables.py [--check]     --check: writes nothing, exit code 1 if the page differs from the records
+
+scripts/bench.sh and scripts/publish_records.py make the records anew.
+"""
+
+import json
+import pathlib
+import re
+import statistics
+import sys
+
+from readme_tables import error_of, wrapped
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs/transfers.md"
+EVIDENCE = ROOT / "docs/evidence"
+HEAD = """# Transfers: tables 5.5 to 5.8 of [Shi]
+
+Written by `scripts/transfer_tables.py` from the records that `drogue-perf table transfers --app A --out FILE` wrote:
+copy to the device, compute, copy to the host, total, microseconds. In brackets: the times of [Shi] on its Quadro 6000.
+Parts and total are medians of their own, which need not add up.
+"""
+PARTS = {"h2d": "H2D", "compute": "compute", "d2h": "D2H", "total": "total"}
+
+
+class Row:
+    """A record of transfers; times in us."""
+
+    def __init__(self, record):
+        facts = record["facts"]
+        self.record, self.facts, self.app = record, facts, record["case"].partition("-")[0]
+        self.size, self.mesh, self.steps = facts["cells"], facts.get("mesh"), facts.get("substeps")
+        self.ours = facts.get("method", "ours" if self.app != "gas" else "seed") != "seed"
+        # Records before the memory was a fact: options had pinned memory in our scheme alone.
+        self.memory = facts.get("memory") or ("pinned" if self.app == "options" and self.ours else "pageable")
+        self.time = {part: 1e6 * facts[f"{part}_s"] for part in PARTS if part != "total"}
+        self.time["total"] = 1e6 * statistics.median(record["samples"])
+        self.thesis = {part: facts.get("thesis", {}).get(f"{part}_us") for part in PARTS}
+        self.copies = self.time["h2d"] + self.time["d2h"]
+
+    @property
+    def scheme(self):
+        return "ours" if self.ours else "of [Shi]"
+
+    def cells(self):
+        """Cells of the table: what is measured, times, error."""
+        place = {"options": [str(self.size), str(self.mesh)], "gas": [str(self.size)]}.get(self.app, [str(self.size), str(self.steps)])
+        if self.app == "parachute":
+            place[0] = self.facts["grid"]
+        scheme = [self.scheme] if self.app in ("gas", "options") else []
+        times = [number(self.time[part]) + (f" ({self.thesis[part]:.0f})" if self.thesis[part] else "") for part in PARTS]
+        return [*scheme, self.memory, *place, *times, error_of(self.record)]
+
+
+def number(value):
+    """Three digits, without an exponent."""
+    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
+
+
+def share(part, total):
+    return f"{100 * part / total:.0f} %" if part > 0.1 * total else f"{100 * part / total:.1f} %"
+
+
+def pick(rows, **wanted):
+    """The rows with the given attributes, pinned ones last."""
+    found = [row for row in rows if all(getattr(row, name) == value for name, value in wanted.items())]
+    return sorted(found, key=lambda row: row.memory)
+
+
+def gas_words(rows):
+    size = max(row.size for row in rows)
+    theirs = pick(rows, size=size, ours=False)
+    thesis = theirs[0].thesis
+    words = (f"At {size} cells [Shi] spends {share(thesis['h2d'] + thesis['d2h'], thesis['total'])} of {thesis['total']:.0f} us on "
+             "copies: its scheme copies the state to the device and the fluxes back in each of three stages. The same copies take ")
+    words += " and ".join(f"{share(row.copies, row.time['total'])} of {number(row.time['total'])} us with {row.memory} memory"
+                          for row in theirs)
+    ours = pick(rows, size=size, ours=True)
+    if not ours:
+        return words + ": a newer device does not remove them, since each waits for the bus."
+    return (words + " here: a newer device does not remove them, since each waits for the bus. What does is a state that stays on "
+            f"the device: with 20 steps between two copies a step of ours takes {number(ours[-1].time['total'])} us, copies "
+            f"included ({share(ours[-1].copies, ours[-1].time['total'])}).")  # fmt: skip
+
+
+def springs_words(rows):
+    size = max(row.size for row in rows)
+    own = pick(rows, size=size, memory="pageable")
+    few, many = (choose((row for row in own), key=lambda row: row.steps) for choose in (min, max))
+    thesis = few.thesis["total"]
+    words = (f"[Shi] takes {thesis:.0f} us for {size} vertices and a number of substeps that is not recorded, so no ratio to it means "
+             f"anything; its copies are {share(few.thesis['h2d'] + few.thesis['d2h'], thesis)} of that. Here two copies take "
+             f"{number(few.copies)} us, whatever lies between them: {share(few.copies, few.time['total'])} of the total with one step "
+             f"between them, {share(many.copies, many.time['total'])} with {many.steps}. What changed is the compute, "
+             f"{number(many.time['compute'] / many.steps)} us per step of {many.steps}: persistent packets of vertices instead of "
+             "arrays of structs with stored neighbours (rung `structs` of the [ladder](lessons/tables.md)).")  # fmt: skip
+    pinned = pick(rows, size=size, memory="pinned", steps=few.steps)
+    return words + (f" From pinned memory the copies take {number(pinned[0].copies)} us." if pinned else "")
+
+
+def options_words(rows):
+    size = max(row.size for row in rows)
+    theirs, ours = (pick(rows, size=size, ours=ours)[-1] for ours in (False, True))
+    thesis = theirs.thesis["total"]
+    return (f"{size} puts on a mesh of {theirs.mesh} take {1e-6 * thesis:.2f} s on the device of [Shi]. Its scheme takes "
+            f"{number(theirs.time['total'])} us here, with an error of {error_of(theirs.record)} of the strike: the puts of a "
+            "batch share the device, which [Shi] fills with the integrals of one put at a time. Ours takes "
+            f"{number(ours.time['total'])} us with an error of {error_of(ours.record)}: a fourth of the steps, each on two grids for "
+            "a stated error, with the convolution by panels of the jump measure. Copies are "
+            f"{share(theirs.copies, theirs.time['total'])} and {share(ours.copies, ours.time['total'])} of the total: a batch moves "
+            "once each way.")  # fmt: skip
+
+
+def parachute_words(rows):
+    size = max(row.size for row in rows)
+    few, many = (choose(pick(rows, size=size, memory=rows[0].memory), key=lambda row: row.steps) for choose in (min, max))
+    return (f"[Shi] prints no such table: its table 5.6 is of the fabric alone. A copy moves the whole state of cloth and air. On "
+            f"{few.facts['grid']} cells the copies of each step would take {number(few.copies)} us, "
+            f"{share(few.copies, few.time['total'])} of the step; with {many.steps} steps between two copies they take "
+            f"{share(many.copies, many.time['total'])}. Runs copy only for output and restarts.")  # fmt: skip
+
+
+APPS = {
+    "gas": ("Gas, table 5.5", ["scheme", "memory", "cells"], gas_words),
+    "springs": ("Cloth, table 5.6", ["memory", "vertices", "steps between copies"], springs_words),
+    "options": ("Options, tables 5.7 and 5.8", ["scheme", "memory", "options", "mesh"], options_words),
+    "parachute": ("Parachute", ["memory", "grid", "steps between copies"], parachute_words),
+}
+
+
+def section(app, file):
+    """Heading, paragraph and table of a file of records; stops the script if one failed its check."""
+    records = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+    for record in records:
+        if record["check"] != "passed":
+            sys.exit(f"{file}: {record['case']} failed its check")
+    rows = [Row(record) for record in records]
+    rows.sort(key=lambda row: (row.ours, row.memory, row.size, row.mesh or 0, row.steps or 0))
+    title, columns, words = APPS[app]
+    here = records[0]["provenance"]
+    machine = here["gpu"] if records[0]["facts"]["backend"] == "cuda" else re.sub(r"\((R|TM)\)", "", here["cpu"])
+    source = (f"{machine}, {here['date'][:10]}, commit {here['git']} ([records](evidence/{file.name})): `drogue-perf table transfers "
+              f"--app {app} --backend {records[0]['facts']['backend']}`.")  # fmt: skip
+    heading = [*columns, *PARTS.values(), "error"]
+    left = columns.index("memory") + 1
+    lines = ["| " + " | ".join(heading) + " |", "|" + "---|" * left + "---:|" * (len(heading) - left)]
+    lines += ["| " + " | ".join(row.cells()) + " |" for row in rows]
+    return f"\n## {title}\n" + wrapped([words(rows)]) + "\n" + wrapped([source, "", *lines])
+
+
+def page(evidence=EVIDENCE):
+    """Text of the page."""
+    return HEAD + "".join(section(app, file) for app in APPS for file in sorted(evidence.glob(f"{app}-transfers-*.jsonl")))
+
+
+def main(words):
+    if words not in ([], ["--check"]):
+        sys.exit(__doc__)
+    if not words:
+        PAGE.write_text(page(), encoding="utf-8")
+    elif PAGE.read_text(encoding="utf-8") != page():
+        sys.exit("docs/transfers.md differs from its records: run scripts/transfer_tables.py")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

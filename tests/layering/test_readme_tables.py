@@ -1,0 +1,175 @@
+"""The tables of README.md are those of their records, its counts those of the tree, and the generator refuses bad records."""
+
+import csv
+import json
+import os
+import re
+import shutil
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import layers
+
+ROOT = layers.repository(os.environ)
+sys.path.insert(0, str(ROOT / "scripts"))
+import publish_records  # noqa: E402
+import readme_tables  # noqa: E402
+import transfer_tables  # noqa: E402
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def data_rows(file):
+    lines = [line for line in file.read_text(encoding="utf-8").splitlines() if line.strip() and not line.startswith("#")]
+    return len(list(csv.DictReader(lines)))
+
+
+def scenes(name):
+    return {run["scene"] for run in json.loads((ROOT / "docs/evidence" / name).read_text(encoding="utf-8"))["runs"]}
+
+
+class Repository(unittest.TestCase):
+    def test_tables_equal_their_records(self):
+        self.assertEqual(readme_tables.renewed(README), README, "run scripts/readme_tables.py")
+
+    def test_every_table_of_numbers_has_marks(self):
+        outside = readme_tables.MARK.sub("", README)
+        self.assertNotRegex(outside, r"\n\|(?:---:\|){2,}\n")
+
+    def test_numbers_of_other_programs_stand_in_the_notebook(self):
+        notebook = (ROOT / "docs/options-notebook.md").read_text(encoding="utf-8")
+        for words in readme_tables.HAND_WRITTEN.values():
+            self.assertIn(f"| {words} |", notebook)
+
+    def test_counts_are_those_of_the_tree(self):
+        for words, count in (
+            (r"(\d+) scenes of gas, each", len(scenes("gas-h200.json"))),
+            (r"(\d+) scenes of cloth and strings", len(scenes("springs-h200.json") & scenes("springs-epyc.json"))),
+            (r"(\d+) hard cases of options", data_rows(ROOT / "tests/hard/options.csv")),
+            (r"(\d+) hard-case runs of gas", data_rows(ROOT / "tests/hard/tolerances.csv")),
+        ):
+            self.assertEqual([str(count)], re.findall(words, README), words)
+
+
+class Generator(unittest.TestCase):
+    """Changed copies of the records."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.evidence = Path(folder.name)
+        (self.evidence / "alone").mkdir()
+        for name in ("gas-solution-h200", "springs-solution-h200", "springs-solution-epyc", "options-epyc", "flow-h200"):
+            shutil.copy(readme_tables.EVIDENCE / f"{name}.jsonl", self.evidence)
+        shutil.copy(readme_tables.EVIDENCE / "alone/options-h200.jsonl", self.evidence / "alone")
+
+    def change(self, case, **values):
+        """Appends a later record of a case of flow."""
+        file = self.evidence / "flow-h200.jsonl"
+        record, = (r for r in map(json.loads, file.read_text(encoding="utf-8").splitlines()) if r["case"] == case)
+        record["provenance"]["date"] = "2099-01-01T00:00:00Z"
+        (self.evidence / "flow-later-h200.jsonl").write_text(json.dumps(record | values) + "\n", encoding="utf-8")
+
+    def test_latest_record_counts(self):
+        self.change("flow-step/cuda/64x64x64/periodic", samples=[2e-3, 3e-3, 1e-3], error=2.5e-9)
+        changed = readme_tables.renewed(README, self.evidence)
+        self.assertIn("| 64x64x64 | 2.00 | 7.63 | 2.5e-9 | | | |", changed)
+        self.assertIn("2099-01-01", changed)
+
+    def test_refuses_failed_and_missing_records(self):
+        self.change("flow-step/cuda/64x64x64/periodic", check="failed")
+        with self.assertRaisesRegex(SystemExit, r"flow-later-h200\.jsonl:1: .* failed its check"):
+            readme_tables.renewed(README, self.evidence)
+        (self.evidence / "options-epyc.jsonl").unlink()
+        (self.evidence / "springs-solution-h200.jsonl").unlink()
+        with self.assertRaisesRegex(SystemExit, "holds no record of springs-solution/drum/cuda/biquadratic/61"):
+            readme_tables.springs_table(self.evidence)
+
+    def test_refuses_pages_without_a_mark(self):
+        with self.assertRaisesRegex(SystemExit, "README.md has marks for"):
+            readme_tables.renewed(README.replace("readme_tables.py: gas", "other: gas"), self.evidence)
+
+    def test_numbers_have_three_digits_and_short_exponents(self):
+        times = {1.0: "1000", 0.0123456: "12.3", 9.154: "9154", 1e-6: "0.00100", 0.1: "100"}
+        self.assertEqual(list(times.values()), [readme_tables.time_of({"samples": [s]}, 1e3) for s in times])
+        errors = [(0.045, 3, "0.045"), (0.017, 2, "1.7e-2"), (2.5e-18, 2, "2.5e-18"), (3.6e-6, 2, "3.6e-6"), (0.0, 2, "0.0e+00")]
+        self.assertEqual([text for *_, text in errors], [readme_tables.error_of({"error": e}, n) for e, n, _ in errors])
+
+
+class Transfers(unittest.TestCase):
+    """Records of a GPU with one time per part: copies of 10 and 30 us, compute of 60 us."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.evidence = Path(folder.name)
+
+    def write(self, app, *rows):
+        lines = []
+        for facts in rows:
+            facts = {"backend": "cuda", "h2d_s": 1e-5, "compute_s": 6e-5, "d2h_s": 3e-5} | facts
+            lines.append({"case": f"{app}-transfers/cuda/x", "check": "passed", "error": 2.5e-6, "samples": [1e-4], "facts": facts,
+                          "provenance": {"gpu": "a GPU", "date": "2026-01-02T00:00:00Z", "git": "abc"}})
+        text = "".join(json.dumps(line) + "\n" for line in lines)
+        (self.evidence / f"{app}-transfers-here.jsonl").write_text(text, encoding="utf-8")
+
+    def test_page_equals_its_records(self):
+        self.assertEqual(transfer_tables.page(), transfer_tables.PAGE.read_text(encoding="utf-8"), "run scripts/transfer_tables.py")
+
+    def test_shows_our_scheme_of_gas_beside_that_of_the_dissertation(self):
+        thesis = {"h2d_us": 500, "compute_us": 300, "d2h_us": 200, "total_us": 1000}
+        self.write("gas", *({"cells": 8192, "memory": memory, "method": method, "thesis": thesis}
+                            for method in ("seed", "ours") for memory in ("pageable", "pinned")))
+        text = transfer_tables.page(self.evidence)
+        self.assertIn("| ours | pinned | 8192 | 10 (500) | 60 (300) | 30 (200) | 100 (1000) | 2.5e-6 |", text)
+        words = " ".join(text.split())
+        self.assertIn("[Shi] spends 70 % of 1000 us on copies", words)
+        self.assertIn("40 % of 100 us with pageable memory and 40 % of 100 us with pinned memory", words)
+        self.assertIn("a step of ours takes 100 us, copies included (40 %)", words)
+
+    def test_parachutes_have_no_times_of_the_dissertation(self):
+        self.write("parachute", *({"cells": 3456, "grid": "12x12x24", "memory": "pageable", "substeps": steps} for steps in (1, 20)))
+        text = transfer_tables.page(self.evidence)
+        self.assertIn("| pageable | 12x12x24 | 20 | 10 | 60 | 30 | 100 | 2.5e-6 |", text)
+        self.assertIn("would take 40 us, 40 % of the step", " ".join(text.split()))
+
+
+class EvidenceRows(unittest.TestCase):
+    PAGE = "# Evidence\n\n| file | written by | machine |\n|---|---|---|\n| `a-h200.jsonl` | `old` | old |\n| `z.png` | x | y |\n\nEnd\n"
+
+    def test_every_record_of_the_repository_has_a_row(self):
+        folder = readme_tables.EVIDENCE
+        text = (folder / "README.md").read_text(encoding="utf-8")
+        for file in folder.rglob("*.jsonl"):
+            name = file.relative_to(folder).as_posix()
+            pattern = "*-" + name.partition("-")[2]
+            named = f"`{name}`" in text or f"`{Path(name).parent.as_posix()}/{pattern}`" in text or f"`{name}`, " in text
+            self.assertTrue(named, name)
+
+    def test_replaces_rows_and_adds_new_ones(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "alone").mkdir()
+            for record, command in (
+                ("a", "drogue-perf run --filter '^(a|b)/'"), ("ladder-weno", "drogue-perf ladder weno"),
+                ("alone/options-1", "drogue-perf run --filter '^options/cuda/1/'"),
+                ("alone/options-4096", "drogue-perf run --filter '^options/cuda/4096/'"),
+            ):
+                origin = {"gpu": "NVIDIA H200", "cpu": "", "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
+                line = json.dumps({"facts": {"backend": "cuda"}, "provenance": origin})
+                (folder / f"{record}.jsonl").write_text(line + "\n", encoding="utf-8")
+                (folder / f"{record}.txt").write_text(command + " \nprinted\n", encoding="utf-8")
+            text = publish_records.renewed(self.PAGE, publish_records.rows(folder, "h200"))
+        machine = "one NVIDIA H200, CUDA 13.0, 2026-11-27, commit abc"
+        self.assertEqual(
+            ["# Evidence", "", "| file | written by | machine |", "|---|---|---|",
+             f"| `a-h200.jsonl` | `drogue-perf run --filter '^(a\\|b)/' --out a-h200.jsonl` | {machine} |", "| `z.png` | x | y |",
+             f"| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/', one run per N, --out options-h200.jsonl` | {machine} |",
+             f"| `ladders/weno-cuda-h200.jsonl` | `drogue-perf ladder weno --out weno-cuda-h200.jsonl` | {machine} |", "", "End", ""],
+            text.split("\n"))  # fmt: skip
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,233 @@
+# ctest-label: no-sanitizer
+"""scripts/bench.sh with a program that stands for drogue-perf: what is measured, and how it goes on after an end."""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
+BENCH = SOURCE / "scripts/bench.sh"
+# Writes its words to calls.txt, and half a record first, as a program that is killed leaves it. plan.txt maps a part of the words,
+# _ for spaces, to an exit code, or to KILL (kills the script that started it), TERM (sends it that signal), SLOW (a minute of work).
+PROGRAM = """\
+#!/bin/sh
+here="${0%/*}" words="$*"
+case "$words" in
+  --version) exec cat "$here/version.txt" ;;
+  list*) exec cat "$here/cases.txt" ;;
+esac
+echo "$words" >>"$here/calls.txt"
+case "$words" in report*) echo page >"$2/report.html" && exit ;; esac
+for out; do :; done
+echo "{" >"$out"
+act=0
+while read -r part then; do case "$words" in *"$(echo "$part" | tr _ ' ')"*) act="$then" ;; esac; done <"$here/plan.txt"
+case "$act" in
+  KILL) kill -KILL "$PPID" && exit ;;
+  TERM) kill -TERM "$PPID" && exec sleep 60 ;;
+  SLOW) exec sleep 60 ;;
+esac
+echo "$words" >"$out"
+echo "printed: $words"
+[ "$act" = 0 ] || echo "the reason" >&2
+exit "$act"
+"""
+HOST = ["gas-step/serial/1024", "gas-step/openmp/1024", "gas-step/dense-loop/1024", "ceiling/fp64/serial", "options/serial/1/128x32"]
+CUDA = ["gas-step/cuda/1024", "gas-step/serial/1024", "options/cuda/1/128x32", "options/cuda/4096/128x32", "options/cuda/4096/256x64",
+        "flow-step/cuda/64x64x64/periodic"]  # fmt: skip
+
+
+class Bench(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.bin, self.out = self.folder / "bin", self.folder / "out"
+        self.bin.mkdir()
+        (self.bin / "drogue-perf").write_text(PROGRAM)
+        (self.bin / "drogue-perf").chmod(0o755)
+        self.put("version.txt", "drogue-perf 1.0 (git abc)")
+        self.put("cases.txt", *HOST)
+        self.put("plan.txt")
+
+    def put(self, name, *lines):
+        (self.bin / name).write_text("".join(line + "\n" for line in lines))
+
+    def plan(self, acts=None):
+        self.put("plan.txt", *(f"{part.replace(' ', '_')} {act}" for part, act in (acts or {}).items()))
+
+    def bench(self, code, *words):
+        """Standard error of the script, whose exit code is `code`."""
+        done = subprocess.run([BENCH, self.out, "--bin", self.bin, *words], capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(code, done.returncode, done.stdout + done.stderr)
+        return done.stderr
+
+    def calls(self):
+        """Words of the calls since the last time."""
+        file = self.bin / "calls.txt"
+        lines = file.read_text().splitlines() if file.exists() else []
+        file.unlink(missing_ok=True)
+        return lines
+
+    def made(self):
+        return sorted(path.relative_to(self.out).as_posix() for path in self.out.rglob("*.jsonl"))
+
+    def names(self, *words):
+        return subprocess.run([BENCH, "--bin", self.bin, "--list", *words], capture_output=True, text=True, check=True).stdout.split()
+
+    def test_makes_a_record_and_a_text_of_every_table_and_the_page(self):
+        self.bench(0)
+        self.assertEqual(sorted(f"{name}.jsonl" for name in self.names()), self.made())
+        calls = self.calls()
+        self.assertEqual(f"report {self.out}", calls[-1])
+        self.assertIn("^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)/", calls[0])
+        for app in ("gas", "springs", "options", "parachute"):
+            words = f"table transfers --app {app} --backend auto"
+            self.assertEqual(1, sum(words in call for call in calls))
+            self.assertIn(words, (self.out / f"{app}-transfers.jsonl").read_text())
+            text = (self.out / f"{app}-transfers.txt").read_text()
+            self.assertTrue(text.startswith(f"drogue-perf {words} \nprinted: {words}"), text)
+        steps = (self.out / "gas-step.txt").read_text()
+        self.assertTrue(steps.startswith("drogue-perf run --filter '^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)/' \n"))
+        self.assertFalse((self.out / ".partial").exists())
+
+    def test_measures_the_gpu_alone_in_a_build_for_it(self):
+        self.put("cases.txt", *CUDA)
+        self.bench(0)
+        calls = self.calls()
+        self.assertTrue(all("/cuda/" in call for call in calls if call.startswith("run")), calls)
+        self.assertTrue(all("--backend cuda" in call for call in calls if call.startswith(("table transfers", "work", "ladder"))))
+        self.assertIn("table block-size --backend cuda --out", "\n".join(calls))
+        self.assertEqual(["alone/options-1.jsonl", "alone/options-4096.jsonl"], [name for name in self.made() if "alone" in name])
+        self.assertEqual(["flow-step"], [name for name in self.names() if name.startswith(("flow-step", "springs-step"))])
+
+    def test_goes_on_after_a_kill_and_makes_no_record_twice(self):
+        self.plan({"--app options --backend": "KILL"})
+        self.bench(-signal.SIGKILL)
+        before, calls = self.made(), self.calls()
+        self.assertIn("gas-transfers.jsonl", before)
+        self.assertNotIn("options-transfers.jsonl", before)
+        self.assertTrue((self.out / ".partial").exists())
+        self.plan()
+        self.bench(0)
+        after = self.calls()
+        self.assertEqual(sorted(f"{name}.jsonl" for name in self.names()), self.made())
+        self.assertFalse(set(after) & set(calls[:-1]))
+        self.assertEqual(calls[-1], after[0])
+        self.assertNotIn("{", (self.out / "options-transfers.jsonl").read_text())
+        self.bench(0)
+        self.assertEqual([f"report {self.out}"], self.calls())
+
+    def test_ends_at_once_after_a_signal(self):
+        self.plan({"table memory": "TERM"})
+        self.assertIn("goes on from here", self.bench(130))
+        self.assertNotIn("flow-memory.jsonl", self.made())
+        self.assertFalse((self.out / ".partial").exists())
+
+    def test_refuses_a_folder_in_use(self):
+        self.plan({"table occupancy": "SLOW"})
+        with subprocess.Popen([BENCH, self.out, "--bin", self.bin], stderr=subprocess.PIPE, text=True) as first:
+            for line in first.stderr:
+                if "options: " in line:
+                    break
+            self.assertIn("another bench.sh", self.bench(1))
+            first.terminate()
+            first.stderr.read()
+        self.assertEqual(130, first.returncode)
+
+    def test_failed_checks_are_kept_and_failed_commands_are_not(self):
+        self.plan({"table occupancy": "5", "table memory": "77", "ladder weno": "4"})
+        text = self.bench(77)
+        self.assertRegex(text, "occupancy: .*a row failed its check")
+        self.assertIn("flow-memory: exit code 77: the reason", text)
+        self.assertIn("ladder-weno: exit code 4: the reason", text)
+        self.assertIn("occupancy.jsonl", self.made())
+        self.assertNotIn("flow-memory.jsonl", self.made())
+        self.plan()
+        self.calls()
+        self.bench(5)
+        self.assertEqual(["ladder weno", "report " + str(self.out), "table memory"],
+                         sorted(call.partition(" --")[0] for call in self.calls()))
+
+    def test_returns_the_code_of_a_failed_check(self):
+        self.plan({"table occupancy": "5"})
+        self.bench(5)
+        self.plan()
+        self.assertIn("occupancy is there; a row failed its check", self.bench(5))
+        (self.out / "occupancy.jsonl").unlink()
+        self.bench(0)
+
+    def test_refuses_records_of_another_build_or_with_other_options(self):
+        self.bench(0, "--only", "^occupancy$")
+        self.assertEqual(["occupancy.jsonl"], self.made())
+        self.assertIn("another build or with other options", self.bench(1, "--quick"))
+        self.put("version.txt", "drogue-perf 1.0 (git def)")
+        self.assertIn("another build", self.bench(1))
+
+    def test_publishes_records_and_renews_documents(self):
+        """In a tree that holds the script alone; what it starts notes its words."""
+        tree = self.folder / "tree"
+        for name in ("scripts", "docs/evidence"):
+            (tree / name).mkdir(parents=True)
+        shutil.copy(SOURCE / "scripts/publish_records.py", tree / "scripts")
+        (tree / "docs/evidence/README.md").write_text("| file | written by | machine |\n|---|---|---|\n")
+        generators = ["readme_tables.py", "lesson_tables.py", "transfer_tables.py"]
+        for name in [tree / "scripts" / generator for generator in generators] + [self.bin / "drogue-plot"]:
+            name.write_text(f'#!/bin/sh\necho "${{0##*/}} $*" >>{self.folder}/renewed.txt\n')
+            name.chmod(0o755)
+        self.put("cases.txt", *CUDA)
+        words = [tree / "scripts/publish_records.py", self.out, "h200", "--bin", self.bin]
+        self.plan({"table occupancy": "5"})
+        self.bench(5)
+        failed = subprocess.run(words, capture_output=True, text=True, check=False)
+        self.assertEqual((1, "nothing is published: a row of occupancy failed its check\n"), (failed.returncode, failed.stderr))
+        self.assertEqual(["README.md"], [path.name for path in (tree / "docs/evidence").iterdir()])
+        (self.out / "occupancy.jsonl").unlink()
+        self.plan()
+        self.bench(0)
+        origin = {"gpu": "NVIDIA H200", "cpu": "", "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
+        for file in self.out.rglob("*.jsonl"):
+            file.write_text(json.dumps({"case": file.name, "facts": {"backend": "cuda"}, "provenance": origin}) + "\n")
+        subprocess.run(words, capture_output=True, check=True)
+        published = {path.relative_to(tree / "docs/evidence").as_posix(): path for path in (tree / "docs").rglob("*.jsonl")}
+        flat = {f"{name}-h200.jsonl" for name in self.names("--backend", "cuda") if "/" not in name and not name.startswith("ladder")}
+        ladders = {f"ladders/{name}-cuda-h200.jsonl" for name in ("weno", "springs", "options", "transfers")}
+        self.assertEqual(flat | ladders | {"alone/options-h200.jsonl"}, set(published))
+        batches = published["alone/options-h200.jsonl"].read_text().splitlines()
+        self.assertEqual(["options-1.jsonl", "options-4096.jsonl"], [json.loads(line)["case"] for line in batches])
+        self.assertEqual("page", (tree / "docs/evidence/report-h200.html").read_text().strip())
+        rows = (tree / "docs/evidence/README.md").read_text().splitlines()[2:]
+        self.assertEqual(set(published), {row.split("`")[1] for row in rows})
+        self.assertIn("| `occupancy-h200.jsonl` | `drogue-perf table occupancy --out occupancy-h200.jsonl` |", "\n".join(rows))
+        calls = [f"drogue-plot {self.out} --report --quiet", *(f"{name} " for name in generators),
+                 f"drogue-plot {tree}/docs/evidence --quiet"]  # fmt: skip
+        self.assertEqual(calls, (self.folder / "renewed.txt").read_text().splitlines())
+
+    def test_solutions_replace_the_two_of_the_readme(self):
+        self.assertEqual({"gas-shu-osher"}, set(self.names()) - set(self.names("--quick")))
+        usual, all_ = set(self.names()), set(self.names("--solutions"))
+        self.assertEqual({"gas-shu-osher", "springs-drum"}, usual - all_)
+        self.assertEqual({f"{app}-solution" for app in ("gas", "springs", "options", "flow", "parachute")}, all_ - usual)
+
+    def test_refuses_unknown_words(self):
+        for words, sentence in ((["--quik"], "unknown argument --quik"), (["--backend", "hip"], "no backend 'hip'"),
+                                (["--only"], "--only needs a value"),
+                                (["--bin", "nowhere"], "there is no program")):
+            self.assertIn(sentence, self.bench(2, *words))
+
+    def test_commands_of_the_readme_are_made(self):
+        """Every command under a table of README.md is one of this script, or selects from one."""
+        self.put("cases.txt", *HOST, *CUDA)
+        kinds = BENCH.read_text()
+        for words in ("work-precision --app gas --filter '^shu-osher$'", "work-precision --app springs --filter '^drum$'",
+                      'run --filter "^options/cuda/$count/"', "cases options ", "cases flow-step "):
+            self.assertIn(words, kinds)
+
+
+if __name__ == "__main__":
+    unittest.main()
