@@ -82,7 +82,8 @@ std::vector<std::string> backend_choices() {
 }
 
 void add_backend_option(CLI::App& app, std::string& backend) {
-  app.add_option("--backend", backend, "where to compute: auto takes the fastest present")
+  app.add_option("--backend", backend,
+                 "where to compute: auto takes the fastest present, serial for a small mesh")
       ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
 }

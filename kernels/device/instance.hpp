@@ -2,10 +2,14 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/device/host_cores.hpp"
+#include "kernels/device/runtime.hpp"
+
 namespace drogue::device {
 
 /// Instance of an execution space: on CUDA a stream of its own, for OpenMP a pool of at most `most_threads`
-/// threads, elsewhere the default instance. An instance constructed from an execution space shares it.
+/// threads, fewer on shared cores (`cores_are_shared`), elsewhere the default instance. An instance
+/// constructed from an execution space shares it.
 template <class ExecutionSpace>
 class Instance {
  public:
@@ -26,10 +30,11 @@ class Instance {
 template <>
 class Instance<Kokkos::OpenMP> {
  public:
-  /// A pool of at most `most_threads` threads. Does not throw.
-  explicit Instance(int most_threads)
-      : _space(most_threads < Kokkos::OpenMP().concurrency() ? Kokkos::OpenMP(most_threads)
-                                                             : Kokkos::OpenMP()) {}
+  /// A pool of at most `most_threads` threads, of fewer on shared cores. Does not throw.
+  explicit Instance(int most_threads) {
+    const int threads = useful_threads_on(cores_are_shared(), most_threads);
+    if (threads < _space.concurrency()) _space = Kokkos::OpenMP(threads);
+  }
 
   /// Shares `space`. Does not throw.
   explicit Instance(const Kokkos::OpenMP& space) : _space(space) {}

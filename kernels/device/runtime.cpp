@@ -2,16 +2,23 @@
 
 #include <Kokkos_Core.hpp>
 #include <charconv>
+#include <condition_variable>
 #include <cstdint>
 #include <cstdlib>
+#include <mutex>
 #include <stdexcept>
+#include <thread>
 #if defined(KOKKOS_ENABLE_OPENMP)
 #include <omp.h>
 #endif
 
+#include "kernels/device/host_cores.hpp"
+
 namespace drogue::device {
 
 namespace {
+
+bool shared_cores = false;
 
 void without_global_fences(const std::uint32_t, Kokkos_Tools_ToolSettings* settings) {
   settings->requires_global_fencing = false;
@@ -53,9 +60,63 @@ int default_threads() {
 #endif
 }
 
+bool are_waits_configured() {
+  return std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr;
+}
+
+int openmp_threads() {
+#if defined(KOKKOS_ENABLE_OPENMP)
+  return Kokkos::OpenMP().concurrency();
+#else
+  return 1;
+#endif
+}
+
 }  // namespace
 
-Runtime::Runtime(const std::vector<std::string>& arguments) {
+/// A team of OpenMP threads that sleeps. A thread of GCC's OpenMP that waits spins 300000 times before it
+/// sleeps, some 10 ms, during which it may hold the core that the thread it waits for needs; but only 100
+/// times if the process has more threads than cores (manual of libgomp, GOMP_SPINCOUNT). No function sets
+/// this, and the environment is read before `main`.
+class Runtime::ShortWaits {
+ public:
+  explicit ShortWaits(int cores) : _thread([this, cores] { sleep_with_team(cores + 2); }) {
+    std::unique_lock lock(_mutex);
+    _changed.wait(lock, [this] { return _has_team; });
+  }
+  ~ShortWaits() {
+    {
+      const std::lock_guard lock(_mutex);
+      _ends = true;
+    }
+    _changed.notify_all();
+    _thread.join();
+  }
+  ShortWaits(const ShortWaits&) = delete;
+  ShortWaits& operator=(const ShortWaits&) = delete;
+
+ private:
+  void sleep_with_team([[maybe_unused]] int threads) {
+#if defined(KOKKOS_ENABLE_OPENMP)
+#pragma omp parallel num_threads(threads)
+    {
+      // The team outlives the region that creates it.
+      static_cast<void>(omp_get_thread_num());
+    }
+#endif
+    std::unique_lock lock(_mutex);
+    _has_team = true;
+    _changed.notify_all();
+    _changed.wait(lock, [this] { return _ends; });
+  }
+
+  std::mutex _mutex;
+  std::condition_variable _changed;
+  bool _has_team = false, _ends = false;
+  std::thread _thread;
+};
+
+Runtime::Runtime(const std::vector<std::string>& arguments, ThreadWaits waits) {
   Kokkos::Tools::Experimental::set_request_tool_settings_callback(without_global_fences);
   checked_number(arguments, "--kokkos-device-id", "KOKKOS_DEVICE_ID", 0, 1023);
   std::vector<std::string> copies = {"drogue"};
@@ -71,9 +132,20 @@ Runtime::Runtime(const std::vector<std::string>& arguments) {
   auto count = static_cast<int>(pointers.size());
   pointers.push_back(nullptr);
   Kokkos::initialize(count, pointers.data());
+  if (waits == ThreadWaits::as_configured || openmp_threads() == 1 || are_waits_configured()) return;
+  const HostCores cores = host_cores();
+  if (!are_cores_shared(openmp_threads(), cores)) return;
+  _short_waits = std::make_unique<ShortWaits>(cores.allowed);
+  shared_cores = true;
 }
 
-Runtime::~Runtime() { Kokkos::finalize(); }
+Runtime::~Runtime() {
+  shared_cores = false;
+  _short_waits.reset();
+  Kokkos::finalize();
+}
+
+bool cores_are_shared() { return shared_cores; }
 
 std::string kokkos_version() {
   constexpr int version = KOKKOS_VERSION;

@@ -1,9 +1,16 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace drogue::device {
+
+/// How threads of OpenMP wait for each other at the end of a loop.
+enum class ThreadWaits {
+  as_configured,  ///< settings of the environment, or those of OpenMP
+  adapted,        ///< briefly on shared cores, before they sleep, unless the environment has settings
+};
 
 /// Initialises Kokkos for the lifetime of the object. Disables global fences around Kokkos Tools callbacks,
 /// so that profiling neither slows steps nor prevents graph capture.
@@ -12,11 +19,19 @@ class Runtime {
   /// Initialises Kokkos with `arguments`, the `--kokkos-*` options. Throws std::invalid_argument for a number
   /// of threads or a device number, given as an option or as a KOKKOS_* variable, for which Kokkos would
   /// abort.
-  explicit Runtime(const std::vector<std::string>& arguments);
+  explicit Runtime(const std::vector<std::string>& arguments, ThreadWaits waits = ThreadWaits::as_configured);
   ~Runtime();
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;
+
+ private:
+  class ShortWaits;
+  std::unique_ptr<ShortWaits> _short_waits;  ///< null: waits as configured
 };
+
+/// True between the construction of a `Runtime` that found the cores shared and shortened waits, and its
+/// end. Does not throw.
+[[nodiscard]] bool cores_are_shared();
 
 /// Facts about the software and the device of a run.
 struct DeviceFacts {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/fabric_solver.hpp"
+#include "kernels/fabric/host_threads.hpp"
 
 namespace drogue::fabric {
 
@@ -9,7 +10,7 @@ template <class ExecutionSpace>
 class SolverAdapter final : public Solver {
  public:
   explicit SolverAdapter(const Parameters& p)
-      : _instance(static_cast<int>(1 + p.mesh.rest.size() / 512)), _solver(_instance.space(), p) {}
+      : _instance(host_threads(p.mesh.rest.size())), _solver(_instance.space(), p) {}
 
   void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override {
     _solver.upload(positions, velocities);

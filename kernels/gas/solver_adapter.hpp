@@ -1,19 +1,15 @@
 #pragma once
 
 #include "kernels/gas/gas_solver.hpp"
+#include "kernels/gas/host_threads.hpp"
 
 namespace drogue::gas {
-
-/// Number of host threads for a mesh. A thread with fewer than four tiles costs more than it saves.
-inline int host_threads(std::int64_t cells) {
-  return static_cast<int>(1 + std::min<std::int64_t>(cells / 1024, 4096));
-}
 
 /// `GasSolver` behind the virtual interface, on an execution-space instance of its own.
 template <class ExecutionSpace>
 class SolverAdapter final : public Solver {
  public:
-  explicit SolverAdapter(const Parameters& p) : _instance(host_threads(p.cells)), _solver(_instance, p) {}
+  explicit SolverAdapter(const Parameters& p) : _instance(host_threads(p)), _solver(_instance, p) {}
 
   void upload(std::int64_t first, const ConstConservedFields& fields) override {
     _solver.upload(first, fields);

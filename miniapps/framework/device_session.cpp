@@ -1,20 +1,39 @@
 #include "miniapps/framework/device_session.hpp"
 
 #include "common/program/failure.hpp"
+#include "common/program/program.hpp"
+#include "kernels/device/host_cores.hpp"
 #include "kernels/device/profiling_counters.hpp"
 
 namespace drogue::framework {
 
-device::Backend choose_backend(const std::string& option) {
-  const device::Backend backend = device::wanted_backend(option);
-  if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
+device::Backend choose_backend(const std::string& option, int useful_threads) {
+  device::Backend backend = device::wanted_backend(option);
+  if (option == "auto" && backend == device::Backend::openmp && device::is_present(device::Backend::serial) &&
+      (useful_threads == 1 || device::host_cores().allowed == 1))
+    backend = device::Backend::serial;
+  require_backend(backend);
   return backend;
 }
 
+void require_backend(device::Backend backend) {
+  if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
+}
+
 DeviceSession::DeviceSession(device::Backend backend, const std::vector<std::string>& kokkos_arguments)
-    : _backend(backend),
-      _runtime(with_usage_error([&] { return std::make_unique<device::Runtime>(kokkos_arguments); })) {
+    : _backend(backend), _runtime(with_usage_error([&] {
+        return std::make_unique<device::Runtime>(kokkos_arguments, backend == device::Backend::openmp
+                                                                       ? device::ThreadWaits::adapted
+                                                                       : device::ThreadWaits::as_configured);
+      })) {
   device::start_profiling();
+}
+
+void DeviceSession::print_shared_cores(const std::string& program) const {
+  if (device::cores_are_shared())
+    print_notice(program,
+                 "the threads of OpenMP share their cores: they sleep while they wait, and fewer work on a "
+                 "mesh; OMP_WAIT_POLICY=active prevents this");
 }
 
 void DeviceSession::describe(run::ResultDocument& result) const {

@@ -68,11 +68,12 @@ class SceneRun {
   /// The run itself. Sets the exit code, `ok` or `interrupted`.
   void execute() {
     const std::unique_ptr<Scene> scene = _app.read(_file, _options.set, _options.baseline);
-    const device::Backend backend = choose_backend(_options.backend);
+    const device::Backend backend = choose_backend(_options.backend, scene->useful_threads(_result.ranks));
     const RunFiles files{&_directory, _result.scene, scene->fingerprint(), _restart};
     if (!_is_empty && !_options.restart.empty() && !_options.overwrite) require_same_scene(files.fingerprint);
     const DeviceSession session(backend, _options.kokkos);
     session.describe(_result);
+    if (!_options.quiet) session.print_shared_cores(_app.program());
     _result.precision = scene->precision();
     const Stopwatch setup;
     const std::unique_ptr<Simulation> simulation =

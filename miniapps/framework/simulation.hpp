@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -152,6 +153,10 @@ class Scene {
 
   /// Precision for result.json, `double` or `split`.
   [[nodiscard]] virtual std::string precision() const { return "double"; }
+
+  /// Number of host threads that pay for a step of this scene on one of `ranks` ranks, at least 1
+  /// (`choose_backend`); by default without limit.
+  [[nodiscard]] virtual int useful_threads(int /*ranks*/) const { return std::numeric_limits<int>::max(); }
 
   /// Creates the simulation, which keeps a reference to this scene. Requires a running Kokkos.
   [[nodiscard]] virtual std::unique_ptr<Simulation> create(const SimulationSettings& settings) const = 0;

@@ -18,14 +18,16 @@ RepeatedRun repeat_run(const study::Repeats& repeats, const RunOnce& run_once) {
 }
 
 StudySession::StudySession(const MiniAppOptions& options, const std::string& program,
-                           const std::string& scene_name, const std::string& printed_scene)
+                           const std::string& scene_name, const std::string& printed_scene,
+                           int useful_threads)
     : _quiet(options.quiet),
-      _backend(choose_backend(options.backend)),
+      _backend(choose_backend(options.backend, useful_threads)),
       _directory(options.out.empty() ? std::filesystem::path("out") / (scene_name + "-study") : options.out,
                  options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse_study),
       _session((_directory.begin(), _directory.write_scene(printed_scene), _backend), options.kokkos),
       _facts(run::new_result(program, scene_name)) {
   _session.describe(_facts);
+  if (!_quiet) _session.print_shared_cores(program);
 }
 
 ExitCode StudySession::run(const study::Columns& columns, std::size_t count,

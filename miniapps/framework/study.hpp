@@ -38,9 +38,10 @@ using RunOnce = std::function<ExitCode(RepeatedRun& runs)>;
 /// Kokkos. Throws `Failure`: usage, no_backend, io_error.
 class StudySession {
  public:
-  /// `printed_scene` is the resolved scene before the study varies it.
+  /// `printed_scene` is the resolved scene before the study varies it; `useful_threads` is that of its
+  /// largest point, for `choose_backend`.
   StudySession(const MiniAppOptions& options, const std::string& program, const std::string& scene_name,
-               const std::string& printed_scene);
+               const std::string& printed_scene, int useful_threads);
 
   [[nodiscard]] device::Backend backend() const { return _backend; }
   [[nodiscard]] run::RunDirectory& directory() { return _directory; }

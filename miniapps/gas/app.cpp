@@ -1,5 +1,6 @@
 #include "miniapps/gas/app.hpp"
 
+#include "kernels/gas/host_threads.hpp"
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/gas/scene/scene_keys.hpp"
 #include "miniapps/gas/simulation/simulation.hpp"
@@ -12,6 +13,7 @@ class RunnableScene final : public framework::TypedScene<GasScene, Simulation> {
  public:
   using TypedScene::TypedScene;
   [[nodiscard]] std::string precision() const override { return precision_name(content().parameters); }
+  [[nodiscard]] int useful_threads(int) const override { return gas::host_threads(content().parameters); }
 };
 
 std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,

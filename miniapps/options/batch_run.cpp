@@ -22,6 +22,12 @@ RowKind row_kind(const Command& command) {
   return command.action == Action::price ? RowKind::contract : RowKind::parameter_set;
 }
 
+/// Number of host threads that pay: a single contract is the work of one.
+int useful_threads(const Command& command, const std::filesystem::path& input) {
+  const bool is_one = command.action == Action::price && !has_several_rows(input, row_kind(command));
+  return is_one ? 1 : static_cast<int>(std::thread::hardware_concurrency());
+}
+
 /// Input and output files, which rank 0 holds, and the facts about them that all ranks share.
 struct OpenBatch {
   /// Opens the files and chooses the backend on rank 0. Collective.
@@ -30,7 +36,7 @@ struct OpenBatch {
       if (!communicator.is_root()) return;
       reader.emplace(input, row_kind(command));
       if (reader->has_ids()) BatchReader(input, row_kind(command)).require_unique_ids();
-      backend = framework::choose_backend(command.backend);
+      backend = framework::choose_backend(command.backend, useful_threads(command, input));
       outputs.emplace(command);
     });
     MessageWriter writer;
@@ -89,8 +95,10 @@ class BatchRun {
     std::optional<framework::DeviceSession> session;
     std::unique_ptr<options::Pricer> pricer;
     _communicator.run_collectively([&] {
-      session.emplace(framework::choose_backend(std::string(device::name(batch.backend))), _command.kokkos);
+      framework::require_backend(batch.backend);
+      session.emplace(batch.backend, _command.kokkos);
       session->describe(_result);
+      if (_communicator.is_root() && !_command.quiet) session->print_shared_cores("drogue-options");
       pricer = create_rank_pricer(batch.backend, _command.settings, _communicator);
     });
     _result.timing.setup_s = _wall_time.seconds();

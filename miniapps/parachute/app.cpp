@@ -1,5 +1,7 @@
 #include "miniapps/parachute/app.hpp"
 
+#include "kernels/fabric/host_threads.hpp"
+#include "kernels/flow/host_threads.hpp"
 #include "miniapps/framework/metrics.hpp"
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/parachute/parallel/serve.hpp"
@@ -20,6 +22,12 @@ class ParachuteScene final : public framework::TypedScene<FlowScene, Simulation>
       const framework::SimulationSettings& settings) const override {
     if (!content().has_fluid()) return std::make_unique<ClothSimulation>(content(), settings);
     return TypedScene::create(settings);
+  }
+
+  [[nodiscard]] int useful_threads(int ranks) const override {
+    const FlowScene& scene = content();
+    if (scene.has_fluid()) return flow::host_threads(scene.parameters, ranks);
+    return fabric::host_threads(cloth_sheets(scene).positions.size());
   }
 };
 

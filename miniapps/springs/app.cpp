@@ -1,5 +1,6 @@
 #include "miniapps/springs/app.hpp"
 
+#include "kernels/fabric/host_threads.hpp"
 #include "kernels/mesh/quality.hpp"
 #include "miniapps/framework/metrics.hpp"
 #include "miniapps/framework/typed_scene.hpp"
@@ -14,6 +15,9 @@ class RunnableScene final : public framework::TypedScene<SpringsScene, Simulatio
  public:
   using TypedScene::TypedScene;
   [[nodiscard]] std::string check_report() const override { return quality_report(content().mesh); }
+  [[nodiscard]] int useful_threads(int) const override {
+    return fabric::host_threads(content().mesh.rest.size());
+  }
 };
 
 }  // namespace

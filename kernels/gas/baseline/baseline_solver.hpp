@@ -58,7 +58,7 @@ template <class ExecutionSpace>
 class BaselineSolver final : public Solver {
  public:
   explicit BaselineSolver(const Parameters& p)
-      : _instance(host_threads(p.cells)),
+      : _instance(host_threads(p)),
         _p(p),
         _cells(static_cast<std::size_t>(p.cells)),
         _dx((p.x_max - p.x_min) / static_cast<double>(p.cells)),

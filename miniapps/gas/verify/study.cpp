@@ -1,8 +1,10 @@
 #include "miniapps/gas/verify/study.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/study/axes.hpp"
+#include "kernels/gas/host_threads.hpp"
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/gas/simulation/simulation.hpp"
 
@@ -99,7 +101,9 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
     throw Failure(ExitCode::usage, "--study needs a scene with [verify] exact, to measure errors against");
   std::vector<GasScene> scenes;  // read all first: an invalid one must not end a study that has run for hours
   for (const auto& sets : assignments(axes, options)) scenes.push_back(read_gas_scene(file, sets));
-  framework::StudySession session(options, "drogue-gas", base.name, print_gas_scene(base));
+  int threads = 1;
+  for (const GasScene& scene : scenes) threads = std::max(threads, gas::host_threads(scene.parameters));
+  framework::StudySession session(options, "drogue-gas", base.name, print_gas_scene(base), threads);
 
   std::optional<Reference> reference = Reference{};
   if (*base.verify.exact == Exact::reference)

@@ -82,4 +82,10 @@ void BatchReader::require_unique_ids() {
   }
 }
 
+bool has_several_rows(const std::filesystem::path& file, RowKind kind) {
+  if (!std::filesystem::is_regular_file(file)) return true;  // what is read of a pipe is gone
+  Chunk chunk;
+  return BatchReader(file, kind).next(chunk, 2) && chunk.lines.size() > 1;
+}
+
 }  // namespace drogue::options_app

@@ -45,4 +45,7 @@ class BatchReader {
   std::int64_t _rows = 0, _chunks = 0;
 };
 
+/// False for a regular file with at most one row. Throws as the constructor and `next` of `BatchReader`.
+[[nodiscard]] bool has_several_rows(const std::filesystem::path& file, RowKind kind);
+
 }  // namespace drogue::options_app

@@ -61,7 +61,7 @@ class Worker {
     const auto backend = message.get<device::Backend>();
     const coupling::Parameters parameters = get_parameters(message);
     _solver.emplace(_communicator, backend, parameters, [&] {
-      static_cast<void>(framework::choose_backend(std::string(device::name(backend))));
+      framework::require_backend(backend);
       if (!_session) _session = std::make_unique<framework::DeviceSession>(backend, _options.kokkos);
     });
   }

@@ -39,11 +39,12 @@ fabric::Parameters fabric_parameters(const FlowScene& scene, const Sheets& sheet
 
 }  // namespace
 
+Sheets cloth_sheets(const FlowScene& scene) {
+  return make_all_sheets({}, scene.canopies, scene.parameters.density, scene.parameters.viscosity);
+}
+
 ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::SimulationSettings& settings)
-    : _scene(scene),
-      _sheets(make_all_sheets({}, scene.canopies, scene.parameters.density, scene.parameters.viscosity)),
-      _cuts(_sheets.cuts, _sheets.fabric),
-      _record(scene) {
+    : _scene(scene), _sheets(cloth_sheets(scene)), _cuts(_sheets.cuts, _sheets.fabric), _record(scene) {
   if (settings.communicator != nullptr)
     throw Failure(ExitCode::usage, "scenes without [fluid] run on one rank");
   _solver = fabric::create_solver(settings.backend, fabric_parameters(scene, _sheets));

@@ -12,6 +12,9 @@
 
 namespace drogue::parachute_app {
 
+/// The cloth of a scene without a fluid. Throws `Failure` (invalid_scene) as `make_all_sheets`.
+[[nodiscard]] Sheets cloth_sheets(const FlowScene& scene);
+
 /// A scene without a fluid on a solver of cloth. Functions as of `framework::Simulation`.
 ///
 /// Steps of velocity Verlet come in blocks of at most 256 with the same dt, which end at outputs and cuts of

@@ -6,6 +6,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/study/axes.hpp"
+#include "kernels/flow/host_threads.hpp"
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
@@ -150,7 +151,9 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   const FlowScene base = read_flow_scene(file, options.set);
   if (!base.verify.exact) throw Failure(ExitCode::usage, "--study needs verify.exact to compute errors");
   const std::vector<FlowScene> scenes = scenes_of(axes, options, file, base);
-  framework::StudySession session(options, "drogue-parachute", base.name, print_flow_scene(base));
+  int threads = 1;
+  for (const FlowScene& scene : scenes) threads = std::max(threads, flow::host_threads(scene.parameters, 1));
+  framework::StudySession session(options, "drogue-parachute", base.name, print_flow_scene(base), threads);
   return session.run(columns, scenes.size(), [&](std::size_t i, std::vector<study::StudyRow>& rows) {
     framework::RepeatedRun runs = run_point(scenes[i], session.backend());
     if (runs.code == ExitCode::interrupted) return false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/fabric/host_threads.hpp"
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/springs/simulation/simulation.hpp"
 #include "miniapps/springs/verify/samples.hpp"
@@ -102,7 +103,10 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   const SpringsScene base = read_springs_scene(file, options.set);
   // Read all first: an invalid scene must not end a study that has run for hours.
   const std::vector<StudyPoint> points = study_points(file, options.set, options.study);
-  framework::StudySession session(options, "drogue-springs", base.name, print_springs_scene(base));
+  int threads = 1;
+  for (const StudyPoint& point : points)
+    threads = std::max(threads, fabric::host_threads(point.scene.mesh.rest.size()));
+  framework::StudySession session(options, "drogue-springs", base.name, print_springs_scene(base), threads);
   ScratchDirectory scratch(session.directory().path() / "point");
   study::Columns columns{{"model", "mass", "integrator"}, "vertices", {}, "", ""};
   const auto run_point = [&](std::size_t i, std::vector<study::StudyRow>& rows) {

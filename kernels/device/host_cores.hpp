@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+namespace drogue::device {
+
+/// Cores of the host at one moment.
+struct HostCores {
+  int allowed = 1;  ///< that this process may use
+  int online = 1;   ///< of the machine
+  int running = 1;  ///< threads of all processes that run or wait for a core, including the calling one
+};
+
+/// Cores of this host. `running` is the least of a few readings within some milliseconds; 1 where the system
+/// does not count. Does not throw.
+[[nodiscard]] HostCores host_cores();
+
+/// True if a pool of `threads` threads would take cores from each other or from other programs. Does not
+/// throw.
+[[nodiscard]] bool are_cores_shared(int threads, const HostCores& cores);
+
+/// Number of threads that pay for loops over `points` points, if a thread with fewer than `points_per_thread`
+/// costs more than it saves. At least 1. Does not throw.
+[[nodiscard]] int useful_threads(std::int64_t points, std::int64_t points_per_thread);
+
+/// `useful_threads` if `shared` cores make the end of a loop, where threads wait for each other, dearer. Does
+/// not throw.
+[[nodiscard]] int useful_threads_on(bool shared, int useful_threads);
+
+}  // namespace drogue::device
