@@ -39,6 +39,17 @@ class HardCases(options_program.OptionsTest):
                     tolerance = float(expected["tolerance"]) + float(expected["uncertainty"])
                     self.assertAlmostEqual(float(expected["price"]), float(self.priced[name]["price"]), delta=tolerance)
 
+    def test_small_prices_converge(self):
+        """Relative tolerances of small prices on fine meshes, three to five times the errors on one core."""
+        for mesh, steps, names in ((1024, 512, {"day-out": 6e-6, "deep-out": 6e-4, "european-deep-out": 1.8e-5}),
+                                   (2048, 1024, {"deep-out-call": 8e-2}), (4096, 64, {"european-day": 0.2})):
+            content = options_program.batch([",".join(CONTRACTS[name].values()) for name in names])
+            self.expect(0, "price", self.write(content), "--backend", "serial", "--quiet", "--mesh", mesh, "--steps", steps)
+            for row in self.prices():
+                with self.subTest(row["id"]):
+                    price = float(EXPECTED[row["id"]]["price"])
+                    self.assertAlmostEqual(price, float(row["price"]), delta=names[row["id"]] * price)
+
     def test_error_estimates_cover_the_reference(self):
         """The estimates of nine in ten rows cover the deviation from the reference."""
         kept = [name for name, expected in EXPECTED.items() if expected["price"]]

@@ -134,13 +134,25 @@ struct FrontSpeed {
 };
 
 /// Quantity of the final state.
-enum class FinalQuantity { displacement_x, displacement_y, displacement_z, von_mises, elastic_energy };
+enum class FinalQuantity {
+  displacement_x,
+  displacement_y,
+  displacement_z,
+  von_mises,
+  elastic_energy,
+  area_growth  ///< of all triangles, over their area at rest
+};
 
-/// Expected value of the final state, of the vertex nearest to `at` except for the energy.
+/// True for a quantity of a vertex, false for one of the whole mesh.
+constexpr bool is_of_vertex(FinalQuantity quantity) {
+  return quantity != FinalQuantity::elastic_energy && quantity != FinalQuantity::area_growth;
+}
+
+/// Expected value of the final state, of the vertex nearest to `at` or of the whole mesh.
 struct FinalValue {
   FinalQuantity quantity = FinalQuantity::elastic_energy;
-  std::vector<double> at;  ///< rest coordinates, m; empty for the energy
-  double value = 0.0;      ///< m, N/m or J
+  std::vector<double> at;  ///< rest coordinates, m; empty unless `is_of_vertex`
+  double value = 0.0;      ///< m, N/m, J or 1
   double tolerance = 0.0;  ///< relative
 };
 

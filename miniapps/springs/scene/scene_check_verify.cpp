@@ -110,13 +110,12 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   for (std::size_t k = 0; k < verify.values.size(); ++k) {
     const FinalValue& value = verify.values[k];
     const std::string path = "verify.values[" + std::to_string(k) + "].";
-    const bool of_vertex = value.quantity != FinalQuantity::elastic_energy;
     require(root, value.value != 0.0, path + "value", "a number other than 0, since the error is relative");
-    if (of_vertex)
+    if (is_of_vertex(value.quantity))
       require(root, !value.at.empty(), path + "quantity", "at, a position");
     else
       require(root, value.at.empty(), path + "at", "a quantity of a vertex");
-    if (value.quantity == FinalQuantity::von_mises)
+    if (value.quantity == FinalQuantity::von_mises || value.quantity == FinalQuantity::area_growth)
       require(root, !scene.mesh.triangles.empty(), path + "quantity", "a mesh with triangles");
   }
   if (verify.front_speed) {

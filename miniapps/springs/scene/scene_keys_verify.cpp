@@ -10,11 +10,10 @@ using scene::Table;
 
 const scene::Choices<std::string> axis_choices = {{"x", "x"}, {"y", "y"}, {"z", "z"}};
 
-const scene::Choices<FinalQuantity> quantity_choices = {{"displacement_x", FinalQuantity::displacement_x},
-                                                        {"displacement_y", FinalQuantity::displacement_y},
-                                                        {"displacement_z", FinalQuantity::displacement_z},
-                                                        {"von_mises", FinalQuantity::von_mises},
-                                                        {"elastic_energy", FinalQuantity::elastic_energy}};
+const scene::Choices<FinalQuantity> quantity_choices = {
+    {"displacement_x", FinalQuantity::displacement_x}, {"displacement_y", FinalQuantity::displacement_y},
+    {"displacement_z", FinalQuantity::displacement_z}, {"von_mises", FinalQuantity::von_mises},
+    {"elastic_energy", FinalQuantity::elastic_energy}, {"area_growth", FinalQuantity::area_growth}};
 
 }  // namespace
 
@@ -110,10 +109,12 @@ void declare_verify(Table& table, Verify& verify) {
       "values", verify.values,
       [](Table& t, FinalValue& value) {
         t.value("quantity", scene::choice_codec(value.quantity, quantity_choices),
-                "Displacement (m) or Cauchy's von Mises stress (N/m) of a vertex, or the elastic energy (J)")
+                "Displacement (m) or Cauchy's von Mises stress (N/m) of a vertex, the elastic energy (J), or "
+                "the "
+                "growth of the area of all triangles over that at rest")
             .required();
         t.value("at", optional_vector_codec(value.at),
-                "Position at rest, except of the energy; the nearest vertex is used")
+                "Position at rest, for a quantity of a vertex; the nearest is used")
             .unit("m");
         t.value("value", scene::real_codec(value.value), "Expected value, not 0").required();
         t.value("tolerance", scene::real_codec(value.tolerance), "Largest relative error that passes")

@@ -11,6 +11,7 @@
 #include "miniapps/springs/simulation/contact_state.hpp"
 #include "miniapps/springs/verify/closed_forms.hpp"
 #include "miniapps/springs/verify/probe.hpp"
+#include "miniapps/springs/verify/samples.hpp"
 #include "miniapps/springs/verify/sinusoid.hpp"
 
 namespace drogue::springs_app {
@@ -159,6 +160,8 @@ double front_speed(const SpringsScene& scene, const History& history) {
 /// Value of the final state that `wanted` names.
 double final_value(const SpringsScene& scene, const FinalState& state, const FinalValue& wanted) {
   if (wanted.quantity == FinalQuantity::elastic_energy) return state.elastic_energy;
+  if (wanted.quantity == FinalQuantity::area_growth)
+    return total_area(scene.mesh, state.x) / total_area(scene.mesh, scene.mesh.rest) - 1.0;
   const auto vertex = static_cast<std::size_t>(nearest_vertex(scene.mesh, wanted.at));
   if (wanted.quantity == FinalQuantity::von_mises) return state.von_mises[vertex];
   const std::size_t axis = wanted.quantity == FinalQuantity::displacement_x   ? 0

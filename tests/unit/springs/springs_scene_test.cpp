@@ -303,6 +303,8 @@ TEST(SpringsScene, RefusesChecksWithoutTheirQuantity) {
   EXPECT_TRUE(holds(error_of({value("quantity=\"elastic_energy\",value=0")}), "relative"));
   EXPECT_TRUE(
       holds(error_of({value("quantity=\"elastic_energy\",at=[0,0,0],value=1")}), "a quantity of a vertex"));
+  EXPECT_TRUE(
+      holds(error_of({value("quantity=\"area_growth\",at=[0,0,0],value=1")}), "a quantity of a vertex"));
   EXPECT_TRUE(holds(error_of({value("quantity=\"von_mises\",value=1")}), "needs at, a position"));
   EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0.5,1],tolerance=1}", probe}), "integers"));
 }
