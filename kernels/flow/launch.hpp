@@ -2,6 +2,7 @@
 
 #include "kernels/device/block_size.hpp"
 #include "kernels/device/launch.hpp"
+#include "kernels/flow/parameters.hpp"
 
 namespace drogue::flow {
 
@@ -20,6 +21,12 @@ inline int march_planes(int tiles, int nz, int longest, int enough_teams = 1024)
   int planes = longest;
   while (planes > 2 && tiles * ((nz + planes - 1) / planes) < enough_teams) planes /= 2;
   return planes;
+}
+
+/// Planes of a march of the momentum stage. Long marches evaluate fewer fluxes twice; of short ones more
+/// teams are under way, on a small grid and at the end. Central fluxes cost less than that. Does not throw.
+inline int momentum_planes(Advection scheme, int tiles, int nz) {
+  return march_planes(tiles, nz, scheme == Advection::central ? 2 : 8, 4096);
 }
 
 }  // namespace drogue::flow

@@ -219,10 +219,7 @@ void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionS
   } else {
     using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth>;
     const int tiles_x = parts(g.n[0], tile_x), tiles_y = parts(g.n[1], setup.rows);
-    // Long marches evaluate fewer fluxes twice; of short ones more teams are under way, on a small grid and
-    // at the end. Central fluxes cost less than that.
-    const int longest = scheme == Advection::central ? 2 : 8;
-    const int planes = march_planes(tiles_x * tiles_y, g.n[2], longest, 4096);
+    const int planes = momentum_planes(scheme, tiles_x * tiles_y, g.n[2]);
     typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes), tile_x * setup.rows);
     Kokkos::parallel_for(
         "drogue::flow::momentum",
