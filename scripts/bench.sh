@@ -130,7 +130,10 @@ for count in $(grep -oE '^options/cuda/[0-9]+/' <<<"$cases" | sort -ut / -k 3n |
   [ "$backend" != cuda ] || record "alone/options-$count" run --filter "^options/cuda/$count/"
 done
 record occupancy table occupancy
-[ "$backend" != cuda ] || record gas-block table block-size --backend cuda
+if [ "$backend" = cuda ]; then
+  for app in gas flow parachute; do record "$app-block" table block-size --app $app --backend cuda; done
+  for app in gas springs flow; do record "$app-abstraction" table abstraction --app $app --backend cuda; done
+fi
 for app in gas springs options parachute; do record "$app-transfers" table transfers --app $app --backend "$one"; done
 record flow-pressure table pressure --backend "$one"
 record flow-memory table memory --backend "$one"
