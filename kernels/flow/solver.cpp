@@ -50,6 +50,20 @@ std::array<int, 3> extents(const Parameters& p, StateField field) {
   return shape;
 }
 
+const char* failure_text(FailureReason reason) {
+  switch (reason) {
+    case FailureReason::not_finite:
+      return "the velocity is not finite";
+    case FailureReason::side_velocity:
+      return "the prescribed velocity is not finite";
+    case FailureReason::time_step:
+      return "no time step is admissible";
+    case FailureReason::pressure_solver:
+      return "the pressure solver did not converge";
+  }
+  return "";
+}
+
 std::vector<StateField> state_fields(const Parameters& p) {
   using enum StateField;
   std::vector<StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};

@@ -79,6 +79,9 @@ class Solver {
 /// Number of entries of an array of the state on all ranks. Does not throw.
 [[nodiscard]] std::size_t state_size(const Parameters& parameters, StateField field);
 
+/// Reason of a failed step in words, such as "the velocity is not finite". Does not throw.
+[[nodiscard]] const char* failure_text(FailureReason reason);
+
 /// Throws std::invalid_argument, with one sentence that names the fault, for parameters out of range or
 /// boundary conditions that admit no solution.
 void check_parameters(const Parameters& parameters);

@@ -117,11 +117,7 @@ class FlowRuns {
   /// Description of the step that failed.
   [[nodiscard]] std::string failure() {
     const flow::StepFailure failure = _solver->failure();
-    const char* reason = failure.reason == flow::FailureReason::not_finite ? "the velocity is not finite"
-                         : failure.reason == flow::FailureReason::time_step
-                             ? "there is no admissible time step"
-                             : "the pressure solver did not converge";
-    return std::string(reason) + " in step " + std::to_string(failure.step);
+    return std::string(flow::failure_text(failure.reason)) + " in step " + std::to_string(failure.step);
   }
   [[nodiscard]] std::int64_t steps() { return _solver->progress().step; }
   /// RMS of the divergence, 1/s.

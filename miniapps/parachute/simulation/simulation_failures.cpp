@@ -29,20 +29,6 @@ std::string cell_text(const flow::Parameters& p, std::int64_t index) {
   return text.str();
 }
 
-const char* reason_text(flow::FailureReason reason) {
-  switch (reason) {
-    case flow::FailureReason::not_finite:
-      return "the velocity is not finite";
-    case flow::FailureReason::side_velocity:
-      return "the prescribed velocity is not finite on the side ";
-    case flow::FailureReason::time_step:
-      return "no time step is admissible";
-    case flow::FailureReason::pressure_solver:
-      return "the pressure solver did not converge";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string Simulation::flow_failure_text() {
@@ -56,9 +42,9 @@ std::string Simulation::flow_failure_text() {
   if (is_unstable)
     text << "run.dt = " << fixed_dt << " s exceeds the largest stable time step, " << failure.dt << " s,";
   else
-    text << reason_text(failure.reason);
+    text << flow::failure_text(failure.reason);
   if (failure.reason == flow::FailureReason::side_velocity)
-    text << side_names[static_cast<std::size_t>(failure.index)];
+    text << " on the side " << side_names[static_cast<std::size_t>(failure.index)];
   else if (failure.index >= 0)
     text << " in " << cell_text(_scene.parameters, failure.index);
   text << " at " << (is_initial ? "the initial projection" : "step " + std::to_string(failure.step))
