@@ -34,7 +34,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> end_velocity(double dt, const Vector3<R>& v, c
   return v + ((1.0 / 3.0) * gained + (dt / 6.0) * a4);
 }
 
-/// Stores the state of vertex i and the lanes after it at the end of a step and counts the step.
+/// Stores the state of vertex i and the lanes after it, m and m/s, at the end of a step and counts the step.
 template <class ExecutionSpace, class R>
 KOKKOS_INLINE_FUNCTION void store_end(const StepMonitor<ExecutionSpace>& monitor,
                                       const PointsView<ExecutionSpace>& x,
