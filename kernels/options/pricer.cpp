@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/device/block_size.hpp"
 #include "kernels/options/cos/pricer.hpp"
 
 namespace drogue::options {
@@ -16,10 +17,11 @@ std::unique_ptr<Pricer> make_surface(const Settings& settings, std::unique_ptr<P
 
 namespace {
 
+void require(bool holds, const char* condition) {
+  if (!holds) throw std::invalid_argument(std::string("options pricer: ") + condition);
+}
+
 void require_valid(const Settings& s) {
-  const auto require = [](bool holds, const char* condition) {
-    if (!holds) throw std::invalid_argument(std::string("options pricer: ") + condition);
-  };
   require(s.mesh == 0 || (s.mesh >= 32 && s.mesh <= 4096 && s.mesh % 2 == 0),
           "mesh must be 0 or an even number from 32 to 4096");
   require(s.steps == 0 || (s.steps >= 8 && s.steps <= 16384 && s.steps % 2 == 0),
@@ -32,6 +34,7 @@ void require_valid(const Settings& s) {
 }  // namespace
 
 std::unique_ptr<Pricer> create_pricer(device::Backend backend, const Settings& settings) {
+  require(device::is_block_size(settings.block), "block must be a multiple of 32 between 32 and 512");
   if (settings.method == Method::cos && !settings.surface) return create_cos_pricer(backend, settings);
   require_valid(settings);
   return device::dispatch(backend, [&]<class ExecutionSpace>() {

@@ -34,6 +34,7 @@ struct Settings {
   double tolerance = 1e-4;
   bool greeks = false;   ///< `cos` computes delta, gamma and theta; the other methods always do
   int host_threads = 0;  ///< host threads for the tables of `cos`; 0: one per core
+  int block = 0;         ///< threads of a team of `cos` on a device, a multiple of 32 up to 512; 0: of Kokkos
   bool surface = false;  ///< consecutive contracts that differ only in the strike share solves; `pide` only
   ExerciseRule exercise = ExerciseRule::exact;  ///< `pide` only
   bool single_grid = false;  ///< with `mesh`, `pide` only: no extrapolation and no error; for comparison

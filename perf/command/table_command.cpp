@@ -32,7 +32,7 @@ std::vector<std::string> tables_of(const std::string& app) {
   if (app == "flow") return {"block-size", "pressure", "memory", "scaling", "abstraction"};
   if (app == "springs") return {"transfers", "scaling", "abstraction"};
   if (app == "parachute") return {"block-size", "transfers"};
-  return {"transfers", "scaling"};
+  return {"block-size", "transfers", "scaling"};
 }
 
 /// Throws Failure(usage) for options of scaling that do not fit the table or the mini-app.
@@ -97,11 +97,6 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
-  if (options.app == "options" && options.table == "block-size")
-    throw Failure(
-        ExitCode::usage,
-        "kernels of options have no block size: one or two warps, which exchange values by shuffles, "
-        "price an option");
   require_name("table of " + options.app, options.table, tables_of(options.app));
   if (!options.profile.empty() && options.table != "occupancy" && options.table != "block-size")
     throw Failure(ExitCode::usage, "--profile is for table occupancy and table block-size");

@@ -5,6 +5,7 @@
 
 #include "kernels/gas/tile/team_shape.hpp"
 #include "perf/problems/inflation.hpp"
+#include "perf/problems/puts.hpp"
 #include "perf/problems/sod.hpp"
 #include "perf/problems/streams.hpp"
 #include "perf/tables/baseline_case.hpp"
@@ -13,7 +14,9 @@
 namespace drogue::perf {
 namespace {
 
-constexpr const char* bound = "launch latency, and blocks that wait for room";
+const std::vector<int> quick_blocks = {32, 128, 512}, all_blocks = {32, 64, 96, 128, 192, 256, 384, 512};
+
+constexpr const char* blocks_bound = "launch latency, and blocks that wait for room";
 
 /// Largest number of registers of a thread under launch bounds of 512 threads.
 constexpr int bounded_registers = 128;
@@ -31,9 +34,10 @@ gas::Parameters gas_parameters(std::int64_t cells, int block) {
 
 /// The flux kernel of the baseline solver alone, as in figure 4.4.
 Case flux_case(device::Backend backend, const std::string& name, std::int64_t cells, int block) {
-  return baseline_case(name, bound, backend, gas_parameters(cells, block), [](const gas::PhaseTimes& times) {
-    return std::map<std::string, double>{{"compute", times.compute}};
-  });
+  return baseline_case(name, blocks_bound, backend, gas_parameters(cells, block),
+                       [](const gas::PhaseTimes& times) {
+                         return std::map<std::string, double>{{"compute", times.compute}};
+                       });
 }
 
 Case fused_case(device::Backend backend, const std::string& name, std::int64_t cells, int block) {
@@ -43,7 +47,7 @@ Case fused_case(device::Backend backend, const std::string& name, std::int64_t c
   return {name,
           device::needs_device(backend),
           "step",
-          bound,
+          blocks_bound,
           [=] {
             *solver = gas::create_solver(backend, p);
             return sod::steps(p, **solver, steps);
@@ -63,7 +67,7 @@ Block fused_block(int block) {
 }
 
 std::vector<BlockForm> gas_forms(device::Backend backend, bool quick) {
-  std::vector<int> blocks = {32, 128, 512};
+  std::vector<int> blocks = quick_blocks;
   std::vector<std::int64_t> cells = {1024, 8192};
   if (!quick) {
     blocks.assign(std::begin(dissertation::figure_4_4_blocks), std::end(dissertation::figure_4_4_blocks));
@@ -104,8 +108,7 @@ std::vector<BlockForm> flow_forms(device::Backend backend, bool quick) {
   for (const Mesh& mesh : meshes) cells.push_back(cells_of(mesh.grid));
   return {{"flow-block", "momentum",
            "A step of flow; momentum stage and pressure correction have the block, transforms their own",
-           "step", "drogue::flow::MomentumFunctor",
-           quick ? std::vector{32, 128, 512} : std::vector{32, 64, 96, 128, 192, 256, 384, 512}, cells,
+           "step", "drogue::flow::MomentumFunctor", quick ? quick_blocks : all_blocks, cells,
            [=](const std::string& name, std::size_t mesh, int block) {
              flow::Parameters p = streams::parameters(meshes[mesh].grid, streams::Sides::periodic);
              p.block = block;
@@ -113,7 +116,7 @@ std::vector<BlockForm> flow_forms(device::Backend backend, bool quick) {
              return Case{name,
                          device::needs_device(backend),
                          "step",
-                         bound,
+                         blocks_bound,
                          [=] {
                            *solver = flow::create_solver(backend, p);
                            return streams::steps(p, **solver, meshes[mesh].steps);
@@ -134,7 +137,7 @@ std::vector<BlockForm> parachute_forms(device::Backend backend, bool quick) {
            "Flight of a canopy; the kernel that resolves contact has the block, one on each multiprocessor",
            "ms of flight",
            "drogue::fabric::PersistentResolutionFunctor",
-           quick ? std::vector{32, 128, 512} : std::vector{32, 64, 96, 128, 192, 256, 384, 512},
+           quick ? quick_blocks : all_blocks,
            {cells_of(grid)},
            [=](const std::string& name, std::size_t /*mesh*/, int block) {
              const auto solver = std::make_shared<std::unique_ptr<coupling::Solver>>();
@@ -142,7 +145,7 @@ std::vector<BlockForm> parachute_forms(device::Backend backend, bool quick) {
              return Case{name,
                          device::needs_device(backend),
                          "ms of flight",
-                         bound,
+                         blocks_bound,
                          [=] {
                            *problem = inflation::problem({.cells = grid, .with_contact = true});
                            problem->parameters.fabric.contact.block = block;
@@ -158,11 +161,30 @@ std::vector<BlockForm> parachute_forms(device::Backend backend, bool quick) {
            1}};
 }
 
+std::vector<BlockForm> options_forms(device::Backend backend, bool quick) {
+  const std::int64_t count = quick ? 4 : 256;
+  return {{"options-block",
+           "cos",
+           "Puts by cosine series; a put has a team, tables of the host are included",
+           "batch",
+           "drogue::options::PriceBermudansFunctor",
+           quick ? quick_blocks : all_blocks,
+           {count},
+           [=](const std::string& name, std::size_t /*mesh*/, int block) {
+             return puts::batch(name, backend, HostMemory::pinned, static_cast<std::size_t>(count),
+                                {.method = options::Method::cos, .block = block}, 1e-4);
+           },
+           [](int block) {
+             return Block{block, bounded_registers, team_buffer(block)};
+           }}};
+}
+
 }  // namespace
 
 std::vector<BlockForm> block_forms(const std::string& app, device::Backend backend, bool quick) {
   if (app == "gas") return gas_forms(backend, quick);
   if (app == "flow") return flow_forms(backend, quick);
+  if (app == "options") return options_forms(backend, quick);
   if (app == "parachute") return parachute_forms(backend, quick);
   return {};
 }

@@ -19,7 +19,7 @@ struct BlockForm {
   std::string unit;     ///< of the times: "step"
   std::string kernel;   ///< label in a profile: "drogue::gas::StepFunctor"
   std::vector<int> blocks;
-  std::vector<std::int64_t> cells;  ///< of the meshes
+  std::vector<std::int64_t> cells;  ///< of the meshes, or options
   /// Case of a mesh, the index of its number of cells, and a block.
   std::function<Case(const std::string& case_name, std::size_t mesh, int block)> make;
   /// Block with the registers that the launch bounds allow.
@@ -27,7 +27,8 @@ struct BlockForm {
   int most_blocks = 0;  ///< on a multiprocessor, by the launch; 0: as many as fit
 };
 
-/// Kernels of `app` with a block size: of gas, flow and parachute. Others have none. Does not throw.
+/// Kernels of `app` with a block size: of gas, options, flow and parachute. Springs have none. Does not
+/// throw.
 std::vector<BlockForm> block_forms(const std::string& app, device::Backend backend, bool quick);
 
 }  // namespace drogue::perf

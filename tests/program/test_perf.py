@@ -480,7 +480,6 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling, abstraction"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
-                            (["table", "block-size", "--app", "options"], "have no block size"),
                             (["table", "scaling", "--app", "parachute"], "valid names are block-size, transfers"),
                             (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling, abstraction"),
                             (["table", "scaling", "--weak", "--app", "gas"], "weak scaling and ranks have --app flow"),
@@ -513,7 +512,7 @@ class Refusals(perf_program.PerfTest):
                 self.assertIn("missing/records.jsonl", process.stderr)
 
     def test_rejects_block_sizes_on_a_host_backend(self):
-        for app in ("gas", "flow", "parachute"):
+        for app in ("gas", "options", "flow", "parachute"):
             self.assertIn("means nothing to the host backend 'serial'",
                           self.expect(2, "table", "block-size", "--app", app, "--backend", "serial").stderr)
 

@@ -42,7 +42,8 @@ class BermudanSolver {
 /// Binary logarithm of the largest number of cosines.
 inline constexpr int max_log_terms = 12;
 
-/// Creates a solver on `backend`, which must be compiled in and available.
-std::unique_ptr<BermudanSolver> create_bermudan_solver(device::Backend backend);
+/// Creates a solver on `backend`, which must be compiled in and available. `block`: threads of a team on a
+/// device; 0: chosen by Kokkos.
+std::unique_ptr<BermudanSolver> create_bermudan_solver(device::Backend backend, int block = 0);
 
 }  // namespace drogue::options

@@ -8,6 +8,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/device/instance.hpp"
+#include "kernels/device/memory.hpp"
 #include "kernels/options/cos/backward_induction.hpp"
 
 namespace drogue::options {
@@ -46,7 +47,7 @@ class BermudanSolverImpl final : public BermudanSolver {
   using HostView = Kokkos::View<Value*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
 
  public:
-  BermudanSolverImpl() : _instance(ExecutionSpace().concurrency()) {
+  explicit BermudanSolverImpl(int block) : _instance(ExecutionSpace().concurrency()), _block(block) {
     constexpr int count = 1 << max_log_terms;  // the transforms use half of the roots
     std::vector<double> re(count), im(count);
     for (int k = 0; k < count; ++k) {
@@ -96,8 +97,12 @@ class BermudanSolverImpl final : public BermudanSolver {
           Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string("drogue::options::workspace")), size);
     }
     kernel.workspace = _workspace;
-    Kokkos::parallel_for("drogue::options::value_bermudans",
-                         Kokkos::TeamPolicy<ExecutionSpace>(_instance.space(), count, Kokkos::AUTO), kernel);
+    using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
+    const bool is_chosen = _block > 0 && !device::is_host<ExecutionSpace>;
+    Kokkos::parallel_for(
+        "drogue::options::value_bermudans",
+        is_chosen ? Policy(_instance.space(), count, _block) : Policy(_instance.space(), count, Kokkos::AUTO),
+        kernel);
     kernel.first += count;
   }
 
@@ -112,11 +117,12 @@ class BermudanSolverImpl final : public BermudanSolver {
   device::Instance<ExecutionSpace> _instance;
   View<const double> _roots_re, _roots_im;
   View<double> _workspace;
+  int _block;
 };
 
 template <class ExecutionSpace>
-std::unique_ptr<BermudanSolver> make_bermudan_solver() {
-  return std::make_unique<BermudanSolverImpl<ExecutionSpace>>();
+std::unique_ptr<BermudanSolver> make_bermudan_solver(int block) {
+  return std::make_unique<BermudanSolverImpl<ExecutionSpace>>(block);
 }
 
 }  // namespace drogue::options

@@ -69,7 +69,7 @@ class CosPricer final : public Pricer {
   CosPricer(device::Backend backend, const Settings& settings)
       : _threads(host_threads(backend, settings)),
         _settings(settings),
-        _solver(create_bermudan_solver(backend)) {}
+        _solver(create_bermudan_solver(backend, settings.block)) {}
 
   WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())

@@ -2,6 +2,6 @@
 
 namespace drogue::options {
 
-template std::unique_ptr<BermudanSolver> make_bermudan_solver<DROGUE_INSTANCE_SPACE>();
+template std::unique_ptr<BermudanSolver> make_bermudan_solver<DROGUE_INSTANCE_SPACE>(int block);
 
 }  // namespace drogue::options

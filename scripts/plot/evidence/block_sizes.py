@@ -10,6 +10,7 @@ _FORMS = {
     "seed": "the flux kernel of [Shi]",
     "step": "the fused step",
     "momentum": "a step of flow by the block of its momentum stage",
+    "cos": "puts by cosine series",
     "contact": "the flight of a canopy by the block of contact",
 }
 _Times = dict[int, dict[int, float]]  # s, by block size and number of cells

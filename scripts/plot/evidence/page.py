@@ -38,7 +38,8 @@ def _options_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
     found += steps.sections(evidence.select(machine, "options"))
     found += steps.sections(evidence.select(machine, "tridiagonal"))
-    return found + options_transfers.sections(machine, evidence.select(machine, "options-transfers"))
+    found += options_transfers.sections(machine, evidence.select(machine, "options-transfers"))
+    return found + block_sizes.sections(machine, evidence.select(machine, "options-block"))
 
 
 def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:

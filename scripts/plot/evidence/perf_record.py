@@ -28,6 +28,7 @@ _FACTS = {
     "ceiling": {"backend": str},
     "gas-transfers": {"backend": str, "memory": str, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float},
     "gas-block": {"backend": str, "form": str, "block": int, "cells": int},
+    "options-block": {"backend": str, "form": str, "block": int, "cells": int},
     "flow-block": {"backend": str, "form": str, "block": int, "cells": int},
     "parachute-block": {"backend": str, "form": str, "block": int, "cells": int},
     "springs-solution": {"problem": str, "backend": str, "model": str, "mass": str, "integrator": str, "cells": int},

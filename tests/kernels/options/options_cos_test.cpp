@@ -51,6 +51,19 @@ TEST(OptionsBermudan, MatchesReferenceImplementation) {
   }
 }
 
+// Teams of other sizes sum in another order.
+TEST(OptionsCos, BlockSizeChangesRoundingOnly) {
+  const std::vector<Contract> contracts = {
+      testing::contract_of(testing::option_sets()[0], 3, Style::american)};
+  const auto price = [&](int block) {
+    std::vector<Price> prices(1);
+    create_pricer(backend, {.method = Method::cos, .block = block})->price(contracts, prices);
+    return prices[0].price;
+  };
+  for (const int block : {32, 512}) EXPECT_NEAR(price(block), price(0), 1e-11 * contracts[0].strike) << block;
+  EXPECT_THROW(price(48), std::invalid_argument);
+}
+
 // ctest-label: no-sanitizer
 TEST(OptionsCos, AmericanPricesMatchReferenceData) {
   for (const auto& set : testing::option_sets()) {
