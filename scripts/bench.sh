@@ -131,7 +131,7 @@ for count in $(grep -oE '^options/cuda/[0-9]+/' <<<"$cases" | sort -ut / -k 3n |
 done
 record occupancy table occupancy
 if [ "$backend" = cuda ]; then
-  for app in gas flow parachute; do record "$app-block" table block-size --app $app --backend cuda; done
+  for app in gas options flow parachute; do record "$app-block" table block-size --app $app --backend cuda; done
   for app in gas springs flow; do record "$app-abstraction" table abstraction --app $app --backend cuda; done
 fi
 for app in gas springs options parachute; do record "$app-transfers" table transfers --app $app --backend "$one"; done

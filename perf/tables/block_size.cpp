@@ -69,19 +69,19 @@ void print_explanation(const std::vector<Predicted>& predicted, const std::vecto
 void print_form(const BlockForm& form, const std::vector<Predicted>& predicted, const Record* record) {
   std::printf("\n%s, microseconds per %s (median); cells down, threads of a block across\n%10s",
               form.title.c_str(), form.unit.c_str(), "");
-  for (const int block : form.blocks) std::printf("%10d", block);
+  for (const int block : form.blocks) std::printf("%12d", block);
   std::printf("\n%10s", "registers");
-  for (const Predicted& p : predicted) std::printf("%10d", p.block.registers);
+  for (const Predicted& p : predicted) std::printf("%12d", p.block.registers);
   std::printf("\n%10s", "blocks");
-  for (const Predicted& p : predicted) std::printf("%10d", p.occupancy.blocks);
+  for (const Predicted& p : predicted) std::printf("%12d", p.occupancy.blocks);
   std::printf("\n%10s", "occupancy");
-  for (const Predicted& p : predicted) std::printf("%8.1f %%", 100.0 * p.occupancy.occupancy);
+  for (const Predicted& p : predicted) std::printf("%10.1f %%", 100.0 * p.occupancy.occupancy);
   for (const std::int64_t cells : form.cells) {
     std::printf("\n%10lld", static_cast<long long>(cells));
     std::vector<const Record*> row;
     for (std::size_t k = 0; k < form.blocks.size(); ++k, ++record) {
       row.push_back(record);
-      std::printf("%9.2f%c", 1e6 * run::median(record->samples), record->passed() ? ' ' : '!');
+      std::printf("%11.2f%c", 1e6 * run::median(record->samples), record->passed() ? ' ' : '!');
     }
     print_explanation(predicted, row);
   }
