@@ -102,7 +102,8 @@ class Bench(unittest.TestCase):
         calls = self.calls()
         self.assertTrue(all("/cuda/" in call for call in calls if call.startswith("run")), calls)
         self.assertTrue(all("--backend cuda" in call for call in calls if call.startswith(("table transfers", "work", "ladder"))))
-        self.assertIn("table block-size --backend cuda --out", "\n".join(calls))
+        for table, app in (("block-size", "gas"), ("block-size", "parachute"), ("abstraction", "springs")):
+            self.assertIn(f"table {table} --app {app} --backend cuda --out", "\n".join(calls))
         self.assertEqual(["alone/options-1.jsonl", "alone/options-4096.jsonl"], [name for name in self.made() if "alone" in name])
         self.assertEqual(["flow-step"], [name for name in self.names() if name.startswith(("flow-step", "springs-step"))])
 
