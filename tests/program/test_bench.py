@@ -104,6 +104,8 @@ class Bench(unittest.TestCase):
         self.assertTrue(all("--backend cuda" in call for call in calls if call.startswith(("table transfers", "work", "ladder"))))
         for app in ("gas", "options", "flow", "parachute"):
             self.assertIn(f"table block-size --app {app} --backend cuda --out", "\n".join(calls))
+        for app in ("gas", "springs", "flow"):
+            self.assertIn(f"table abstraction --app {app} --backend cuda --out", "\n".join(calls))
         self.assertEqual(["alone/options-1.jsonl", "alone/options-4096.jsonl"], [name for name in self.made() if "alone" in name])
         self.assertEqual(["flow-step"], [name for name in self.names() if name.startswith(("flow-step", "springs-step"))])
 
