@@ -3,6 +3,21 @@
 /// Numbers of the tables of [Shi], as printed, for comparison.
 namespace drogue::perf::dissertation {
 
+/// Table 4.1: the machine, whose clock of the GPU is printed as "1.15 Hz".
+struct Machine {
+  const char *cpu, *caches, *gpu, *gpu_memory, *registers, *os, *compiler, *cuda;
+};
+inline constexpr Machine table_4_1 = {
+    "two Xeon E5-2687W, 8 cores each, 3.1 GHz, 64 GB",
+    "L1 16 x 32 KB, L2 16 x 256 KB, L3 2 x 20 MB",
+    "two Quadro 6000, 14 multiprocessors, 448 cores, 1.15 GHz",
+    "6 GB global, 64 KB constant, 48 KB shared",
+    "32768 registers per multiprocessor",
+    "Fedora 18, kernel 3.9.2-200",
+    "GCC 4.7.2",
+    "Toolkit 5.0",
+};
+
 /// Table 4.2: resident blocks of the flux kernel on a multiprocessor of compute capability 2.0, by limit.
 struct OccupancyRow {
   int block, shared_bytes, by_registers, by_shared_memory, by_limit, blocks, threads, device_threads;
