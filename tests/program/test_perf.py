@@ -56,14 +56,14 @@ class Record(perf_program.PerfTest):
         records = self.records("rows.jsonl")
         self.assertEqual([f"gas-transfers/serial/pageable/{cells}{ours}" for ours in ("", "/ours") for cells in (1024, 8192)],
                          [record["case"] for record in records])
-        printed = {1024: (336, 118, 272, 726), 8192: (509, 363, 365, 1237)}
+        printed = {1024: (336, 118, 272, 726), 8192: (509, 363, 365, 1237, 25376)}
         for record in records:
             self.assert_timed(record, 7)
             self.assertEqual(FIELDS | {"facts"}, set(record))
             facts = record["facts"]
             self.assertEqual(("serial", "pageable"), (facts["backend"], facts["memory"]))
             self.assertEqual("ours" if record["case"].endswith("ours") else "seed", facts["method"])
-            thesis = dict(zip(("h2d_us", "compute_us", "d2h_us", "total_us"), printed[facts["cells"]]))
+            thesis = dict(zip(("h2d_us", "compute_us", "d2h_us", "total_us", "cpu_us"), printed[facts["cells"]]))
             self.assertEqual(thesis, facts["thesis"])
             parts = [facts["h2d_s"], facts["compute_s"], facts["d2h_s"]]
             self.assertTrue(all(0.0 < part < max(record["samples"]) for part in parts), facts)
