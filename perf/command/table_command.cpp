@@ -28,7 +28,7 @@ struct TableOptions {
 
 /// Tables of a mini-app.
 std::vector<std::string> tables_of(const std::string& app) {
-  if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling", "abstraction"};
+  if (app == "gas") return {"machine", "occupancy", "block-size", "transfers", "scaling", "abstraction"};
   if (app == "flow") return {"block-size", "pressure", "memory", "scaling", "abstraction"};
   if (app == "springs") return {"transfers", "scaling", "abstraction"};
   if (app == "parachute") return {"block-size", "transfers"};
@@ -74,6 +74,7 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
                       std::string(device::name(backend)) + "'; give --backend cuda");
   const device::Runtime runtime(kokkos);
   const device::DeviceFacts device = device::device_facts();
+  if (options.table == "machine") return print_machine(device);
   const nlohmann::json here = provenance(device);
   if (abstraction) return print_abstraction(options.app, backend, options.quick, here);
   if (block_size)
@@ -88,8 +89,9 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
 }
 
 ExitCode print_table(TableOptions options, const std::vector<std::string>& kokkos) {
-  require_name("table", options.table,
-               {"occupancy", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"});
+  require_name(
+      "table", options.table,
+      {"machine", "occupancy", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"});
   const bool of_flow = options.table == "pressure" || options.table == "memory" || options.scales_program();
   if (options.app.empty()) options.app = of_flow ? "flow" : "gas";
   require_app(options.app);
@@ -122,10 +124,10 @@ Command table_command(CLI::App& program) {
   const auto options = std::make_shared<TableOptions>();
   CLI::App* app = program.add_subcommand(
       "table", "Print a table, most of them of [Shi] (README.md cites it) beside our own numbers");
-  app->add_option(
-         "TABLE", options->table,
-         "occupancy (computed); block-size or transfers; scaling with size and threads; abstraction: "
-         "kernels in Kokkos against CUDA; pressure or memory of flow")
+  app->add_option("TABLE", options->table,
+                  "machine; occupancy (computed); block-size or transfers; scaling with size and threads; "
+                  "abstraction: "
+                  "kernels in Kokkos against CUDA; pressure or memory of flow")
       ->required();
   app->add_option("--app", options->app, app_help("Kernels that are measured"));
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")

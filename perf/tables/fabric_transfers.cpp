@@ -104,7 +104,6 @@ Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann
     print_transfer(name, records[i], printed);
     nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], printed);
     facts.update({{"cells", rows[i].printed.vertices}, {"substeps", rows[i].substeps}});
-    facts["thesis"]["cpu_us"] = rows[i].printed.cpu;
     table.add(records[i], provenance, facts);
   }
   return table;

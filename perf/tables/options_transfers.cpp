@@ -79,7 +79,6 @@ Table print_options_transfers(device::Backend backend, bool quick, const nlohman
     print_transfer(name, records[i], printed);
     nlohmann::json facts = transfer_facts(backend, lines[i].memory, records[i], printed);
     facts.update({{"cells", lines[i].printed.options}, {"mesh", lines[i].printed.mesh}, {"method", method}});
-    if (lines[i].printed.cpu > 0.0) facts["thesis"]["cpu_us"] = lines[i].printed.cpu;
     table.add(records[i], provenance, facts);
   }
   return table;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/device/backend.hpp"
+#include "kernels/device/runtime.hpp"
 #include "perf/measure/measurement.hpp"
 
 namespace drogue::perf {
@@ -20,6 +21,10 @@ struct Table {
 
 // The functions below print to standard output and block until all samples are measured. They throw what the
 // solvers throw.
+
+/// Table 4.1 of [Shi]: its machine beside this one. The record has no samples; its facts are those printed.
+/// Call it with an initialised runtime.
+Table print_machine(const device::DeviceFacts& device);
 
 /// Table 4.2 of [Shi] by the occupancy model, the occupancy of the step kernels of gas on `architecture`,
 /// such as "sm_90", and all kernels of `profile`, a file or folder for `read_profiles`, beside the model;

@@ -32,17 +32,19 @@ nlohmann::json transfer_facts(device::Backend backend, HostMemory memory, const 
                           {"h2d_s", run::median(record.parts.at("h2d"))},
                           {"compute_s", run::median(record.parts.at("compute"))},
                           {"d2h_s", run::median(record.parts.at("d2h"))}};
-  if (printed)
+  if (printed) {
     facts["thesis"] = {{"h2d_us", printed->h2d},
                        {"compute_us", printed->compute},
                        {"d2h_us", printed->d2h},
                        {"total_us", printed->total}};
+    if (printed->cpu > 0.0) facts["thesis"]["cpu_us"] = printed->cpu;
+  }
   return facts;
 }
 
 void print_transfer_heading(const std::string& row) {
-  std::printf("%s %10s %-10s %10s %-10s %10s %-10s %10s %-10s %-26s  error\n", row.c_str(), "H2D", "",
-              "compute", "", "D2H", "", "total", "", "95 % of the total");
+  std::printf("%s %12s %10s %-10s %10s %-10s %10s %-10s %10s %-10s %-26s  error\n", row.c_str(), "(CPU)",
+              "H2D", "", "compute", "", "D2H", "", "total", "", "95 % of the total");
 }
 
 void print_transfer(const std::string& row, const Record& record,
@@ -51,7 +53,9 @@ void print_transfer(const std::string& row, const Record& record,
     return printed ? std::optional(*printed.*part) : std::nullopt;
   };
   const run::MedianInterval total = run::median_interval(record.samples);
-  std::printf("%s", row.c_str());
+  char cpu[32] = "";
+  if (printed && printed->cpu > 0.0) std::snprintf(cpu, sizeof cpu, "(%.0f)", printed->cpu);
+  std::printf("%s %12s", row.c_str(), cpu);
   print_part(run::median(record.parts.at("h2d")), of(&PrintedTimes::h2d));
   print_part(run::median(record.parts.at("compute")), of(&PrintedTimes::compute));
   print_part(run::median(record.parts.at("d2h")), of(&PrintedTimes::d2h));

@@ -18,15 +18,15 @@ std::vector<HostMemory> host_memories(device::Backend backend);
 /// Limiting resource of copies around the work of a backend, in words; `on_host` that of the work on a host.
 std::string transfer_bound(device::Backend backend, const std::string& on_host);
 
-/// Times that [Shi] prints, us.
+/// Times that [Shi] prints, us; of the CPU 0 where none is printed.
 struct PrintedTimes {
-  double h2d, compute, d2h, total;
+  double cpu, h2d, compute, d2h, total;
 };
 
 /// Times of a row of a table of [Shi].
 template <class Row>
 PrintedTimes printed_times(const Row& row) {
-  return {row.h2d, row.compute, row.d2h, row.total};
+  return {row.cpu, row.h2d, row.compute, row.d2h, row.total};
 }
 
 /// Facts of all rows of transfers: backend, memory, medians of the parts and, if given, the times of [Shi].
@@ -37,8 +37,8 @@ nlohmann::json transfer_facts(device::Backend backend, HostMemory memory, const 
 /// Prints the heading of the columns of `print_transfer` behind that of the names of rows.
 void print_transfer_heading(const std::string& row);
 
-/// Prints a row: medians of the parts and of their sum, us, each with the time of [Shi] in brackets, the
-/// interval of the sum, error and verdict.
+/// Prints a row: medians of the parts and of their sum, us, each with the time of [Shi] in brackets, as its
+/// time on a CPU, the interval of the sum, error and verdict.
 void print_transfer(const std::string& row, const Record& record, const std::optional<PrintedTimes>& printed);
 
 }  // namespace drogue::perf

@@ -56,14 +56,14 @@ class Record(perf_program.PerfTest):
         records = self.records("rows.jsonl")
         self.assertEqual([f"gas-transfers/serial/pageable/{cells}{ours}" for ours in ("", "/ours") for cells in (1024, 8192)],
                          [record["case"] for record in records])
-        printed = {1024: (336, 118, 272, 726), 8192: (509, 363, 365, 1237)}
+        printed = {1024: (336, 118, 272, 726), 8192: (509, 363, 365, 1237, 25376)}
         for record in records:
             self.assert_timed(record, 7)
             self.assertEqual(FIELDS | {"facts"}, set(record))
             facts = record["facts"]
             self.assertEqual(("serial", "pageable"), (facts["backend"], facts["memory"]))
             self.assertEqual("ours" if record["case"].endswith("ours") else "seed", facts["method"])
-            thesis = dict(zip(("h2d_us", "compute_us", "d2h_us", "total_us"), printed[facts["cells"]]))
+            thesis = dict(zip(("h2d_us", "compute_us", "d2h_us", "total_us", "cpu_us"), printed[facts["cells"]]))
             self.assertEqual(thesis, facts["thesis"])
             parts = [facts["h2d_s"], facts["compute_s"], facts["d2h_s"]]
             self.assertTrue(all(0.0 < part < max(record["samples"]) for part in parts), facts)
@@ -100,6 +100,17 @@ class Record(perf_program.PerfTest):
             self.assert_timed(record, 7)
             self.assertEqual({"cpu_us": 223565, "h2d_us": 171, "compute_us": 41328, "d2h_us": 644, "total_us": 42143},
                              record["facts"]["thesis"])
+
+    def test_machine_is_described_beside_that_of_the_dissertation(self):
+        text = self.expect(0, "table", "machine", "--backend", "serial", "--out", "rows.jsonl").stdout
+        for words in ("Table 4.1", "Xeon E5-2687W", "Quadro 6000", "GCC 4.7.2"):
+            self.assertIn(words, text)
+        (record,) = self.records("rows.jsonl")
+        host = record["facts"]["host"]
+        self.assertEqual(host["cpu"], record["provenance"]["cpu"])
+        self.assertIn(host["cpu"], text)
+        self.assertGreaterEqual(host["cores"], 1)
+        self.assertGreater(host["memory_bytes"], 1e8)
 
     def test_options_transfers_compare_both_schemes(self):
         text = self.expect(0, "table", "transfers", "--app", "options", "--quick", "--backend", "serial", "--out",
@@ -481,7 +492,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling, abstraction"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["table", "scaling", "--app", "parachute"], "valid names are block-size, transfers"),
-                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling, abstraction"),
+                            (["table", "pressure", "--app", "gas"], "valid names are machine, occupancy, block-size, transfers, scaling, abstraction"),
                             (["table", "scaling", "--weak", "--app", "gas"], "weak scaling and ranks have --app flow"),
                             (["table", "scaling", "--most", "2"], "--most needs --weak or --over ranks"),
                             (["table", "memory", "--over", "ranks"], "belong to the table scaling"),

@@ -1,0 +1,123 @@
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "common/program/provenance.hpp"
+#include "kernels/device/gpu_hardware.hpp"
+#include "kernels/device/host_cores.hpp"
+#include "perf/measure/record.hpp"
+#include "perf/tables/dissertation.hpp"
+#include "perf/tables/tables.hpp"
+
+namespace drogue::perf {
+namespace {
+
+/// Value of sysconf(3), 0 for an unknown one.
+std::int64_t system_fact(int name) { return std::max<std::int64_t>(0, sysconf(name)); }
+
+/// First value of `key` in a file of lines `key<separator>value`, without quotation marks; empty if absent.
+std::string value_in(const char* path, const std::string& key, char separator) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t end = line.find(separator);
+    if (!line.starts_with(key) || end == std::string::npos) continue;
+    std::string value = line.substr(end + 1);
+    std::erase(value, '"');
+    return value.substr(std::min(value.size(), value.find_first_not_of(' ')));
+  }
+  return "";
+}
+
+/// Clock of the first core at this moment, Hz; 0 if the system does not state it.
+double host_clock() {
+  const std::string mhz = value_in("/proc/cpuinfo", "cpu MHz", ':');
+  return mhz.empty() ? 0.0 : 1e6 * std::stod(mhz);
+}
+
+/// `value` over `unit` with the name of the unit; "not stated" for 0.
+std::string amount(double value, double unit, const char* name) {
+  if (value == 0.0) return "not stated";
+  char text[48];
+  std::snprintf(text, sizeof text, "%.4g %s", value / unit, name);
+  return text;
+}
+
+std::string bytes(const nlohmann::json& facts, const char* key) {
+  constexpr double kib = 1024.0, mib = kib * kib, gib = kib * mib;
+  const double value = facts.at(key).get<double>();
+  return value >= gib   ? amount(value, gib, "GiB")
+         : value >= mib ? amount(value, mib, "MiB")
+                        : amount(value, kib, "KiB");
+}
+
+nlohmann::json host_facts() {
+  utsname system{};
+  uname(&system);
+  return {{"cpu", cpu_model()},
+          {"cores", device::host_cores().online},
+          {"clock_hz", host_clock()},
+          {"memory_bytes", system_fact(_SC_PHYS_PAGES) * system_fact(_SC_PAGESIZE)},
+          {"l1_bytes", system_fact(_SC_LEVEL1_DCACHE_SIZE)},
+          {"l2_bytes", system_fact(_SC_LEVEL2_CACHE_SIZE)},
+          {"l3_bytes", system_fact(_SC_LEVEL3_CACHE_SIZE)},
+          {"os", value_in("/etc/os-release", "PRETTY_NAME", '=')},
+          {"kernel", std::string(system.sysname) + " " + system.release}};
+}
+
+nlohmann::json gpu_facts(const std::string& name) {
+  const device::GpuHardware gpu = device::gpu_hardware();
+  return {{"gpu", name},
+          {"multiprocessors", gpu.multiprocessors},
+          {"clock_hz", 1e3 * gpu.clock_khz},
+          {"memory_bytes", gpu.memory},
+          {"constant_bytes", gpu.constant},
+          {"shared_bytes", gpu.shared},
+          {"l2_bytes", gpu.l2},
+          {"registers", gpu.registers}};
+}
+
+void print_line(const char* part, const char* printed, const std::string& here) {
+  std::printf("%-9s %-58s %s\n", part, printed, here.c_str());
+}
+
+}  // namespace
+
+Table print_machine(const device::DeviceFacts& device) {
+  const nlohmann::json host = host_facts(), gpu = gpu_facts(device.gpu), here = provenance(device);
+  std::printf("Table 4.1: the machine of [Shi], and this one\n\n");
+  print_line("CPU", dissertation::table_4_1.cpu,
+             host["cpu"].get<std::string>() + ", " + std::to_string(host["cores"].get<int>()) + " cores, " +
+                 amount(host["clock_hz"].get<double>(), 1e9, "GHz") + ", " + bytes(host, "memory_bytes"));
+  print_line("", dissertation::table_4_1.caches,
+             "L1 " + bytes(host, "l1_bytes") + ", L2 " + bytes(host, "l2_bytes") + ", L3 " +
+                 bytes(host, "l3_bytes"));
+  if (device.gpu.empty()) {
+    print_line("GPU", dissertation::table_4_1.gpu, "none");
+  } else {
+    print_line("GPU", dissertation::table_4_1.gpu,
+               device.gpu + ", " + std::to_string(gpu["multiprocessors"].get<int>()) + " multiprocessors, " +
+                   amount(gpu["clock_hz"].get<double>(), 1e9, "GHz"));
+    print_line("", dissertation::table_4_1.gpu_memory,
+               bytes(gpu, "memory_bytes") + " global, " + bytes(gpu, "constant_bytes") + " constant, " +
+                   bytes(gpu, "shared_bytes") + " shared per multiprocessor, L2 " + bytes(gpu, "l2_bytes"));
+    print_line("", dissertation::table_4_1.registers,
+               std::to_string(gpu["registers"].get<int>()) + " registers per multiprocessor");
+  }
+  print_line("OS", dissertation::table_4_1.os,
+             host["os"].get<std::string>() + ", " + host["kernel"].get<std::string>());
+  print_line("compiler", dissertation::table_4_1.compiler, here["compiler"].get<std::string>());
+  print_line("CUDA", dissertation::table_4_1.cuda,
+             device.driver.empty() ? "none" : "driver " + device.driver);
+  Record record;
+  record.name = "machine";
+  record.unit_of_work = "machine";
+  record.bound = "none";
+  Table table;
+  table.add(record, here, {{"host", host}, {"device", device.gpu.empty() ? nlohmann::json() : gpu}});
+  return table;
+}
+
+}  // namespace drogue::perf
