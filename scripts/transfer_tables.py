@@ -21,9 +21,11 @@ HEAD = """# Transfers: tables 5.5 to 5.8 of [Shi]
 
 Written by `scripts/transfer_tables.py` from the records that `drogue-perf table transfers --app A --out FILE` wrote:
 copy to the device, compute, copy to the host, total, microseconds. In brackets: the times of [Shi] on its Quadro 6000.
-Parts and total are medians of their own, which need not add up.
+Parts and total are medians of their own, which need not add up. CPU: the computation of the row on one core, and its
+ratios to compute and total, in brackets those of the CPU of [Shi]; a dash where the record has no such time.
 """
 PARTS = {"h2d": "H2D", "compute": "compute", "d2h": "D2H", "total": "total"}
+ON_CORE = ["CPU", "CPU / compute", "CPU / total"]
 
 
 class Row:
@@ -38,21 +40,32 @@ class Row:
         self.memory = facts.get("memory") or ("pinned" if self.app == "options" and self.ours else "pageable")
         self.time = {part: 1e6 * facts[f"{part}_s"] for part in PARTS if part != "total"}
         self.time["total"] = 1e6 * statistics.median(record["samples"])
-        self.thesis = {part: facts.get("thesis", {}).get(f"{part}_us") for part in PARTS}
+        self.thesis = {part: facts.get("thesis", {}).get(f"{part}_us") for part in (*PARTS, "cpu")}
+        self.core = 1e6 * facts["cpu_s"] if "cpu_s" in facts else None
         self.copies = self.time["h2d"] + self.time["d2h"]
 
     @property
     def scheme(self):
         return "ours" if self.ours else "of [Shi]"
 
-    def cells(self):
-        """Cells of the table: what is measured, times, error."""
+    def on_core(self):
+        """Cells of the columns of one core."""
+        found = []
+        for part in (None, "compute", "total"):
+            core, printed = self.core, self.thesis["cpu"]
+            if part:
+                core, printed = core and core / self.time[part], printed and printed / self.thesis[part]
+            found.append((number(core) if core else "-") + (f" ({number(printed)})" if printed else ""))
+        return found
+
+    def cells(self, with_core):
+        """Cells of the table: what is measured, times, on request those of one core, error."""
         place = {"options": [str(self.size), str(self.mesh)], "gas": [str(self.size)]}.get(self.app, [str(self.size), str(self.steps)])
         if self.app == "parachute":
             place[0] = self.facts["grid"]
         scheme = [self.scheme] if self.app in ("gas", "options") else []
         times = [number(self.time[part]) + (f" ({self.thesis[part]:.0f})" if self.thesis[part] else "") for part in PARTS]
-        return [*scheme, self.memory, *place, *times, error_of(self.record)]
+        return [*scheme, self.memory, *place, *times, *(self.on_core() if with_core else []), error_of(self.record)]
 
 
 def number(value):
@@ -144,10 +157,11 @@ def section(app, file):
     machine = here["gpu"] if records[0]["facts"]["backend"] == "cuda" else re.sub(r"\((R|TM)\)", "", here["cpu"])
     source = (f"{machine}, {here['date'][:10]}, commit {here['git']} ([records](evidence/{file.name})): `drogue-perf table transfers "
               f"--app {app} --backend {records[0]['facts']['backend']}`.")  # fmt: skip
-    heading = [*columns, *PARTS.values(), "error"]
+    with_core = any(row.core or row.thesis["cpu"] for row in rows)
+    heading = [*columns, *PARTS.values(), *(ON_CORE if with_core else []), "error"]
     left = columns.index("memory") + 1
     lines = ["| " + " | ".join(heading) + " |", "|" + "---|" * left + "---:|" * (len(heading) - left)]
-    lines += ["| " + " | ".join(row.cells()) + " |" for row in rows]
+    lines += ["| " + " | ".join(row.cells(with_core)) + " |" for row in rows]
     return f"\n## {title}\n" + wrapped([words(rows)]) + "\n" + wrapped([source, "", *lines])
 
 

@@ -86,9 +86,7 @@ Case case_of(device::Backend backend, const FabricTransfer& row) {
 
 Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance) {
   const std::vector<FabricTransfer> rows = fabric_transfers_of(backend, quick);
-  std::vector<Case> cases;
-  for (const FabricTransfer& row : rows) cases.push_back(case_of(backend, row));
-  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
+  const auto [records, core] = measure_transfers(backend, rows, case_of, warm_up_rounds, kept_rounds(quick));
   std::printf(
       "Table 5.6: a stretched sheet on %s, microseconds from host to host; in brackets [Shi], on a "
       "Quadro 6000\nIts steps take a number of substeps that is not recorded: no ratio to it means anything "
@@ -101,8 +99,8 @@ Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann
     char name[64];
     std::snprintf(name, sizeof name, "%-8s  %8d  %8d", perf::name(rows[i].memory), rows[i].printed.vertices,
                   rows[i].substeps);
-    print_transfer(name, records[i], printed);
-    nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], printed);
+    print_transfer(name, records[i], printed, core[i]);
+    nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], printed, core[i]);
     facts.update({{"cells", rows[i].printed.vertices}, {"substeps", rows[i].substeps}});
     table.add(records[i], provenance, facts);
   }

@@ -101,9 +101,7 @@ Case case_of(device::Backend backend, const GasTransfer& row) {
 
 Table print_gas_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance) {
   const std::vector<GasTransfer> rows = gas_transfers_of(backend, quick);
-  std::vector<Case> cases;
-  for (const GasTransfer& row : rows) cases.push_back(case_of(backend, row));
-  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
+  const auto [records, core] = measure_transfers(backend, rows, case_of, warm_up_rounds, kept_rounds(quick));
   std::printf(
       "Table 5.5: steps of gas on %s, microseconds per step; in brackets [Shi], on a Quadro 6000\nseed: its "
       "scheme (--seed-mode), which copies the state to the device and the fluxes back in each of three "
@@ -118,8 +116,8 @@ Table print_gas_transfers(device::Backend backend, bool quick, const nlohmann::j
     char name[64];
     std::snprintf(name, sizeof name, "%-6s  %-8s  %6d", rows[i].method(), perf::name(rows[i].memory),
                   rows[i].printed.cells);
-    print_transfer(name, records[i], printed);
-    nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], printed);
+    print_transfer(name, records[i], printed, core[i]);
+    nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], printed, core[i]);
     facts.update({{"cells", rows[i].printed.cells}, {"method", rows[i].method()}});
     table.add(records[i], provenance, facts);
   }

@@ -60,9 +60,8 @@ Case case_of(device::Backend backend, const OptionsTransfer& line) {
 
 Table print_options_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance) {
   const std::vector<OptionsTransfer> lines = options_transfers_of(backend, quick);
-  std::vector<Case> cases;
-  for (const OptionsTransfer& line : lines) cases.push_back(case_of(backend, line));
-  const std::vector<Record> records = measure(cases, options_warm_up_rounds, options_rounds);
+  const auto [records, core] =
+      measure_transfers(backend, lines, case_of, options_warm_up_rounds, options_rounds);
   std::printf(
       "Tables 5.7 and 5.8: American puts on %s, microseconds from host to host; in brackets [Shi], "
       "on a\nQuadro 6000, whose first copy holds the start of CUDA. Method seed is its scheme, "
@@ -76,8 +75,8 @@ Table print_options_transfers(device::Backend backend, bool quick, const nlohman
     char name[64];
     std::snprintf(name, sizeof name, "%-6s  %-8s  %7d  %4d", method, perf::name(lines[i].memory),
                   lines[i].printed.options, lines[i].printed.mesh);
-    print_transfer(name, records[i], printed);
-    nlohmann::json facts = transfer_facts(backend, lines[i].memory, records[i], printed);
+    print_transfer(name, records[i], printed, core[i]);
+    nlohmann::json facts = transfer_facts(backend, lines[i].memory, records[i], printed, core[i]);
     facts.update({{"cells", lines[i].printed.options}, {"mesh", lines[i].printed.mesh}, {"method", method}});
     table.add(records[i], provenance, facts);
   }

@@ -72,8 +72,8 @@ Table print_parachute_transfers(device::Backend backend, bool quick, const nlohm
     const std::string grid = streams::text(rows[i].cells);
     char text[64];
     std::snprintf(text, sizeof text, "%-8s  %12s  %5ld", name(rows[i].memory), grid.c_str(), rows[i].steps);
-    print_transfer(text, records[i], std::nullopt);
-    nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], std::nullopt);
+    print_transfer(text, records[i], std::nullopt, std::nullopt);
+    nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], std::nullopt, std::nullopt);
     const auto& [nx, ny, nz] = rows[i].cells;
     facts.update(
         {{"cells", static_cast<std::int64_t>(nx) * ny * nz}, {"grid", grid}, {"substeps", rows[i].steps}});

@@ -18,27 +18,57 @@ std::vector<HostMemory> host_memories(device::Backend backend);
 /// Limiting resource of copies around the work of a backend, in words; `on_host` that of the work on a host.
 std::string transfer_bound(device::Backend backend, const std::string& on_host);
 
-/// Times that [Shi] prints, us; of the CPU 0 where none is printed.
+/// Times that [Shi] prints, us.
 struct PrintedTimes {
-  double cpu, h2d, compute, d2h, total;
+  double h2d, compute, d2h, total;
+  std::optional<double> cpu;  ///< of one core
 };
 
-/// Times of a row of a table of [Shi].
+/// Times of a row of a table of [Shi], whose `cpu` is 0 where none is printed.
 template <class Row>
 PrintedTimes printed_times(const Row& row) {
-  return {row.cpu, row.h2d, row.compute, row.d2h, row.total};
+  return {row.h2d, row.compute, row.d2h, row.total, row.cpu > 0.0 ? std::optional(row.cpu) : std::nullopt};
 }
 
-/// Facts of all rows of transfers: backend, memory, medians of the parts and, if given, the times of [Shi].
-/// Does not throw.
-nlohmann::json transfer_facts(device::Backend backend, HostMemory memory, const Record& record,
-                              const std::optional<PrintedTimes>& printed);
+/// Measured rows of a table.
+struct Transfers {
+  std::vector<Record> records;
+  /// Medians of the computation on one core, s. Empty: Serial is not compiled in, or the row failed its check
+  /// there.
+  std::vector<std::optional<double>> core;
+};
 
-/// Prints the heading of the columns of `print_transfer` behind that of the names of rows.
+/// Measures `cases` of `backend`, and before them the same rows on Serial, `on_core`, of which those of one
+/// name are measured once, in few rounds. Blocks and throws as `measure`.
+Transfers measure_transfers(device::Backend backend, const std::vector<Case>& cases,
+                            const std::vector<Case>& on_core, int warm_up, int rounds);
+
+/// Measures rows of which `case_of` makes cases; on Serial they do not differ in their memory.
+template <class Row>
+Transfers measure_transfers(device::Backend backend, const std::vector<Row>& rows,
+                            Case (*case_of)(device::Backend, const Row&), int warm_up, int rounds) {
+  std::vector<Case> cases, on_core;
+  for (Row row : rows) {
+    cases.push_back(case_of(backend, row));
+    row.memory = HostMemory::pageable;
+    on_core.push_back(case_of(device::Backend::serial, row));
+  }
+  return measure_transfers(backend, cases, on_core, warm_up, rounds);
+}
+
+/// Facts of all rows of transfers: backend, memory, medians of the parts and, if given, the times of [Shi]
+/// and that of one core. Does not throw.
+nlohmann::json transfer_facts(device::Backend backend, HostMemory memory, const Record& record,
+                              const std::optional<PrintedTimes>& printed, const std::optional<double>& core);
+
+/// Prints a note on one core, and the heading of the columns of `print_transfer` behind that of the names of
+/// rows.
 void print_transfer_heading(const std::string& row);
 
-/// Prints a row: medians of the parts and of their sum, us, each with the time of [Shi] in brackets, as its
-/// time on a CPU, the interval of the sum, error and verdict.
-void print_transfer(const std::string& row, const Record& record, const std::optional<PrintedTimes>& printed);
+/// Prints a row: medians of the parts and of their sum, us, the computation on one core (`core`, s) and its
+/// ratios to compute and total, each with the value of [Shi] in brackets, the interval of the sum, error and
+/// verdict; `-` where a time is not known.
+void print_transfer(const std::string& row, const Record& record, const std::optional<PrintedTimes>& printed,
+                    const std::optional<double>& core);
 
 }  // namespace drogue::perf

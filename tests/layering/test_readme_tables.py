@@ -129,6 +129,18 @@ class Transfers(unittest.TestCase):
         self.assertIn("40 % of 100 us with pageable memory and 40 % of 100 us with pinned memory", words)
         self.assertIn("a step of ours takes 100 us, copies included (40 %)", words)
 
+    def test_shows_computation_on_one_core_beside_the_cpu_of_the_dissertation(self):
+        thesis = {"h2d_us": 500, "compute_us": 300, "d2h_us": 200, "total_us": 1000}
+        row = {"memory": "pageable", "method": "seed"}
+        self.write("gas", *(row | {"cells": cells, "thesis": thesis | printed} | core
+                            for cells, printed, core in ((1024, {}, {"cpu_s": 6e-4}), (2048, {"cpu_us": 6000}, {"cpu_s": 1.2e-3}),
+                                                         (3072, {"cpu_us": 9000}, {}))))
+        text = transfer_tables.page(self.evidence)
+        self.assertIn("| total | CPU | CPU / compute | CPU / total | error |", text)
+        cells = {line.split(" | ")[2]: line.split(" | ")[7:10] for line in text.splitlines() if line.startswith("| of [Shi]")}
+        self.assertEqual({"1024": ["600", "10", "6"], "2048": ["1200 (6000)", "20 (20)", "12 (6)"],
+                          "3072": ["- (9000)", "- (30)", "- (9)"]}, cells)
+
     def test_parachutes_have_no_times_of_the_dissertation(self):
         self.write("parachute", *({"cells": 3456, "grid": "12x12x24", "memory": "pageable", "substeps": steps} for steps in (1, 20)))
         text = transfer_tables.page(self.evidence)

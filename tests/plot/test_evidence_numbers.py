@@ -11,6 +11,8 @@ from plot.evidence.block_sizes import blocks_figure, times
 from plot.evidence.records import read_records
 from plot.evidence.roofline import ceilings, points, roofline_figure
 from plot.evidence.steps import measured, vector_bits, verdict
+from plot.evidence.transfers import core_times, transfers_figure
+from plot.evidence.transfers import times as transfer_times
 from plot.evidence.work_precision import (
     TimeToError,
     best_scheme,
@@ -246,6 +248,28 @@ class Devices(Folder):
         self.assertEqual(rows[1], ["1\u2009024", "[Shi]", "336", "118", "272", "726", ""])
         self.assertEqual(rows[3], ["1\u2009024", "pinned", "16.8", "40", "13.6", "70.4", "10.3"])
         self.assertEqual(rows[5], ["1\u2009024", "ours, pinned", "1", "5", "1", "7", "104"])
+
+    def test_transfers_draw_computation_on_one_core(self):
+        found = []
+        for line in records.transfers():
+            facts = line["facts"]
+            core = {"cpu_s": 2e-4 if facts.get("method") == "ours" else 8e-4}
+            printed = {"cpu_us": 6896} if facts["cells"] > 1024 else {}
+            found.append(line | {"facts": facts | core | {"thesis": facts["thesis"] | printed}})
+        evidence = self.evidence(found)
+        curves = core_times(transfer_times(evidence.records))
+        meshes = range(1024, 8193, 1024)
+        self.assertEqual({"[Shi]": dict.fromkeys(meshes[1:], 6896.0), "its scheme": dict.fromkeys(meshes, 800.0),
+                          "ours": dict.fromkeys(meshes, 200.0)}, curves)
+        bars, *_, core = axes = transfers_figure("Transfers", evidence.machines[0], evidence.records).axes
+        self.assertEqual(["[Shi]", "pageable", "pinned", "ours, pageable", "ours, pinned", "computation on one core"],
+                         [panel.get_title("left") for panel in axes])
+        self.assertEqual((3, "log", "linear"), (len(core.lines), core.get_yscale(), bars.get_yscale()))
+        self.assertEqual(bars.get_ylim(), axes[1].get_ylim())
+        self.assertNotEqual(bars.get_ylim(), axes[3].get_ylim())
+        page, _ = self.page(found)
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
+        self.assertEqual(["one core (µs)", "", "800", "800", "200", "200"], [row[6] for row in rows[:6]])
 
     def test_block_sizes_have_panel_per_form_and_curve_per_size(self):
         evidence = self.evidence(records.blocks())

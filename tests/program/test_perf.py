@@ -12,6 +12,7 @@ import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
+import gas_program
 import perf_program
 from rank_processes import LAUNCHER, RANK_ENVIRONMENT
 
@@ -65,11 +66,25 @@ class Record(perf_program.PerfTest):
             self.assertEqual("ours" if record["case"].endswith("ours") else "seed", facts["method"])
             thesis = dict(zip(("h2d_us", "compute_us", "d2h_us", "total_us", "cpu_us"), printed[facts["cells"]]))
             self.assertEqual(thesis, facts["thesis"])
+            self.assertEqual(facts["compute_s"], facts["cpu_s"])
             parts = [facts["h2d_s"], facts["compute_s"], facts["d2h_s"]]
             self.assertTrue(all(0.0 < part < max(record["samples"]) for part in parts), facts)
             # A sample is the sum of its parts; the median of sums differs from the sum of medians.
             self.assertTrue(min(record["samples"]) / 2 < sum(parts) < 2 * max(record["samples"]), facts)
 
+    @unittest.skipUnless({"serial", "openmp"} <= set(gas_program.backends()), "a build without Serial or OpenMP")
+    def test_transfers_of_another_backend_measure_one_core(self):
+        text = self.expect(0, "table", "transfers", "--quick", "--backend", "openmp", "--out", "rows.jsonl").stdout
+        rows = [line for line in text.splitlines() if " 8192 " in line]
+        records = [record for record in self.records("rows.jsonl") if record["facts"]["cells"] == 8192]
+        self.assertEqual(2, len(records))
+        for row, record in zip(rows, records, strict=True):
+            facts = record["facts"]
+            self.assertTrue(0.0 < facts["cpu_s"] != facts["compute_s"], facts)
+            *_, core, to_compute, to_total = re.findall(r"([\d.]+) +\(([\d.]+)\)", row)
+            self.assertEqual((f"{1e6 * facts['cpu_s']:.1f}", "25376"), core)
+            self.assertEqual((f"{facts['cpu_s'] / facts['compute_s']:.3g}", "69.9"), to_compute)
+            self.assertEqual((f"{facts['cpu_s'] / record['median']:.3g}", "20.5"), to_total)
 
     def test_records_fabric_steps(self):
         self.expect(0, "run", "--quick", "--filter", "^springs-step/(serial|scatter-loop)/2640$", "--out", "run.jsonl")

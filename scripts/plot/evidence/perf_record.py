@@ -76,11 +76,11 @@ _OPTIONAL = {
     "ceiling": {"flops": float, "bytes": float, "instructions": float},
     "scaling": {"ranks": int, "scaling": str},
     "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
-    "gas-transfers": {"thesis": dict, "method": str},
+    "gas-transfers": {"thesis": dict, "method": str, "cpu_s": float},
     "springs-solution": {"status": str, "message": str},
-    "springs-transfers": {"thesis": dict, "memory": str},
+    "springs-transfers": {"thesis": dict, "memory": str, "cpu_s": float},
     "options-solution": {"exercise": str, "grids": str, "intervals_a_step": str, "status": str, "message": str},
-    "options-transfers": {"thesis": dict, "memory": str},
+    "options-transfers": {"thesis": dict, "memory": str, "cpu_s": float},
 }  # fmt: skip
 KINDS = frozenset(_FACTS)
 _TYPES = {str: "text", int: "positive whole number", float: "number", dict: "JSON object"}

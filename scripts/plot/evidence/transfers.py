@@ -13,6 +13,8 @@ _THESIS = "[Shi]"
 _PARTS = {"h2d": "host to device", "compute": "compute", "d2h": "device to host"}
 _NAMES = _PARTS | {"total": "total"}
 _COLOURS = dict(zip(_PARTS, (style.PALETTE[5], style.PALETTE[0], style.PALETTE[4])))
+_OURS, _ITS_SCHEME = "ours", "its scheme"
+_CORE_COLOURS = {_THESIS: style.MUTED, _ITS_SCHEME: style.PALETTE[1], _OURS: style.PALETTE[0]}
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def _source(record: Record) -> str:
     """Scheme and kind of host memory, or number of steps between two copies, and memory if it is not pageable."""
     steps, memory = record.facts.get("substeps"), record.facts.get("memory", "pageable")
     if steps is None:
-        return f"ours, {memory}" if record.facts.get("method") == "ours" else memory
+        return f"{_OURS}, {memory}" if record.facts.get("method") == "ours" else memory
     words = f"{steps} step" + ("s" if steps > 1 else "")
     return words if memory == "pageable" else f"{words}, {memory}"
 
@@ -89,17 +91,43 @@ def sources(records: list[Record]) -> list[str]:
 
 
 def times(records: list[Record]) -> dict[tuple[int, str], dict[str, float]]:
-    """Parts and total of the time per step, us, by (mesh, source) with increasing mesh."""
+    """Parts and total of the time per step and, where known, computation on one core (`cpu`), us, by (mesh, source)."""
     found = {}
     for record in records:
         facts = record.facts
         parts = {part: 1e6 * facts[f"{part}_s"] for part in _PARTS}
-        found[facts["cells"], _source(record)] = parts | {"total": 1e6 * record.median}
+        core = {"cpu": 1e6 * facts["cpu_s"]} if "cpu_s" in facts else {}
+        found[facts["cells"], _source(record)] = parts | {"total": 1e6 * record.median} | core
         thesis = facts.get("thesis") or {}
         if all(isinstance(thesis.get(f"{part}_us"), int | float) for part in _NAMES):
-            found[facts["cells"], _THESIS] = {part: float(thesis[f"{part}_us"]) for part in _NAMES}
+            known = [part for part in (*_NAMES, "cpu") if isinstance(thesis.get(f"{part}_us"), int | float)]
+            found[facts["cells"], _THESIS] = {part: float(thesis[f"{part}_us"]) for part in known}
     order = {name: index for index, name in enumerate(sources(records))}
     return dict(sorted(found.items(), key=lambda item: (item[0][0], order[item[0][1]])))
+
+
+def core_times(found: dict[tuple[int, str], dict[str, float]]) -> dict[str, dict[int, float]]:
+    """Computation on one core, us, by mesh: of [Shi], of its scheme and of ours."""
+    curves: dict[str, dict[int, float]] = {}
+    for (cells, source), parts in found.items():
+        if "cpu" in parts:
+            name = source if source == _THESIS else _OURS if source.startswith(_OURS) else _ITS_SCHEME
+            curves.setdefault(name, {})[cells] = parts["cpu"]
+    return curves
+
+
+def _draw_core(panel, meshes: list[int], curves: dict[str, dict[int, float]]):
+    """Computation on one core, the right half of figure 5.15 of [Shi], on a logarithmic axis."""
+    for name, curve in curves.items():
+        colour = _CORE_COLOURS[name]
+        place = [meshes.index(cells) for cells in curve]
+        panel.plot(place, list(curve.values()), "-o", color=colour, markersize=3.6, linewidth=1.2)
+        end = (place[-1], curve[meshes[place[-1]]])
+        panel.annotate(name, end, (0, 5), textcoords="offset points", ha="right", fontsize=7, color=colour)
+    panel.set_yscale("log")
+    panel.margins(y=0.15)
+    style.set_log_ticks(panel.yaxis)
+    panel.set_title("computation on one core", pad=8)
 
 
 def transfers_figure(title: str, machine: Machine, records: list[Record]):
@@ -107,18 +135,23 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
     found, kind = times(records), _KINDS[records[0].kind]
     panels = [name for name in sources(records) if any(source == name for _, source in found)]
     meshes = sorted({cells for cells, _ in found})
-    columns, rows_of_panels = min(len(panels), _PANELS_IN_A_ROW), -(-len(panels) // _PANELS_IN_A_ROW)
+    cores = core_times(found) if kind.compared else {}
+    count = len(panels) + bool(cores)
+    columns, rows_of_panels = min(count, _PANELS_IN_A_ROW), -(-count // _PANELS_IN_A_ROW)
     height, details = 0.5 + 2.8 * rows_of_panels, f"total above each bar; {'rows' if kind.compared else 'panels'} have scales of their own; {machine.name}"
-    figure, axes = plt.subplots(
-        rows_of_panels, columns, sharey="row" if kind.compared else False, squeeze=False
-    )
+    figure, axes = plt.subplots(rows_of_panels, columns, squeeze=False)
+    if kind.compared:
+        for index, panel in enumerate(axes.flat[: len(panels)]):
+            if index % columns:
+                panel.sharey(axes.flat[index - index % columns])
+                panel.tick_params(labelleft=False)
     legend = [("\u25a0", words, _COLOURS[part]) for part, words in _PARTS.items()]
     chart_width = 0.7 + (0.5 + 0.33 * max(len(meshes), 3)) * columns
     width = max(
         chart_width, style.heading_width(figure, title, legend), style.subtitle_width(figure, details)
     )
     figure.set_size_inches(width, height)
-    for empty in axes.flat[len(panels):]:
+    for empty in axes.flat[count:]:
         empty.set_visible(False)
     for panel, source in zip(axes.flat, panels):
         place = [index for index, cells in enumerate(meshes) if (cells, source) in found]
@@ -135,6 +168,9 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
                 color=style.MUTED,
             )  # fmt: skip
         panel.set_title(source, pad=8)
+    if cores:
+        _draw_core(axes.flat[len(panels)], meshes, cores)
+    for panel in axes.flat[:count]:
         panel.set_xticks(range(len(meshes)), [str(cells) for cells in meshes], rotation=60)
         panel.set_xlim(-0.6, len(meshes) - 0.4)
         panel.grid(axis="x", visible=False)
@@ -152,6 +188,8 @@ def transfers_table(records: list[Record]) -> Table:
     columns = [(kind.mesh, True), (kind.source, False)] + [
         (f"{words} (\u00b5s)", True) for words in _NAMES.values()
     ]
+    on_core = any("cpu" in parts for parts in found.values())
+    columns += [("one core (\u00b5s)", True)] if on_core else []
     columns += [("times as fast as [Shi]", True)] if kind.compared else []
     rows = []
     for (cells, source), parts in found.items():
@@ -160,6 +198,8 @@ def transfers_table(records: list[Record]) -> Table:
             source,
             *(html_page.format_number(parts[part]) for part in _NAMES),
         ]
+        if on_core:
+            row.append(html_page.format_number(parts["cpu"]) if "cpu" in parts else "")
         thesis = found.get((cells, _THESIS))
         if kind.compared:
             row.append(
