@@ -19,9 +19,11 @@ missing=0
 for case in "${cases[@]}"; do
   csv="$folder/${case//\//-}.csv"
   say "$case"
-  if ! eval "$("$perf" ncu "$case" --out "$csv")" >"$csv.log" 2>&1; then
+  code=0
+  eval "$("$perf" ncu "$case" --out "$csv")" >"$csv.log" 2>&1 || code=$?
+  if [ "$code" -ne 0 ]; then
     # ncu ends the program after the last launch that it profiles; some versions report that as a failure.
-    say "ncu ended with $?; its last lines: $(tail -n 2 "$csv.log" | tr '\n' ' ')"
+    say "ncu ended with $code; its last lines: $(tail -n 2 "$csv.log" | tr '\n' ' ')"
   fi
   if ! grep -q '^"[0-9]' "$csv" 2>/dev/null; then
     say "$case has no profiled kernel: $(grep -hE '^==(ERROR|WARNING)==' "$csv" "$csv.log" 2>/dev/null | head -n 2 | tr '\n' ' ')"

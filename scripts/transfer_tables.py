@@ -118,8 +118,10 @@ def options_words(rows):
     size = max(row.size for row in rows)
     theirs, ours = (pick(rows, size=size, ours=ours)[-1] for ours in (False, True))
     thesis = theirs.thesis["total"]
+    # This commit had masses of cells as weights of the scheme of [Shi].
+    note = " (three times that of the printed nodal weights, which came later)" if theirs.record["provenance"]["git"].startswith("8334d94") else ""
     return (f"{size} puts on a mesh of {theirs.mesh} take {1e-6 * thesis:.2f} s on the device of [Shi]. Its scheme takes "
-            f"{number(theirs.time['total'])} us here, with an error of {error_of(theirs.record)} of the strike: the puts of a "
+            f"{number(theirs.time['total'])} us here, with an error of {error_of(theirs.record)} of the strike{note}: the puts of a "
             "batch share the device, which [Shi] fills with the integrals of one put at a time. Ours takes "
             f"{number(ours.time['total'])} us with an error of {error_of(ours.record)}: a fourth of the steps, each on two grids for "
             "a stated error, with the convolution by panels of the jump measure. Copies are "

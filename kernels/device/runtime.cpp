@@ -52,14 +52,6 @@ bool checked_number(const std::vector<std::string>& arguments, const std::string
   return given;
 }
 
-int default_threads() {
-#if defined(KOKKOS_ENABLE_OPENMP)
-  return omp_get_max_threads();
-#else
-  return 1;
-#endif
-}
-
 bool are_waits_configured() {
   return std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr;
 }
@@ -116,6 +108,14 @@ class Runtime::ShortWaits {
   std::thread _thread;
 };
 
+int default_threads() {
+#if defined(KOKKOS_ENABLE_OPENMP)
+  return omp_get_max_threads();
+#else
+  return 1;
+#endif
+}
+
 Runtime::Runtime(const std::vector<std::string>& arguments, ThreadWaits waits) {
   Kokkos::Tools::Experimental::set_request_tool_settings_callback(without_global_fences);
   checked_number(arguments, "--kokkos-device-id", "KOKKOS_DEVICE_ID", 0, 1023);
@@ -131,10 +131,11 @@ Runtime::Runtime(const std::vector<std::string>& arguments, ThreadWaits waits) {
   pointers.insert(pointers.begin() + 1, quiet);
   auto count = static_cast<int>(pointers.size());
   pointers.push_back(nullptr);
+  // Read before the threads of this process start, which spin for some milliseconds after each loop.
+  const bool adapts = waits == ThreadWaits::adapted && !are_waits_configured();
+  const HostCores cores = adapts ? host_cores() : HostCores{};
   Kokkos::initialize(count, pointers.data());
-  if (waits == ThreadWaits::as_configured || openmp_threads() == 1 || are_waits_configured()) return;
-  const HostCores cores = host_cores();
-  if (!are_cores_shared(openmp_threads(), cores)) return;
+  if (!adapts || !are_cores_shared(openmp_threads(), cores)) return;
   _short_waits = std::make_unique<ShortWaits>(cores.allowed);
   shared_cores = true;
 }

@@ -12,6 +12,9 @@ enum class ThreadWaits {
   adapted,        ///< briefly on shared cores, before they sleep, unless the environment has settings
 };
 
+/// Threads of OpenMP of this process without options of Kokkos; 1 without OpenMP. Does not throw.
+[[nodiscard]] int default_threads();
+
 /// Initialises Kokkos for the lifetime of the object. Disables global fences around Kokkos Tools callbacks,
 /// so that profiling neither slows steps nor prevents graph capture.
 class Runtime {

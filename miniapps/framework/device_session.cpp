@@ -10,7 +10,7 @@ namespace drogue::framework {
 device::Backend choose_backend(const std::string& option, int useful_threads) {
   device::Backend backend = device::wanted_backend(option);
   if (option == "auto" && backend == device::Backend::openmp && device::is_present(device::Backend::serial) &&
-      (useful_threads == 1 || device::host_cores().allowed == 1))
+      (useful_threads == 1 || device::default_threads() == 1 || device::host_cores().allowed == 1))
     backend = device::Backend::serial;
   require_backend(backend);
   return backend;
@@ -31,9 +31,10 @@ DeviceSession::DeviceSession(device::Backend backend, const std::vector<std::str
 
 void DeviceSession::print_shared_cores(const std::string& program) const {
   if (device::cores_are_shared())
-    print_notice(program,
-                 "the threads of OpenMP share their cores: they sleep while they wait, and fewer work on a "
-                 "mesh; OMP_WAIT_POLICY=active prevents this");
+    print_notice(
+        program,
+        "the threads of OpenMP share their cores: they sleep while they wait, and fewer of them take "
+        "part in short loops");
 }
 
 void DeviceSession::describe(run::ResultDocument& result) const {

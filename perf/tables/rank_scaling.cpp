@@ -43,9 +43,10 @@ void require_launcher() {
   throw Failure(ExitCode::no_backend, "several ranks need mpirun, and no folder of PATH holds it");
 }
 
-int most_units(ScalingUnit unit, device::Backend backend) {
-  if (unit == ScalingUnit::ranks && device::needs_device(backend)) return device_count();
-  if (unit == ScalingUnit::threads && backend != device::Backend::openmp) return 1;
+int most_units(const ScalingRequest& request, device::Backend backend) {
+  if (request.unit == ScalingUnit::threads && backend != device::Backend::openmp) return 1;
+  if (request.most > 0) return request.most;
+  if (request.unit == ScalingUnit::ranks && device::needs_device(backend)) return device_count();
   return static_cast<int>(std::thread::hardware_concurrency());
 }
 
@@ -135,7 +136,7 @@ void add_backend(const ScalingRequest& request, device::Backend backend, bool qu
   const bool gpu = device::needs_device(backend);
   const int edge = quick ? 24 : gpu ? 256 : 64;
   std::vector<ScalingPoint> points;
-  for (const int units : unit_counts(request.most > 0 ? request.most : most_units(request.unit, backend))) {
+  for (const int units : unit_counts(most_units(request, backend))) {
     const std::array<int, 3> cells = scaled_cells({edge, edge, edge}, request.weak, units);
     const std::filesystem::path scene = folder.path() / ("scene-" + std::to_string(units) + ".toml");
     run::write_file_atomically(scene.string(), flow_scene(cells));

@@ -22,11 +22,11 @@ HAS_DEVICE = "cuda" in gas_program.backends()
 @unittest.skipIf(HAS_DEVICE, "auto takes the GPU")
 @gas_program.needs_openmp
 class Choice(gas_program.GasTest):
-    def backend_of(self, program, scene, *sets, first_core_only=False):
+    def backend_of(self, program, scene, *sets, first_core_only=False, **environment):
         restrict = (lambda: os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})) if first_core_only else None
         line = gas_program.arguments(scene, "--out", "run", "--overwrite", "--quiet", sets=sets, program=program)
         process = subprocess.run(line, cwd=self.folder, capture_output=True, text=True, check=False, preexec_fn=restrict,
-                                 env=gas_program.ENVIRONMENT)
+                                 env={**gas_program.ENVIRONMENT, **environment})
         self.assertIn(process.returncode, (0, 5), process.stderr)  # a shorter run need not pass its checks
         return self.result("run")["backend"]
 
@@ -39,6 +39,9 @@ class Choice(gas_program.GasTest):
 
     def test_one_core_takes_serial(self):
         self.assertEqual("serial", self.backend_of(gas_program.PROGRAM, "sod", *GAS, "mesh.cells=1024", first_core_only=True))
+
+    def test_one_thread_takes_serial(self):
+        self.assertEqual("serial", self.backend_of(gas_program.PROGRAM, "sod", *GAS, "mesh.cells=1024", OMP_NUM_THREADS="1"))
 
     def test_springs_take_threads_from_512_vertices(self):
         short = ["time.end_time=0.001", "output.times=[0.0]"]

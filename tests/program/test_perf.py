@@ -400,6 +400,10 @@ class ProgramScaling(perf_program.PerfTest):
         self.assert_records(self.scaled("--over", "ranks"), ("24x24x24", "24x24x24"), "strong")
         self.assert_records(self.scaled("--over", "ranks", "--weak"), ("24x24x24", "24x24x48"), "weak")
 
+    def test_serial_has_one_thread_whatever_the_most(self):
+        self.expect(0, "table", "scaling", "--weak", "--most", "2", "--backend", "serial", "--quick", "--out", "rows.jsonl")
+        self.assertEqual(["scaling/flow-step/serial/24x24x24/threads/1/weak"], [record["case"] for record in self.records("rows.jsonl")])
+
     def test_launcher_that_fails_gives_its_reason(self):
         launcher = self.folder / "mpirun"
         launcher.write_text("#!/bin/sh\necho ------\necho 'mpirun finds no slots.'\necho ------\nexit 1\n")

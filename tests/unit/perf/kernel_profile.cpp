@@ -106,6 +106,14 @@ TEST_F(ProfileFile, MergesLaunchesWithEqualResources) {
   EXPECT_DOUBLE_EQ(found[1].active_fraction, 0.125);
 }
 
+TEST_F(ProfileFile, ReportsErrorsOfNcuBesideProfiledKernels) {
+  const std::string some = std::string(header) + row(usual, "10", "5");
+  EXPECT_EQ(refusal(some + "==ERROR== Failed to profile kernel\n"),
+            ": ncu reports beside the profiled kernels: ==ERROR== Failed to profile kernel");
+  // ncu ended the program after the last launch that it was to profile.
+  EXPECT_EQ(read(some + "==ERROR== The application returned an error code (9).\n").size(), 1U);
+}
+
 TEST_F(ProfileFile, ReportsLinesThatAreNoProfile) {
   const std::string good(header);
   EXPECT_EQ(
