@@ -45,7 +45,7 @@ class RanksTest(options_program.OptionsTest):
     def begin_long_run(self):
         """Starts a run of minutes on three ranks; returns the launcher and the process of each rank."""
         lines = [row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(5000)]
-        launcher = self.begin(3, "price", self.write(batch(lines)), "--mesh", "512", "--steps", "128", "--result", "r.json")
+        launcher = self.begin(3, "price", self.write(batch(lines)), "--mesh", "1024", "--steps", "4096", "--result", "r.json")
         for _ in range(400):
             ranks = processes_of(launcher)
             if len(ranks) == 3 and any(name.startswith(".prices.csv") for name in self.names()):
