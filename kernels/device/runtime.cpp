@@ -157,9 +157,7 @@ std::string kokkos_version() {
 DeviceFacts device_facts() {
   DeviceFacts facts;
   facts.kokkos_version = kokkos_version();
-#if defined(KOKKOS_ENABLE_OPENMP)
-  facts.threads = Kokkos::OpenMP().concurrency();
-#endif
+  facts.threads = openmp_threads();
 #if defined(KOKKOS_ENABLE_CUDA)
   cudaDeviceProp properties;
   int driver = 0;
