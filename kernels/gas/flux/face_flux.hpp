@@ -41,7 +41,8 @@ struct Stencil {
 /// differences, the left-going part the last four in reverse order.
 template <class R>
 struct SplitDifferences {
-  R right[4], left[4];
+  // Initialised for compilers that keep the loop over k: they cannot see that it sets all elements, and warn.
+  R right[4]{}, left[4]{};
 
   /// Sets the parts of difference k from that of the flux, `df`, of the state, `du`, and the wave speed
   /// `alpha`, m/s. Does not throw.
