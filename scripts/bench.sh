@@ -101,7 +101,7 @@ record() {
 
 # cases NAME KINDS: the cases of `run` whose name begins with one of KINDS, if this machine has some.
 cases() {
-  local filter="^($2)/$here/"
+  local filter="^($2)/$here(/|$)"
   if grep -qE "$filter" <<<"$cases"; then record "$1" run --filter "$filter"; fi
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "kernels/fabric/elastic/adjacency.hpp"
 #include "kernels/reference/fabric/scatter_step.hpp"
@@ -77,7 +78,22 @@ Facts sheet_facts(device::Backend backend, const fabric::Parameters& p, const fa
   return facts;
 }
 
-Case sheet_case(device::Backend backend, int vertices, long steps, const FabricVariant& variant) {
+/// Sheet of several cases, made by the first that is prepared.
+class SharedSheet {
+ public:
+  explicit SharedSheet(int vertices) : _vertices(vertices) {}
+  const fabric::Parameters& parameters() {
+    if (!_parameters) _parameters = sheet::parameters(_vertices);
+    return *_parameters;
+  }
+
+ private:
+  int _vertices;
+  std::optional<fabric::Parameters> _parameters;
+};
+
+Case sheet_case(device::Backend backend, int vertices, const std::shared_ptr<SharedSheet>& sheet, long steps,
+                const FabricVariant& variant) {
   struct Run {
     fabric::Parameters p;
     std::unique_ptr<fabric::Solver> solver;
@@ -93,7 +109,7 @@ Case sheet_case(device::Backend backend, int vertices, long steps, const FabricV
               ? "latency between patches below 100k vertices, memory bandwidth above"
               : "loads of neighbours by the cores",
           [=] {
-            run->p = sheet::parameters(vertices);
+            run->p = sheet->parameters();
             variant.apply(run->p);
             run->solver = fabric::create_solver(backend, run->p);
             return sheet::steps(run->p, *run->solver, steps);
@@ -116,6 +132,7 @@ std::vector<FabricVariant> variants_of(int vertices, bool gpu) {
 std::vector<Case> fabric_cases(bool quick) {
   std::vector<Case> cases;
   for (const int vertices : quick ? std::vector{2640} : std::vector{2640, 15'625, 100'000, 1'000'000}) {
+    const auto sheet = std::make_shared<SharedSheet>(vertices);
     for (const device::Backend backend : device::compiled_backends()) {
       if (!device::is_present(backend)) continue;
       const bool gpu = backend == device::Backend::cuda;
@@ -124,7 +141,7 @@ std::vector<Case> fabric_cases(bool quick) {
       const long steps =
           gpu ? std::clamp(80'000'000L / vertices, 80L, 4096L) : std::max(4L, 150'000L / vertices);
       for (const FabricVariant& variant : variants_of(vertices, gpu))
-        cases.push_back(sheet_case(backend, vertices, steps, variant));
+        cases.push_back(sheet_case(backend, vertices, sheet, steps, variant));
     }
     if (vertices < 100'000) cases.push_back(scatter_case(vertices, std::max(4L, 50'000L / vertices)));
   }

@@ -81,7 +81,7 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
                                            : "FP64 issue of the cores",
           [=] {
             *solver = gas::create_solver(backend, p);
-            return sod::steps(p, **solver, steps);
+            return sod::steps(p, backend, **solver, steps);
           },
           [=] { return sod::l1_error(p, **solver); },
           sod::tolerance(p),

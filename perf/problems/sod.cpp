@@ -1,8 +1,11 @@
 #include "perf/problems/sod.hpp"
 
 #include <cmath>
+#include <memory>
+#include <memory_resource>
 
 #include "kernels/reference/gas/exact_riemann.hpp"
+#include "perf/memory/host_memory.hpp"
 
 namespace drogue::perf::sod {
 
@@ -32,9 +35,18 @@ Fields start(const gas::Parameters& p) {
   return fields;
 }
 
-Sample steps(const gas::Parameters& p, gas::Solver& solver, long count) {
-  return {[&solver, from = start(p)] {
-            solver.upload(0, {from[0], from[1], from[2]});
+Sample steps(const gas::Parameters& p, device::Backend backend, gas::Solver& solver, long count) {
+  struct Start {
+    std::shared_ptr<std::pmr::memory_resource> memory;
+    std::array<std::pmr::vector<double>, 3> fields;
+  };
+  const Fields fields = start(p);
+  const auto memory = host_memory(backend, HostMemory::pinned);
+  const auto copy = [&](std::size_t k) {
+    return std::pmr::vector<double>(fields[k].begin(), fields[k].end(), memory.get());
+  };
+  return {[&solver, from = std::make_shared<Start>(Start{memory, {copy(0), copy(1), copy(2)}})] {
+            solver.upload(0, {from->fields[0], from->fields[1], from->fields[2]});
             solver.start();
           },
           [&solver, count] {

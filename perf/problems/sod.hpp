@@ -26,8 +26,10 @@ double centre(const gas::Parameters& p, std::size_t i);
 /// Initial state of all cells.
 Fields start(const gas::Parameters& p);
 
-/// Sample of `count` steps from the initial state. `solver`, made for `p`, must outlive the sample. Blocking.
-Sample steps(const gas::Parameters& p, gas::Solver& solver, long count);
+/// Sample of `count` steps from the initial state, which is kept in pinned memory: pageable copies of the
+/// largest one take ten times as long as the steps. `solver`, made for `p` on `backend`, must outlive the
+/// sample. Blocking.
+Sample steps(const gas::Parameters& p, device::Backend backend, gas::Solver& solver, long count);
 
 /// L1 error of the density (kg/m^3) against the exact solution at `time` (s), per unit length.
 double l1_error(const gas::Parameters& p, const std::vector<double>& rho, double time);

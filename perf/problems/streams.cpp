@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/program/failure.hpp"
+#include "common/program/thread_parts.hpp"
 
 namespace drogue::perf::streams {
 
@@ -39,28 +40,28 @@ Sides sides_of(const flow::Parameters& p) {
   }
 }
 
-/// Values of a function (component, point) on the faces of each component, x fastest. Along the axis
-/// `uniform`, if it is 1 or 2, the first plane is repeated: large grids take seconds otherwise.
+/// Values of a function (component, point) on the faces of each component, x fastest; by all cores.
 template <class Function>
-VelocityArrays sampled(const flow::Parameters& p, const Function& function, std::size_t uniform = 3) {
+VelocityArrays sampled(const flow::Parameters& p, const Function& function) {
   VelocityArrays arrays;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::array<int, 3> n = flow::extents(p, static_cast<flow::StateField>(c));
-    const auto stride = static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(uniform == 2 ? n[1] : 1);
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j)
-        for (int i = 0; i < n[0]; ++i) {
-          const std::array<int, 3> index = {i, j, k};
-          if (uniform < 3 && index[uniform] > 0) {
-            arrays[c].push_back(arrays[c][arrays[c].size() - stride]);
-            continue;
+    const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
+    const std::size_t size = nx * ny * static_cast<std::size_t>(n[2]);
+    arrays[c].resize(size);
+    constexpr std::size_t faces_per_thread = 50'000;
+    for_thread_parts(
+        thread_parts(size, faces_per_thread), size,
+        [&](std::size_t /*part*/, std::size_t begin, std::size_t end) {
+          for (std::size_t entry = begin; entry < end; ++entry) {
+            const std::array<std::size_t, 3> index = {entry % nx, entry / nx % ny, entry / (nx * ny)};
+            std::array<double, 3> x{};
+            for (std::size_t axis = 0; axis < 3; ++axis)
+              x[axis] = p.low[axis] + (static_cast<double>(index[axis]) + (axis == c ? 0.0 : 0.5)) *
+                                          (p.high[axis] - p.low[axis]) / p.cells[axis];
+            arrays[c][entry] = function(c, x);
           }
-          std::array<double, 3> x{};
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            x[axis] = p.low[axis] +
-                      (index[axis] + (axis == c ? 0.0 : 0.5)) * (p.high[axis] - p.low[axis]) / p.cells[axis];
-          arrays[c].push_back(function(c, x));
-        }
+        });
   }
   return arrays;
 }
@@ -175,8 +176,7 @@ double relative_divergence(const flow::Parameters& p, flow::Solver& solver) {
 double exact_error(const flow::Parameters& p, flow::Solver& solver, long count) {
   const auto exact = [&](double time) {
     return sampled(
-        p, [&](std::size_t c, const std::array<double, 3>& x) { return exact_velocity(p, c, x, time); },
-        sides_of(p) == Sides::periodic ? 2 : 1);
+        p, [&](std::size_t c, const std::array<double, 3>& x) { return exact_velocity(p, c, x, time); });
   };
   const VelocityArrays first = exact(0.0);
   start_from(solver, first);

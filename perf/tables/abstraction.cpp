@@ -46,7 +46,7 @@ const char* name_of(Launches launches) { return launches == Launches::plain ? "p
 raw::GasProblem gas_problem(device::Backend backend, std::int64_t cells) {
   raw::GasProblem problem{sod::parameters(cells), {}, 0.0};
   const std::unique_ptr<gas::Solver> solver = gas::create_solver(backend, problem.parameters);
-  const Sample sample = sod::steps(problem.parameters, *solver, 50);
+  const Sample sample = sod::steps(problem.parameters, backend, *solver, 50);
   sample.reset();
   static_cast<void>(sample.work());
   for (std::vector<double>& field : problem.fields) field.resize(static_cast<std::size_t>(cells));

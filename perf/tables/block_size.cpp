@@ -12,6 +12,9 @@
 namespace drogue::perf {
 namespace {
 
+/// Fewer rounds than elsewhere: a sweep has a hundred cases.
+constexpr int sweep_rounds = 15;
+
 /// Registers per thread of the kernel of a form in a profile: the most of its variants that were launched
 /// with `block`, or of all within the launch bounds; without any, those that the bounds allow.
 int registers_of(const std::vector<KernelProfile>& profile, const BlockForm& form, const Block& block) {
@@ -120,7 +123,8 @@ Table print_block_sizes(const std::string& app, device::Backend backend, bool qu
         facts.push_back(facts_of(backend, form, form.cells[mesh], p));
       }
   }
-  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
+  const std::vector<Record> records =
+      measure(cases, warm_up_rounds, std::min(sweep_rounds, kept_rounds(quick)));
   Table table;
   for (std::size_t i = 0; i < records.size(); ++i) table.add(records[i], provenance, facts[i]);
   std::printf(

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 #include <vector>
 
+#include "common/program/thread_parts.hpp"
 #include "common/scene/node.hpp"
 
 namespace drogue::gas_app {
@@ -48,20 +48,15 @@ void Survey::merge(const Survey& other) {
 }
 
 Survey survey_initial_state(const GasScene& scene) {
-  constexpr std::int64_t cells_a_thread = 100'000;
-  const std::int64_t cells = scene.parameters.cells;
-  const std::int64_t cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::int64_t parts = std::clamp(cells / cells_a_thread, std::int64_t{1}, cores);
+  constexpr std::size_t cells_per_thread = 100'000;
+  const auto cells = static_cast<std::size_t>(scene.parameters.cells);
   const InitialState state(scene);
-  std::vector<Survey> seen(static_cast<std::size_t>(parts));
-  std::vector<std::thread> threads;
-  const auto work = [&](const InitialState& own, std::int64_t part) {
-    const std::int64_t end = (part + 1) * cells / parts;
-    seen[static_cast<std::size_t>(part)] = survey_cells(own, scene.parameters, part * cells / parts, end);
-  };
-  for (std::int64_t part = 1; part < parts; ++part) threads.emplace_back(work, state, part);
-  work(state, 0);
-  for (std::thread& thread : threads) thread.join();
+  std::vector<Survey> seen(thread_parts(cells, cells_per_thread));
+  for_thread_parts(seen.size(), cells, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    const InitialState own = state;  // its evaluation changes it
+    seen[part] =
+        survey_cells(own, scene.parameters, static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end));
+  });
   for (const Survey& part : seen) seen.front().merge(part);
   return seen.front();
 }

@@ -1,9 +1,9 @@
 #include "miniapps/parachute/scene/functions.hpp"
 
 #include <algorithm>
-#include <thread>
 
 #include "common/expression/compile.hpp"
+#include "common/program/thread_parts.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -52,17 +52,13 @@ std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& l
   const std::size_t size = lattice.size();
   if (function.constant()) return std::vector<double>(size, *function.constant());
   std::vector<double> values(size);
-  const auto fill = [&](SpaceTimeFunction own, std::size_t begin, std::size_t end) {
-    for (std::size_t entry = begin; entry < end; ++entry) values[entry] = own(lattice.place(entry), time);
-  };
   constexpr std::size_t entries_per_thread = 50'000;
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t parts = std::clamp<std::size_t>(size / entries_per_thread, 1, cores);
-  std::vector<std::jthread> threads;
-  for (std::size_t part = 1; part < parts; ++part)
-    threads.emplace_back(fill, function, size * part / parts, size * (part + 1) / parts);
-  fill(function, 0, size / parts);
-  threads.clear();
+  for_thread_parts(thread_parts(size, entries_per_thread), size,
+                   [&](std::size_t /*part*/, std::size_t begin, std::size_t end) {
+                     SpaceTimeFunction own = function;  // its evaluation changes it
+                     for (std::size_t entry = begin; entry < end; ++entry)
+                       values[entry] = own(lattice.place(entry), time);
+                   });
   return values;
 }
 
