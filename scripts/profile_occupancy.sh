@@ -6,7 +6,7 @@
 
 folder=${1:?usage: scripts/profile_occupancy.sh FOLDER [BUILD [FILTER]]}
 perf=${2:-$root/build/cuda}/bin/drogue-perf
-filter=${3:-'^(gas-step/cuda/(8192(/stages)?|16777216(/(split|on))?)|springs-step/cuda/(2640|1000000(/verlet)?)|springs-contact/cuda/15625|options/cuda/(1|4096)/128x32|options-surface/cuda/surface/1x33x8|flow-step/cuda/(64x64x64/periodic|256x256x256/(tunnel/vreman|periodic/(crank-nicolson|diagonalization)))|parachute-flight/cuda/60x60x120/c9-contact)$'}
+filter=${3:-'^(gas-step/cuda/(8192(/(stages|seed))?|16777216(/(split|on))?)|springs-step/cuda/(2640|1000000(/verlet)?)|springs-contact/cuda/15625|options/cuda/(1|4096)/128x32|options-(surface/cuda/surface/1x33x8|cos/cuda/256)|flow-step/cuda/(64x64x64/periodic|256x256x256/(tunnel/vreman|periodic/(crank-nicolson|diagonalization)))|parachute-flight/cuda/60x60x120/c9-contact)$'}
 mkdir -p "$folder"
 nvcc="$(find_nvcc)"
 PATH="$PATH:${nvcc%/*}"

@@ -27,6 +27,16 @@ Case surface_case(device::Backend backend, const puts::SurfaceSize& size, bool a
   return surface;
 }
 
+/// Bermudan puts by cosine series, to a tolerance that leaves few cosines.
+Case cosine_case(device::Backend backend, std::size_t count) {
+  constexpr double tolerance = 1e-3;
+  const std::string name(device::name(backend));
+  Case batch = puts::batch("options-cos/" + name + "/" + std::to_string(count), backend, HostMemory::pinned,
+                           count, {.method = options::Method::cos, .tolerance = tolerance}, tolerance);
+  batch.facts = [=] { return Facts{name, static_cast<std::int64_t>(count), "cos"}; };
+  return batch;
+}
+
 }  // namespace
 
 std::vector<Case> options_cases(bool quick) {
@@ -46,6 +56,7 @@ std::vector<Case> options_cases(bool quick) {
     add(gpu ? 4096 : 256, 128, 32);
     add(gpu ? 4096 : 256, 256, 64);
     if (gpu) add(1'000'000, 128, 32);
+    if (gpu) cases.push_back(cosine_case(backend, 256));
     cases.push_back(surface_case(backend, {1, 33, 8}, true));
     cases.push_back(surface_case(backend, {1, 33, 8}, false));
     cases.push_back(surface_case(backend, {1, 1000, 8}, false));

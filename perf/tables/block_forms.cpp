@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "kernels/gas/tile/team_shape.hpp"
+#include "perf/problems/baseline_case.hpp"
 #include "perf/problems/inflation.hpp"
 #include "perf/problems/puts.hpp"
 #include "perf/problems/sod.hpp"
 #include "perf/problems/streams.hpp"
-#include "perf/tables/baseline_case.hpp"
 #include "perf/tables/dissertation.hpp"
 
 namespace drogue::perf {

@@ -9,8 +9,8 @@
 
 #include "perf/measure/record.hpp"
 #include "perf/measure/timed_parts.hpp"
+#include "perf/problems/baseline_case.hpp"
 #include "perf/problems/sod.hpp"
-#include "perf/tables/baseline_case.hpp"
 #include "perf/tables/dissertation.hpp"
 #include "perf/tables/tables.hpp"
 #include "perf/tables/transfer.hpp"
@@ -92,9 +92,7 @@ Case case_of(device::Backend backend, const GasTransfer& row) {
   const std::string bound = transfer_bound(backend, "memory and FP64 issue of the cores");
   if (row.ours) return our_case(name, bound, backend, p, row.memory);
   p.pinned = row.memory == HostMemory::pinned;
-  return baseline_case(name, bound, backend, p, [](const gas::PhaseTimes& times) {
-    return std::map<std::string, double>{{"h2d", times.h2d}, {"compute", times.compute}, {"d2h", times.d2h}};
-  });
+  return baseline_case(name, bound, backend, p, all_phases);
 }
 
 }  // namespace

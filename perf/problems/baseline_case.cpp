@@ -1,10 +1,14 @@
-#include "perf/tables/baseline_case.hpp"
+#include "perf/problems/baseline_case.hpp"
 
 #include <memory>
 
 #include "perf/problems/sod.hpp"
 
 namespace drogue::perf {
+
+std::map<std::string, double> all_phases(const gas::PhaseTimes& times) {
+  return {{"h2d", times.h2d}, {"compute", times.compute}, {"d2h", times.d2h}};
+}
 
 Case baseline_case(const std::string& name, const std::string& bound, device::Backend backend,
                    const gas::Parameters& p,
