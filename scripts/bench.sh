@@ -121,7 +121,8 @@ fi
 cases gas-step 'gas-step|ceiling/[^/]+'
 cases springs-step springs-step
 cases springs-contact springs-contact
-cases options 'options|options-surface|options-cos'
+cases options 'options|options-surface'
+cases options-cos options-cos
 cases tridiagonal tridiagonal
 cases flow-step flow-step
 cases flight parachute-flight

@@ -99,7 +99,7 @@ std::vector<Case> flow_cases(bool quick) {
     }
     const bool gpu = backend == device::Backend::cuda;
     const Cells large = gpu ? Cells{256, 256, 256} : Cells{64, 64, 64};
-    const long steps = gpu ? 20 : 4;
+    const long steps = gpu ? 10 : 4;
     cases.push_back(flow_case(backend, large, usual_periodic, steps));
     cases.push_back(flow_case(backend, large, usual_tunnel, steps));
     for (const FlowVariant& variant : flow_variants)

@@ -10,12 +10,13 @@ namespace drogue::perf {
 namespace {
 
 /// Kinds of cases with the namespaces of their kernels.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kinds = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kinds = {
     {{"gas-step", "gas"},
      {"springs-step", "fabric"},
      {"springs-contact", "fabric"},
      {"options", "options"},
      {"options-surface", "options"},
+     {"options-cos", "options"},
      {"flow-step", "(flow|linear)"},
      {"flow-pressure", "linear"},
      {"parachute-flight", "(coupling|fabric|flow|linear)"},

@@ -13,7 +13,7 @@ namespace drogue::perf {
 namespace {
 
 /// Fewer rounds than elsewhere: a sweep has a hundred cases.
-constexpr int sweep_rounds = 15;
+constexpr int sweep_rounds = 11;
 
 /// Registers per thread of the kernel of a form in a profile: the most of its variants that were launched
 /// with `block`, or of all within the launch bounds; without any, those that the bounds allow.
