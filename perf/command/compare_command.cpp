@@ -73,8 +73,8 @@ ExitCode compare_files(const CompareOptions& options, const std::regex& filter) 
   keep_matching(after, filter, options);
   keep_matching(before, filter, options);
   for (const std::string& sentence : baseline.broken) std::printf("left out: %s\n", sentence.c_str());
-  std::printf("old: %s\nnew: %s%s\n", describe_origin(before.back()).c_str(),
-              describe_origin(after.back()).c_str(), describe_age(before.back(), after.back()).c_str());
+  std::printf("old: %s\nnew: %s%s\n", describe_origin(before).c_str(), describe_origin(after).c_str(),
+              describe_age(before, after.back()).c_str());
   const std::vector<ComparedCase> rows = compare_records(before, after);
   print(rows);
   std::vector<ComparedCase> failed;
