@@ -95,7 +95,7 @@ class Contents(Folder):
 class Refusals(Folder):
     def test_rejects_invalid_record_with_file_and_line(self):
         good = json.dumps(records.step("cuda/8192", 5e-6, records.H200, 8192))
-        blocks = records.blocks()[0]
+        blocks, batch = records.blocks()[0], records.options_transfers()[0]
         cases = {
             '{"schema": "drogue.perf/1", ': "no JSON",
             "[1, 2]": "no JSON object",
@@ -116,6 +116,7 @@ class Refusals(Folder):
             json.dumps(records.scaling()[3] | {"facts": records.scaling()[0]["facts"]}): "fact 'ranks' of",
             json.dumps(records.scaling()[0] | {"case": "scaling"}): "'scaling' names no kernel of gas",
             good.replace("gas-step/cuda/8192", "flow-pressure/cuda/8x8/fft"): "is not flow-pressure/BACKEND/NXxNYxNZ/",
+            json.dumps(batch | {"facts": batch["facts"] | {"method": "fft"}}): "is none of seed, pide",
             json.dumps(records.abstraction()[0] | {"case": "abstraction/cuda"}): "names no kernel of gas",
         }
         for line, words in cases.items():

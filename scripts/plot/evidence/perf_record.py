@@ -66,6 +66,7 @@ _LAYOUTS = {
     "flow-pressure": (r"[^/]+/\d{1,9}x\d{1,9}x\d{1,9}/[^/]+/[^/]+(/.*)?", "BACKEND/NXxNYxNZ/SOLVER/SIDES[/TOLERANCE]"),
     "flow-memory": (r"[^/]+/\d{1,9}x\d{1,9}x\d{1,9}/.+", "BACKEND/NXxNYxNZ/CASE"),
 }
+_METHODS = ("seed", "pide")  # of options-transfers
 _UNTIMED = ("flow-memory",)
 # Counted work of a step, for its bounds.
 _COUNTS = {"instructions": float, "launches": int, "driver": str}
@@ -198,6 +199,8 @@ def _checked_facts(case: str, facts: dict, place: str) -> dict:
     for name, wanted in _OPTIONAL.get(kind, {}).items():
         if facts.get(name) is not None and not _has_type(facts[name], wanted):
             raise Failure(INVALID, f"{place}: fact '{name}' of {case} is no {_TYPES[wanted]}.")
+    if kind == "options-transfers" and facts["method"] not in _METHODS:
+        raise Failure(INVALID, f"{place}: fact 'method' of {case} is none of {', '.join(_METHODS)}.")
     return {name: value for name, value in facts.items() if value is not None}
 
 
