@@ -59,6 +59,13 @@ Failure failure(const std::vector<ComparedCase>& failed) {
   return {ExitCode::verification_failed, sentence};
 }
 
+bool is_not_comparable(const ComparedCase& row) { return row.verdict == Verdict::not_comparable; }
+
+Failure nothing_compared(const ComparedCase& first) {
+  return {ExitCode::usage, "no case could be compared, so that --fail-on has nothing to pass; the first, " +
+                               first.name + ": " + first.reason};
+}
+
 void keep_matching(std::vector<MeasuredCase>& records, const std::regex& filter,
                    const CompareOptions& options) {
   std::erase_if(records, [&](const MeasuredCase& record) { return !std::regex_search(record.name, filter); });
@@ -73,8 +80,8 @@ ExitCode compare_files(const CompareOptions& options, const std::regex& filter) 
   keep_matching(after, filter, options);
   keep_matching(before, filter, options);
   for (const std::string& sentence : baseline.broken) std::printf("left out: %s\n", sentence.c_str());
-  std::printf("old: %s\nnew: %s%s\n", describe_origin(before.back()).c_str(),
-              describe_origin(after.back()).c_str(), describe_age(before.back(), after.back()).c_str());
+  std::printf("old: %s\nnew: %s%s\n", describe_origin(before).c_str(), describe_origin(after).c_str(),
+              describe_age(before, after.back()).c_str());
   const std::vector<ComparedCase> rows = compare_records(before, after);
   print(rows);
   std::vector<ComparedCase> failed;
@@ -84,9 +91,11 @@ ExitCode compare_files(const CompareOptions& options, const std::regex& filter) 
     for (const ComparedCase& row : rows)
       std::fputs(annotation(row, options.fails(row.verdict)).c_str(), stdout);
   if (!failed.empty()) throw failure(failed);
-  if (std::ranges::all_of(rows,
-                          [](const ComparedCase& row) { return row.verdict == Verdict::not_comparable; }))
+  if (std::ranges::all_of(rows, &is_not_comparable)) {
+    // A gate that compared nothing has shown nothing.
+    if (!options.fail_on.empty()) throw nothing_compared(rows.front());
     std::printf("no case could be compared\n");
+  }
   if (!baseline.broken.empty()) throw Failure(ExitCode::invalid_scene, baseline.broken.front());
   return ExitCode::ok;
 }

@@ -40,11 +40,11 @@ ExitCode write_report(const std::string& folder, const std::string& out) {
   std::error_code error;
   if (fs::create_directories(out, error); error)
     throw Failure(ExitCode::io_error, "the folder '" + out + "' cannot be made: " + error.message());
+  const auto code = static_cast<ExitCode>(run_drogue_plot({folder, "--report", "--out", out}));
+  // It also checks the facts of each kind of record, and states the reasons of these codes itself.
+  if (code == ExitCode::invalid_scene) return code;
   write(fs::path(out) / "records.csv", to_csv(records));
   write(fs::path(out) / "reframe.json", to_reframe(records));
-  std::fflush(stdout);
-  const auto code = static_cast<ExitCode>(run_drogue_plot({folder, "--report", "--out", out}));
-  // drogue-plot states the reasons of these codes itself.
   if (code == ExitCode::ok || code == ExitCode::usage || code == ExitCode::io_error) return code;
   throw Failure(ExitCode::io_error, "no page was made: drogue-plot is not beside this program, or failed");
 }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <regex>
+#include <utility>
 
 #include "common/program/signals.hpp"
 #include "common/run/files/atomic_file.hpp"
@@ -63,12 +64,18 @@ ExitCode run_cases(RunOptions options, const std::regex& filter) {
   const std::vector<Case> cases = matching_cases(filter, options.quick);
   if (cases.empty()) throw no_case(options, filter);
   const nlohmann::json here = provenance(device::device_facts());
-  if (!options.baselines.empty()) options.out = file_for_baseline(options.baselines, here);
+  std::vector<nlohmann::json> lines;
+  if (!options.baselines.empty()) {
+    std::vector<std::string> names;
+    for (const Case& c : cases) names.push_back(c.name);
+    BaselineFile baseline = file_for_baseline(options.baselines, here, names, !options.filter.empty());
+    options.out = baseline.file;
+    lines = std::move(baseline.kept);
+  }
   const double overhead = timer_overhead();
   std::printf("timer: %.3f us per work; a sample repeats works of less than %.0f ms\n", 1e6 * overhead,
               1e3 * shortest_sample);
   std::fflush(stdout);
-  std::vector<nlohmann::json> lines;
   bool passed = true;
   const GpuClocks clocks(device_address());
   for (const Record& record : measure(cases, warm_up_rounds, run_rounds, &clocks)) {
@@ -109,8 +116,10 @@ Command run_command(CLI::App& program) {
   app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
   app->add_option("--out", options->out, "File for the records, one JSON line a case");
   app->add_flag("--quick", options->quick, "Small cases");
-  app->add_option("--baseline", options->baselines,
-                  "Folder of baselines, in which the records replace those of this machine if all passed")
+  app->add_option(
+         "--baseline", options->baselines,
+         "Folder of baselines, in which the records replace those of this machine if all passed; with "
+         "--filter, those of the measured cases alone")
       ->excludes("--out");
   return {app, [options](const std::vector<std::string>& kokkos) {
             const std::regex filter = filter_of(options->filter);

@@ -1,5 +1,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "common/program/command_line.hpp"
@@ -26,19 +27,47 @@ struct TableOptions {
   [[nodiscard]] bool scales_program() const { return over == "ranks" || weak; }
 };
 
+const std::vector<std::string> table_names = {"machine", "occupancy",   "block-size", "transfers",
+                                              "scaling", "abstraction", "pressure",   "memory"};
+
+/// Option that some tables use, and those.
+struct SpecialOption {
+  const char* name;
+  std::vector<std::string> tables;
+};
+
+const std::vector<SpecialOption> special_options = {
+    {"--app", {"occupancy", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"}},
+    {"--backend", {"machine", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"}},
+    {"--profile", {"occupancy", "block-size"}},
+    {"--architecture", {"occupancy"}},
+    {"--over", {"scaling"}},
+    {"--weak", {"scaling"}},
+    {"--most", {"scaling"}}};
+
 /// Tables of a mini-app.
 std::vector<std::string> tables_of(const std::string& app) {
-  if (app == "gas") return {"machine", "occupancy", "block-size", "transfers", "scaling", "abstraction"};
+  if (app == "gas") return {"occupancy", "block-size", "transfers", "scaling", "abstraction"};
   if (app == "flow") return {"block-size", "pressure", "memory", "scaling", "abstraction"};
   if (app == "springs") return {"transfers", "scaling", "abstraction"};
   if (app == "parachute") return {"block-size", "transfers"};
   return {"block-size", "transfers", "scaling"};
 }
 
-/// Throws Failure(usage) for options of scaling that do not fit the table or the mini-app.
+/// Throws Failure(usage) if the command line `given` has an option that the table does not use.
+void check_special_options(const std::string& table, const CLI::App& given) {
+  for (const SpecialOption& option : special_options) {
+    if (given.count(option.name) == 0 || std::ranges::find(option.tables, table) != option.tables.end())
+      continue;
+    std::string names;
+    for (const std::string& name : option.tables) names += (names.empty() ? "" : ", ") + name;
+    throw Failure(ExitCode::usage, "the table " + table + " does not use " + option.name + "; it is for " +
+                                       (option.tables.size() == 1 ? "the table " : "the tables ") + names);
+  }
+}
+
+/// Throws Failure(usage) for options of scaling that do not fit the mini-app.
 void check_scaling(const TableOptions& options) {
-  if (options.table != "scaling" && (!options.over.empty() || options.weak || options.most > 0))
-    throw Failure(ExitCode::usage, "--over, --weak and --most belong to the table scaling");
   if (options.scales_program() && options.app != "flow")
     throw Failure(ExitCode::usage, "of " + options.app + " there is strong scaling over threads alone; " +
                                        "weak scaling and ranks have --app flow");
@@ -88,10 +117,9 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
   return print(backend, options.quick, here);
 }
 
-ExitCode print_table(TableOptions options, const std::vector<std::string>& kokkos) {
-  require_name(
-      "table", options.table,
-      {"machine", "occupancy", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"});
+ExitCode print_table(TableOptions options, const CLI::App& given, const std::vector<std::string>& kokkos) {
+  require_name("table", options.table, table_names);
+  check_special_options(options.table, given);
   const bool of_flow = options.table == "pressure" || options.table == "memory" || options.scales_program();
   if (options.app.empty()) options.app = of_flow ? "flow" : "gas";
   require_app(options.app);
@@ -99,9 +127,8 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
-  require_name("table of " + options.app, options.table, tables_of(options.app));
-  if (!options.profile.empty() && options.table != "occupancy" && options.table != "block-size")
-    throw Failure(ExitCode::usage, "--profile is for table occupancy and table block-size");
+  if (options.table != "machine")
+    require_name("table of " + options.app, options.table, tables_of(options.app));
   check_scaling(options);
   run::require_writable(options.out);
   install_signal_handlers();
@@ -145,7 +172,9 @@ Command table_command(CLI::App& program) {
   app->add_flag("--weak", options->weak, "Scaling of flow with work that grows with threads or ranks");
   app->add_option("--most", options->most, "Largest number of threads or ranks; all processors or GPUs")
       ->check(CLI::Range(1, 4096));
-  return {app, [options](const std::vector<std::string>& kokkos) { return print_table(*options, kokkos); }};
+  return {app, [options, app](const std::vector<std::string>& kokkos) {
+            return print_table(*options, *app, kokkos);
+          }};
 }
 
 }  // namespace drogue::perf

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/program/failure.hpp"
@@ -79,6 +81,58 @@ std::string file_name(const std::string& text) {
   return name.empty() ? "machine" : name;
 }
 
+/// The oldest record of known date, else the first one.
+const MeasuredCase& oldest_of(const std::vector<MeasuredCase>& records) {
+  return *std::ranges::min_element(records, {}, [](const MeasuredCase& record) {
+    return seconds_of(record.origin("date")).value_or(std::numeric_limits<std::time_t>::max());
+  });
+}
+
+/// The latest record of known date, else the first one.
+const MeasuredCase& latest_of(const std::vector<MeasuredCase>& records) {
+  return *std::ranges::max_element(records, {}, [](const MeasuredCase& record) {
+    return seconds_of(record.origin("date")).value_or(std::numeric_limits<std::time_t>::min());
+  });
+}
+
+std::string origin_of(const MeasuredCase& record) {
+  const auto known = [&](const char* key) {
+    const std::string text = record.origin(key);
+    return text.empty() ? std::string("unknown") : text;
+  };
+  return "commit " + known("git") + ", date " + known("date");
+}
+
+std::string counted(std::size_t records) {
+  return std::to_string(records) + (records == 1 ? " record" : " records");
+}
+
+/// Present baseline of a machine, without the records of the measured cases and, unless `keep_others`,
+/// without all others. Prints what goes and what stays.
+BaselineFile renewed(const std::string& file, const MeasuredCase& here,
+                     const std::vector<std::string>& measured, bool keep_others) {
+  std::vector<MeasuredCase> replaced, kept;
+  for (MeasuredCase& record : read_records(file)) {
+    const bool is_measured = std::ranges::find(measured, record.name) != measured.end();
+    (keep_others && !is_measured ? kept : replaced).push_back(std::move(record));
+  }
+  BaselineFile renewed{file, {}};
+  for (const MeasuredCase& record : kept) renewed.kept.push_back(record.document);
+  const auto words = [&](const std::vector<MeasuredCase>& records) {
+    return describe_origin(records) + describe_age(records, here);
+  };
+  if (kept.empty()) {
+    std::printf("%s replaces that of %s\n", file.c_str(), words(replaced).c_str());
+    return renewed;
+  }
+  if (!replaced.empty())
+    std::printf("%s: replaces %s of %s\n", file.c_str(), counted(replaced.size()).c_str(),
+                words(replaced).c_str());
+  std::printf("%s: keeps %s of other cases, of %s\n", file.c_str(), counted(kept.size()).c_str(),
+              words(kept).c_str());
+  return renewed;
+}
+
 }  // namespace
 
 Baseline find_baseline(const std::string& path, const MeasuredCase& after) {
@@ -92,37 +146,31 @@ Baseline find_baseline(const std::string& path, const MeasuredCase& after) {
   throw several(path, found.files);
 }
 
-std::string file_for_baseline(const std::string& folder, const nlohmann::json& provenance) {
+BaselineFile file_for_baseline(const std::string& folder, const nlohmann::json& provenance,
+                               const std::vector<std::string>& measured, bool keep_others) {
   if (!fs::is_directory(folder)) throw Failure(ExitCode::usage, "there is no folder '" + folder + "'");
   MeasuredCase here;
   here.provenance = provenance;
   const Found found = baselines_of(folder, here);
   for (const std::string& sentence : found.broken) std::printf("left out: %s\n", sentence.c_str());
   if (found.files.size() > 1) throw several(folder, found.files);
-  if (found.files.size() == 1) {
-    const MeasuredCase old = read_records(found.files.front()).front();
-    std::printf("%s replaces that of %s%s\n", found.files.front().c_str(), describe_origin(old).c_str(),
-                describe_age(old, here).c_str());
-    return found.files.front();
-  }
+  if (found.files.size() == 1) return renewed(found.files.front(), here, measured, keep_others);
   const std::string gpu = here.origin("gpu");
   const std::string name = file_name(gpu.empty() ? here.origin("cpu") : gpu) + "-" + here.origin("threads");
   fs::path file = fs::path(folder) / (name + ".jsonl");
   for (int number = 2; fs::exists(file); ++number)
     file = fs::path(folder) / (name + "-" + std::to_string(number) + ".jsonl");
-  return file.string();
+  return {file.string(), {}};
 }
 
-std::string describe_origin(const MeasuredCase& record) {
-  const auto known = [&](const char* key) {
-    const std::string text = record.origin(key);
-    return text.empty() ? std::string("unknown") : text;
-  };
-  return "commit " + known("git") + ", date " + known("date");
+std::string describe_origin(const std::vector<MeasuredCase>& records) {
+  const std::string oldest = origin_of(oldest_of(records)), latest = origin_of(latest_of(records));
+  return oldest == latest ? oldest : oldest + ", to " + latest;
 }
 
-std::string describe_age(const MeasuredCase& before, const MeasuredCase& after) {
-  const auto old_date = seconds_of(before.origin("date")), new_date = seconds_of(after.origin("date"));
+std::string describe_age(const std::vector<MeasuredCase>& before, const MeasuredCase& after) {
+  const auto old_date = seconds_of(oldest_of(before).origin("date")),
+             new_date = seconds_of(after.origin("date"));
   if (!old_date || !new_date) return "";
   const double hours = std::difftime(*new_date, *old_date) / 3600.0;
   if (std::abs(hours) < 1.0) return "";

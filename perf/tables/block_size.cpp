@@ -1,11 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
-#include "common/run/statistics.hpp"
 #include "perf/measure/record.hpp"
-#include "perf/models/rank_correlation.hpp"
 #include "perf/profile/kernel_profile.hpp"
+#include "perf/rows/block_rows.hpp"
 #include "perf/tables/block_forms.hpp"
 #include "perf/tables/tables.hpp"
 
@@ -51,23 +49,6 @@ std::vector<Predicted> predictions(const Architecture& on, const BlockForm& form
   return list;
 }
 
-/// States whether the order of the speeds is that of the occupancies.
-void print_explanation(const std::vector<Predicted>& predicted, const std::vector<const Record*>& row) {
-  std::vector<double> occupancies, speeds;
-  for (std::size_t k = 0; k < row.size(); ++k) {
-    if (!row[k]->passed() || row[k]->samples.empty()) continue;
-    occupancies.push_back(predicted[k].occupancy.occupancy);
-    speeds.push_back(1.0 / run::median(row[k]->samples));
-  }
-  if (speeds.size() < 2) return;
-  const RankCorrelation found = rank_correlation(occupancies, speeds);
-  if (std::isnan(found.rho))
-    std::printf("  one occupancy: it explains nothing");
-  else
-    std::printf("  rho %+.2f, p %.3f: occupancy %s the order", found.rho, found.probability,
-                found.probability <= 0.05 ? "explains" : "does not explain");
-}
-
 /// Prints the records of one form, mesh by mesh; `record` is the first.
 void print_form(const BlockForm& form, const std::vector<Predicted>& predicted, const Record* record) {
   std::printf("\n%s, microseconds per %s (median); cells down, threads of a block across\n%10s",
@@ -79,14 +60,12 @@ void print_form(const BlockForm& form, const std::vector<Predicted>& predicted, 
   for (const Predicted& p : predicted) std::printf("%12d", p.occupancy.blocks);
   std::printf("\n%10s", "occupancy");
   for (const Predicted& p : predicted) std::printf("%10.1f %%", 100.0 * p.occupancy.occupancy);
+  std::vector<double> occupancies;
+  for (const Predicted& p : predicted) occupancies.push_back(p.occupancy.occupancy);
   for (const std::int64_t cells : form.cells) {
-    std::printf("\n%10lld", static_cast<long long>(cells));
     std::vector<const Record*> row;
-    for (std::size_t k = 0; k < form.blocks.size(); ++k, ++record) {
-      row.push_back(record);
-      std::printf("%11.2f%c", 1e6 * run::median(record->samples), record->passed() ? ' ' : '!');
-    }
-    print_explanation(predicted, row);
+    for (std::size_t k = 0; k < form.blocks.size(); ++k) row.push_back(record++);
+    std::printf("\n%s", block_row(cells, row, occupancies).c_str());
   }
   std::printf("\n");
 }
@@ -129,7 +108,8 @@ Table print_block_sizes(const std::string& app, device::Backend backend, bool qu
   for (std::size_t i = 0; i < records.size(); ++i) table.add(records[i], provenance, facts[i]);
   std::printf(
       "%s on %s: times beside the occupancy that the model predicts for %s, registers by %s;\n"
-      "! marks a time whose result failed its check; rho: rank correlation of occupancy and speed, p: the\n"
+      "FAILED: the result failed its check and has no time; rho: rank correlation of occupancy and speed, p: "
+      "the\n"
       "probability of one at least as large by chance, 0.05 or less where occupancy explains the order\n",
       app == "gas" ? "Figure 4.4" : "Block sizes", std::string(device::name(backend)).c_str(), on.name.data(),
       profile.empty() ? "launch bounds" : profile.c_str());

@@ -92,14 +92,14 @@ Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann
       "Quadro 6000\nIts steps take a number of substeps that is not recorded: no ratio to it means anything "
       "without that number\nThe error is the drift of the energy\n",
       std::string(device::name(backend)).c_str());
-  print_transfer_heading("memory    vertices  substeps");
+  std::fputs(transfer_heading("memory    vertices  substeps").c_str(), stdout);
   Table table;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const PrintedTimes printed = printed_times(rows[i].printed);
     char name[64];
     std::snprintf(name, sizeof name, "%-8s  %8d  %8d", perf::name(rows[i].memory), rows[i].printed.vertices,
                   rows[i].substeps);
-    print_transfer(name, records[i], printed, core[i]);
+    std::fputs(transfer_row(name, records[i], printed, core[i]).c_str(), stdout);
     nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], printed, core[i]);
     facts.update({{"cells", rows[i].printed.vertices}, {"substeps", rows[i].substeps}});
     table.add(records[i], provenance, facts);

@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "common/run/statistics.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/problems/pressure_solves.hpp"
+#include "perf/rows/timed_columns.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
@@ -62,15 +62,14 @@ Table print_flow_pressure(device::Backend backend, bool quick, const nlohmann::j
     const std::vector<Record> records = measure_solves(solves, cases, quick);
     for (std::size_t i = 0; i < solves.size(); ++i) {
       const PressureSolve& solve = solves[i];
-      const run::MedianInterval time = run::median_interval(records[i].samples);
       const int iterations = (*solvers[i])->iterations();
       const std::string iterated = iterations > 0 ? std::to_string(iterations) : "direct";
       char tolerance[16] = "round-off";
       if (solve.method.iterates()) std::snprintf(tolerance, sizeof tolerance, "%g", solve.method.tolerance);
-      std::printf("%-11s  %-8s  %-15s  %-9s  %10.4f  [%.4f .. %.4f]  %10s  %.2g  %s\n",
-                  streams::text(grid).c_str(), streams::name(solve.sides), solve.method.name, tolerance,
-                  1e3 * time.median, 1e3 * time.low, 1e3 * time.high, iterated.c_str(), records[i].error,
-                  verdict(records[i]));
+      std::printf("%-11s  %-8s  %-15s  %-9s  %10s  %-20s  %10s  %.2g  %s\n", streams::text(grid).c_str(),
+                  streams::name(solve.sides), solve.method.name, tolerance,
+                  median_text(records[i], 1e3, 4).c_str(), interval_text(records[i], 1e3, 4).c_str(),
+                  iterated.c_str(), records[i].error, verdict(records[i]));
       nlohmann::json facts = {{"backend", name},
                               {"cells", solve.cell_count()},
                               {"variant", records[i].facts.variant},

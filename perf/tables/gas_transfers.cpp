@@ -107,14 +107,14 @@ Table print_gas_transfers(device::Backend backend, bool quick, const nlohmann::j
       std::string(device::name(backend)).c_str(), baseline_steps,
       device::needs_device(backend) ? ""
                                     : "(a host backend copies within the host, and has no pinned memory)\n");
-  print_transfer_heading("method  memory     cells");
+  std::fputs(transfer_heading("method  memory     cells").c_str(), stdout);
   Table table;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const PrintedTimes printed = printed_times(rows[i].printed);
     char name[64];
     std::snprintf(name, sizeof name, "%-6s  %-8s  %6d", rows[i].method(), perf::name(rows[i].memory),
                   rows[i].printed.cells);
-    print_transfer(name, records[i], printed, core[i]);
+    std::fputs(transfer_row(name, records[i], printed, core[i]).c_str(), stdout);
     nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], printed, core[i]);
     facts.update({{"cells", rows[i].printed.cells}, {"method", rows[i].method()}});
     table.add(records[i], provenance, facts);

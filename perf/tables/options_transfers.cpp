@@ -67,7 +67,7 @@ Table print_options_transfers(device::Backend backend, bool quick, const nlohman
       "on a\nQuadro 6000, whose first copy holds the start of CUDA. Method seed is its scheme, "
       "pide ours, two solves for a stated error\n",
       std::string(device::name(backend)).c_str());
-  print_transfer_heading("method  memory    options  mesh");
+  std::fputs(transfer_heading("method  memory    options  mesh").c_str(), stdout);
   Table table;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const PrintedTimes printed = printed_times(lines[i].printed);
@@ -75,7 +75,7 @@ Table print_options_transfers(device::Backend backend, bool quick, const nlohman
     char name[64];
     std::snprintf(name, sizeof name, "%-6s  %-8s  %7d  %4d", method, perf::name(lines[i].memory),
                   lines[i].printed.options, lines[i].printed.mesh);
-    print_transfer(name, records[i], printed, core[i]);
+    std::fputs(transfer_row(name, records[i], printed, core[i]).c_str(), stdout);
     nlohmann::json facts = transfer_facts(backend, lines[i].memory, records[i], printed, core[i]);
     facts.update({{"cells", lines[i].printed.options}, {"mesh", lines[i].printed.mesh}, {"method", method}});
     table.add(records[i], provenance, facts);

@@ -66,13 +66,13 @@ Table print_parachute_transfers(device::Backend backend, bool quick, const nlohm
       "of "
       "parachute-flight\n",
       std::string(device::name(backend)).c_str());
-  print_transfer_heading("memory           cells  steps");
+  std::fputs(transfer_heading("memory           cells  steps").c_str(), stdout);
   Table table;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::string grid = streams::text(rows[i].cells);
     char text[64];
     std::snprintf(text, sizeof text, "%-8s  %12s  %5ld", name(rows[i].memory), grid.c_str(), rows[i].steps);
-    print_transfer(text, records[i], std::nullopt, std::nullopt);
+    std::fputs(transfer_row(text, records[i], std::nullopt, std::nullopt).c_str(), stdout);
     nlohmann::json facts = transfer_facts(backend, rows[i].memory, records[i], std::nullopt, std::nullopt);
     const auto& [nx, ny, nz] = rows[i].cells;
     facts.update(

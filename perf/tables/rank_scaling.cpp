@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -15,10 +15,12 @@
 #include "common/run/files/temporary_folder.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/bisect/child_process.hpp"
+#include "perf/bisect/failed_run.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/memory/device_memory.hpp"
 #include "perf/models/scaling.hpp"
 #include "perf/problems/streams.hpp"
+#include "perf/rows/timed_columns.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
@@ -64,25 +66,6 @@ std::vector<std::string> command_of(const ScalingRequest& request, const Scaling
   return words;
 }
 
-/// Reason of a failure in a log: the sentence of the program, else the first line with words, which a
-/// launcher may frame.
-std::string reason_in(const std::filesystem::path& log) {
-  std::ifstream file(log);
-  std::string first;
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with("drogue-parachute: ")) return line;
-    const bool has_words = std::ranges::any_of(line, [](unsigned char c) { return std::isalpha(c) != 0; });
-    if (first.empty() && has_words) first = line;
-  }
-  return first;
-}
-
-/// Code of a run that failed. A launcher that starts nothing ends with 1.
-ExitCode code_of_run(int status) {
-  if (status == 0) return ExitCode::io_error;
-  return status == 1 ? ExitCode::no_backend : static_cast<ExitCode>(status);
-}
-
 /// Runs the program once and adds a sample. Throws Failure as the program does.
 void run_point(const ScalingRequest& request, device::Backend backend, const std::filesystem::path& folder,
                ScalingPoint& point) {
@@ -93,8 +76,7 @@ void run_point(const ScalingRequest& request, device::Backend backend, const std
   point.result = nlohmann::json::parse(file, nullptr, false);
   const bool ended = status == 0 || status == static_cast<int>(ExitCode::verification_failed);
   if (!ended || point.result.is_discarded() || point.result.value("ranks", 0) < 1)
-    throw Failure(code_of_run(status), "a run on " + std::to_string(point.units) + " " + name(request.unit) +
-                                           " failed: " + reason_in(log));
+    throw failed_run(std::to_string(point.units) + " " + name(request.unit), status, log);
   point.samples.push_back(point.result["timing"]["compute_s"].get<double>() /
                           point.result["steps"].get<double>());
   for (const nlohmann::json& check : point.result["checks"])
@@ -114,22 +96,6 @@ Record record_of(const ScalingRequest& request, device::Backend backend, const S
   return record;
 }
 
-void print_point(const ScalingRequest& request, const Record& record, const ScalingPoint& point,
-                 double of_one) {
-  std::printf("%-52s", record.name.c_str());
-  // A wrong result has no time.
-  if (!record.passed()) {
-    std::printf("  a check is %.2g times its tolerance\n", record.error);
-    return;
-  }
-  const run::MedianInterval time = run::median_interval(record.samples);
-  char interval[64];
-  std::snprintf(interval, sizeof interval, "[%.2f .. %.2f]", 1e6 * time.low, 1e6 * time.high);
-  std::printf("%14.2f  %-28s %9.0f %%\n", 1e6 * time.median, interval,
-              100.0 * efficiency(request.weak, of_one, time.median, point.units));
-  std::fflush(stdout);
-}
-
 /// Measures one backend, all numbers of units in turn.
 void add_backend(const ScalingRequest& request, device::Backend backend, bool quick, Table& table) {
   const run::TemporaryFolder folder("drogue-scaling");
@@ -144,8 +110,10 @@ void add_backend(const ScalingRequest& request, device::Backend backend, bool qu
   }
   for (int round = 0; round < (quick ? 3 : 7); ++round)
     for (ScalingPoint& point : points) run_point(request, backend, folder.path(), point);
+  std::optional<double> of_one;  // median time on one unit, s
   for (const ScalingPoint& point : points) {
     const Record record = record_of(request, backend, point);
+    if (point.units == 1 && record.passed()) of_one = run::median(record.samples);
     const nlohmann::json& from = point.result["provenance"];
     const nlohmann::json facts = {
         {"backend", device::name(backend)},
@@ -159,7 +127,9 @@ void add_backend(const ScalingRequest& request, device::Backend backend, bool qu
                           .driver = from.value("driver", ""),
                           .threads = point.result["threads"].get<int>()}),
               facts);
-    print_point(request, record, point, run::median(points.front().samples));
+    std::printf("%-52s%s", record.name.c_str(),
+                scaling_columns(record, request.weak, point.units, of_one).c_str());
+    std::fflush(stdout);
   }
 }
 

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -10,8 +11,10 @@
 #include "common/run/files/temporary_folder.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/bisect/child_process.hpp"
+#include "perf/bisect/failed_run.hpp"
 #include "perf/compare/record_file.hpp"
 #include "perf/models/scaling.hpp"
+#include "perf/rows/timed_columns.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
@@ -48,15 +51,14 @@ std::vector<MeasuredCase> run_with_threads(const std::string& pattern, int threa
   const int status = run_child(words, folder.path(), log).status;
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
   if (status != 0 && status != static_cast<int>(ExitCode::verification_failed))
-    throw Failure(static_cast<ExitCode>(status),
-                  "a run with " + std::to_string(threads) + " threads failed: " + last_line(log));
+    throw failed_run(std::to_string(threads) + " threads", status, log);
   return read_records(file);
 }
 
 }  // namespace
 
 Table print_scaling(const std::string& app, const std::vector<device::Backend>& backends, bool quick) {
-  std::printf("%-34s %8s %14s  %-28s %9s %10s\n", "case", "threads", "us", "95 %", "speed-up", "efficiency");
+  std::printf("%-34s %8s %14s  %-28s %9s %11s\n", "case", "threads", "us", "95 %", "speed-up", "efficiency");
   Table table;
   for (const device::Backend backend : backends) {
     std::map<std::string, double> of_one;  // median time with one thread by case, s
@@ -70,16 +72,18 @@ Table print_scaling(const std::string& app, const std::vector<device::Backend>& 
         std::printf("%-34s %8d ", record.name.c_str(), threads);
         // A wrong result has no time.
         if (!record.passed) {
-          std::printf("its check failed\n");
+          std::printf("%14s\n", failed_text);
           continue;
         }
         const run::MedianInterval time = run::median_interval(record.samples);
-        of_one.try_emplace(record.name, time.median);
-        const double gain = of_one.at(record.name) / time.median;
+        if (threads == 1) of_one[record.name] = time.median;
+        const auto one = of_one.find(record.name);
         char interval[64];
         std::snprintf(interval, sizeof interval, "[%.2f .. %.2f]", 1e6 * time.low, 1e6 * time.high);
-        std::printf("%14.2f  %-28s %8.2fx %9.0f %%\n", 1e6 * time.median, interval, gain,
-                    100.0 * gain / threads);
+        std::printf("%14.2f  %-28s %s", 1e6 * time.median, interval,
+                    speed_up_columns(one == of_one.end() ? std::nullopt : std::optional(one->second),
+                                     time.median, threads)
+                        .c_str());
         std::fflush(stdout);
       }
   }

@@ -8,6 +8,7 @@
 #include "kernels/device/backend.hpp"
 #include "perf/measure/measurement.hpp"
 #include "perf/memory/host_memory.hpp"
+#include "perf/rows/transfer_row.hpp"
 
 /// Rows of the tables of transfers: copy to the device, compute, copy to the host.
 namespace drogue::perf {
@@ -17,12 +18,6 @@ std::vector<HostMemory> host_memories(device::Backend backend);
 
 /// Limiting resource of copies around the work of a backend, in words; `on_host` that of the work on a host.
 std::string transfer_bound(device::Backend backend, const std::string& on_host);
-
-/// Times that [Shi] prints, us.
-struct PrintedTimes {
-  double h2d, compute, d2h, total;
-  std::optional<double> cpu;  ///< of one core
-};
 
 /// Times of a row of a table of [Shi], whose `cpu` is 0 where none is printed.
 template <class Row>
@@ -60,15 +55,5 @@ Transfers measure_transfers(device::Backend backend, const std::vector<Row>& row
 /// and that of one core. Does not throw.
 nlohmann::json transfer_facts(device::Backend backend, HostMemory memory, const Record& record,
                               const std::optional<PrintedTimes>& printed, const std::optional<double>& core);
-
-/// Prints a note on one core, and the heading of the columns of `print_transfer` behind that of the names of
-/// rows.
-void print_transfer_heading(const std::string& row);
-
-/// Prints a row: medians of the parts and of their sum, us, the computation on one core (`core`, s) and its
-/// ratios to compute and total, each with the value of [Shi] in brackets, the interval of the sum, error and
-/// verdict; `-` where a time is not known.
-void print_transfer(const std::string& row, const Record& record, const std::optional<PrintedTimes>& printed,
-                    const std::optional<double>& core);
 
 }  // namespace drogue::perf

@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .failure import OK, USAGE, Failure
+from .failure import INVALID, OK, USAGE, Failure
 
 SPACE_TIME_SNAPSHOTS = 8  # smallest number of snapshots for a space-time map
 
@@ -211,7 +211,7 @@ def _report(options):
 
 
 def draw(options: argparse.Namespace):
-    """Generator of the paths of the written files; raises Failure (USAGE or IO_ERROR)."""
+    """Generator of the paths of the written files; raises Failure (USAGE, INVALID or IO_ERROR)."""
     from . import style
     from .evidence.records import read_records
     from .gas.history_figure import history_figure
@@ -275,7 +275,7 @@ def draw(options: argparse.Namespace):
 
 
 def main(words: list[str] | None = None) -> int:
-    """Runs the program. Returns its exit code: 0 success, 2 usage error, 6 unreadable or unwritable file."""
+    """Runs the program. Returns its exit code: 0 success, 2 usage error, 3 invalid record, 6 unreadable or unwritable file."""
     try:
         options = arguments(sys.argv[1:] if words is None else words)
         if options.version:
@@ -291,6 +291,6 @@ def main(words: list[str] | None = None) -> int:
                 USAGE, f"{options.directory} holds nothing to draw: no fields, and too short a history."
             )
     except Failure as failure:
-        print(f"drogue-plot: {failure}", file=sys.stderr)
+        print(failure if failure.code == INVALID else f"drogue-plot: {failure}", file=sys.stderr)
         return failure.code
     return OK

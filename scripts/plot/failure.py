@@ -2,11 +2,12 @@
 
 OK = 0
 USAGE = 2
+INVALID = 3  # an invalid record; its sentence begins with FILE:LINE
 IO_ERROR = 6
 
 
 class Failure(Exception):
-    """Error with a one-sentence message for the user and the exit code of the program (USAGE or IO_ERROR)."""
+    """Error with a one-sentence message for the user and the exit code of the program (USAGE, INVALID or IO_ERROR)."""
 
     def __init__(self, code: int, sentence: str):
         super().__init__(sentence)

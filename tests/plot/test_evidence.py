@@ -95,13 +95,13 @@ class Contents(Folder):
 class Refusals(Folder):
     def test_rejects_invalid_record_with_file_and_line(self):
         good = json.dumps(records.step("cuda/8192", 5e-6, records.H200, 8192))
-        blocks = records.blocks()[0]
+        blocks, batch = records.blocks()[0], records.options_transfers()[0]
         cases = {
             '{"schema": "drogue.perf/1", ': "no JSON",
             "[1, 2]": "no JSON object",
             good.replace(
                 "drogue.perf/1", "drogue.perf/9"
-            ): "schema 'drogue.perf/9'; drogue-plot reads drogue.perf/1",
+            ): "the schema is 'drogue.perf/9'; drogue-plot reads drogue.perf/1",
             good.replace('"passed"', '"perhaps"'): "neither passed nor failed",
             good.replace("gas-step/cuda/8192", "gas-step/cuda"): "is not gas-step/BACKEND/CELLS",
             good.replace('"median": 5e-06', '"median": NaN'): "the median of gas-step/cuda/8192 is no time",
@@ -111,22 +111,32 @@ class Refusals(Folder):
             json.dumps(blocks | {"facts": blocks["facts"] | {"cells": 0}}): "fact 'cells' of",
             json.dumps(blocks | {"facts": 3}): "is no JSON object",
             good.replace('"flops": 10649600', '"flops": "many"'): "fact 'flops' of",
+            good.replace('"flops": 10649600', '"flops": 1e300'): "fact 'flops' of",
+            good.replace('"median": 5e-06', '"median": 1e-200'): "the median of gas-step/cuda/8192 is no time",
+            json.dumps(records.scaling()[3] | {"facts": records.scaling()[0]["facts"]}): "fact 'ranks' of",
+            json.dumps(records.scaling()[0] | {"case": "scaling"}): "'scaling' names no kernel of gas",
+            good.replace("gas-step/cuda/8192", "flow-pressure/cuda/8x8/fft"): "is not flow-pressure/BACKEND/NXxNYxNZ/",
+            json.dumps(batch | {"facts": batch["facts"] | {"method": "fft"}}): "is none of seed, pide",
+            json.dumps(records.abstraction()[0] | {"case": "abstraction/cuda"}): "names no kernel of gas",
         }
         for line, words in cases.items():
             with self.subTest(words):
                 self.assertNotEqual(line, good)
                 (self.folder / "b.jsonl").write_text(good + "\n\n" + line + "\n")
                 code, files, sentence = plot(self.folder)
-                self.assertEqual((code, files, sentence.count("\n")), (6, [], 1), sentence)
-                self.assertIn(f"{self.folder / 'b.jsonl'}:3", sentence)
+                self.assertEqual((code, files, sentence.count("\n")), (3, [], 1), sentence)
+                self.assertTrue(sentence.startswith(f"{self.folder / 'b.jsonl'}:3: "), sentence)
                 self.assertIn(words, sentence)
 
     def test_rejects_files_without_records(self):
         (self.folder / "a.jsonl").write_text("\n")
         code, _, sentence = plot(self.folder)
-        self.assertEqual((code, sentence.count("\n")), (6, 1))
-        self.assertIn("holds no record", sentence)
-        (self.folder / "a.jsonl").write_bytes(b"\xff\xfe")
+        self.assertEqual((code, sentence), (3, f"{self.folder / 'a.jsonl'}: the file holds no records.\n"))
+        (self.folder / "a.jsonl").write_bytes(b"\n\xff\xfe")
+        code, _, sentence = plot(self.folder)
+        self.assertEqual((code, sentence), (3, f"{self.folder / 'a.jsonl'}:2: the file is no text in UTF-8.\n"))
+        (self.folder / "a.jsonl").unlink()
+        (self.folder / "a.jsonl").mkdir()
         self.assertEqual(plot(self.folder)[0], 6)
 
     def test_rejects_norm_without_study(self):

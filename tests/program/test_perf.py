@@ -4,6 +4,7 @@ import os
 import pathlib
 import re
 import shlex
+import shutil
 import signal
 import statistics
 import subprocess
@@ -255,7 +256,7 @@ class ProfiledOccupancy(perf_program.PerfTest):
                 (self.folder / "kernels.csv").write_text(profile, encoding="utf-8")
                 self.assertIn(hint, self.expect(3, "table", "occupancy", "--profile", "kernels.csv").stderr)
         self.assertIn("missing.csv", self.expect(2, "table", "occupancy", "--profile", "missing.csv").stderr)
-        self.assertIn("for table occupancy",
+        self.assertIn("it is for the tables occupancy, block-size",
                       self.expect(2, "table", "transfers", "--profile", "kernels.csv").stderr)
 
     def test_command_profiles_the_kernels_of_a_case(self):
@@ -381,6 +382,18 @@ class Scaling(perf_program.PerfTest):
             self.assertEqual({1, os.cpu_count()} | {2**k for k in range(16) if 2**k < os.cpu_count()}, threads["openmp"])
 
 
+# Writes the result of a run of 20 steps in 10 s, which fails its check on one rank.
+SCENE_RUN = """#!{python}
+import json, os, pathlib, sys
+out, ranks = pathlib.Path(sys.argv[sys.argv.index("--out") + 1]), int(os.environ["RANKS"])
+out.mkdir()
+(out / "result.json").write_text(json.dumps({{
+    "ranks": ranks, "threads": 1, "steps": 20, "timing": {{"compute_s": 10.0}}, "provenance": {{}},
+    "checks": [{{"value": 3.0 if ranks == 1 else 0.5, "tolerance": 1.0}}]}}))
+sys.exit(5 if ranks == 1 else 0)
+"""
+
+
 class ProgramScaling(perf_program.PerfTest):
     def scaled(self, *words):
         self.expect(0, "table", "scaling", "--quick", "--backend", "serial", "--most", "2", *words, "--out", "rows.jsonl",
@@ -408,9 +421,41 @@ class ProgramScaling(perf_program.PerfTest):
         launcher = self.folder / "mpirun"
         launcher.write_text("#!/bin/sh\necho ------\necho 'mpirun finds no slots.'\necho ------\nexit 1\n")
         launcher.chmod(0o755)
-        process = self.expect(77, "table", "scaling", "--over", "ranks", "--backend", "serial", "--quick",
+        process = self.expect(2, "table", "scaling", "--over", "ranks", "--backend", "serial", "--quick",
                               environment={"PATH": f"{self.folder}:{os.environ['PATH']}"})
         self.assertIn("a run on 1 ranks failed: mpirun finds no slots.", process.stderr)
+
+    @unittest.skipIf(LAUNCHER is None or os.getuid() != 0, "there is no mpirun, or no root")
+    def test_launcher_that_refuses_root_is_explained(self):
+        if "Open MPI" not in subprocess.run([LAUNCHER, "--version"], capture_output=True, text=True, check=False).stdout:
+            self.skipTest("another mpirun than that of Open MPI")
+        process = self.expect(2, "table", "scaling", "--over", "ranks", "--backend", "serial", "--quick",
+                              environment={"OMPI_ALLOW_RUN_AS_ROOT": "", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": ""})
+        self.assertIn("mpirun refuses to run as root; run as another user, or, in a container, set", process.stderr)
+
+    def test_failed_checks_have_no_time(self):
+        """The run on one rank fails its check: neither has a time, nor does that on two have an efficiency."""
+        program = self.folder / "bin/drogue-perf"
+        program.parent.mkdir()
+        shutil.copy(perf_program.PROGRAM.resolve(), program)
+        scene_run = program.with_name("drogue-parachute")
+        scene_run.write_text(SCENE_RUN.format(python=sys.executable))
+        launcher = self.folder / "mpirun"
+        launcher.write_text('#!/bin/sh\nshift\nexport RANKS="$1"\nshift\nexec "$@"\n')
+        for file in (scene_run, launcher):
+            file.chmod(0o755)
+        done = subprocess.run([program, "table", "scaling", "--over", "ranks", "--most", "2", "--backend", "serial", "--quick",
+                               "--out", "rows.jsonl"], cwd=self.folder, capture_output=True, text=True, check=False,
+                              env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        self.assertEqual((5, ""), (done.returncode, done.stderr), done.stdout)
+        _, heading, one, two = done.stdout.splitlines()
+        self.assertRegex(one, r"/ranks/1/strong +FAILED  a check is 3 times its tolerance$")
+        self.assertRegex(two, r"/ranks/2/strong +500000.00  \[500000.00 .. 500000.00\] +-$")
+        end = heading.index("us per step") + len("us per step")
+        self.assertEqual(["FAILED", "500000.00"], [row[end - 14:end].strip() for row in (one, two)])
+        failed, passed = self.records("rows.jsonl")
+        self.assertEqual(("failed", [0.5] * 3), (failed["check"], failed["samples"]))
+        self.assertEqual("passed", passed["check"])
 
     def test_ranks_need_a_launcher(self):
         process = self.expect(77, "table", "scaling", "--over", "ranks", "--backend", "serial",
@@ -511,10 +556,18 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "springs"], "valid names are transfers, scaling, abstraction"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["table", "scaling", "--app", "parachute"], "valid names are block-size, transfers"),
-                            (["table", "pressure", "--app", "gas"], "valid names are machine, occupancy, block-size, transfers, scaling, abstraction"),
+                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers, scaling, abstraction"),
                             (["table", "scaling", "--weak", "--app", "gas"], "weak scaling and ranks have --app flow"),
                             (["table", "scaling", "--most", "2"], "--most needs --weak or --over ranks"),
-                            (["table", "memory", "--over", "ranks"], "belong to the table scaling"),
+                            (["table", "memory", "--over", "ranks"], "the table memory does not use --over; it is for the table scaling"),
+                            (["table", "pressure", "--weak"], "--weak; it is for the table scaling"),
+                            (["table", "transfers", "--most", "2"], "--most; it is for the table scaling"),
+                            (["table", "transfers", "--architecture", "sm_90"],
+                             "the table transfers does not use --architecture; it is for the table occupancy"),
+                            (["table", "machine", "--app", "gas"],
+                             "it is for the tables occupancy, block-size, transfers, scaling, abstraction, pressure, memory"),
+                            (["table", "occupancy", "--backend", "serial"],
+                             "it is for the tables machine, block-size, transfers, scaling, abstraction, pressure, memory"),
                             (["table", "scaling", "--over", "nodes"], "nodes"),
                             (["table", "occupancy", "--app", "flow"], "valid names are block-size, pressure, memory, scaling, abstraction"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],

@@ -55,9 +55,23 @@ class Compare(perf_program.PerfTest):
                                                                   "--fail-on", "slower,error").stdout).values()))
 
     def test_says_that_no_case_could_be_compared(self):
-        process = self.compare(0, [record("new")], "--fail-on", "slower,error")
+        process = self.compare(0, [record("new")])
         self.assertEqual({"NOT-COMPARABLE"}, set(self.verdicts(process.stdout).values()))
         self.assertTrue(process.stdout.endswith("\nno case could be compared\n"), process.stdout)
+
+    def test_gate_fails_without_a_comparable_case(self):
+        other = record(CASES[0])
+        other["provenance"] = other["provenance"] | {"cpu": "B"}
+        for new, reason in (([record("new")], "new: only in the new records"),
+                            ([other], f"{CASES[0]}: other processor: 'A', now 'B'"),
+                            ([record(CASES[0], samples=[], median=None, interval=None)], f"{CASES[0]}: a record without samples")):
+            for words in ("slower", "error", "slower,error"):
+                with self.subTest(reason=reason, words=words):
+                    process = self.compare(2, new, "--fail-on", words)
+                    self.assertEqual({"NOT-COMPARABLE"}, set(self.verdicts(process.stdout).values()))
+                    self.assertIn("no case could be compared, so that --fail-on has nothing to pass; the first, " + reason,
+                                  process.stderr)
+        self.compare(0, [record("new"), record(CASES[1])], "--fail-on", "slower,error")
 
     def test_exit_code_is_5_for_a_named_verdict_alone(self):
         slow, wrong = [record(CASES[0], 1.3)], [record(CASES[0], error=2e-3)]
@@ -129,6 +143,24 @@ class Compare(perf_program.PerfTest):
         second, = self.records(name)
         self.assertNotEqual(first["samples"], second["samples"])
         self.assertEqual({first["case"]: "SAME"}, self.verdicts(self.expect(0, "compare", "baselines", name).stdout))
+
+    def test_filtered_run_keeps_the_other_cases_of_the_baseline(self):
+        (self.folder / "baselines").mkdir()
+        words = "run", "--quick", "--baseline", "baselines", "--filter"
+        name = self.expect(0, *words, "^gas-step/dense-loop/1024$").stdout.splitlines()[-1].removeprefix("baseline: ")
+        measured, = self.records(name)
+        old = measured | {"case": "gas-step/dense-loop/1"}
+        old["provenance"] = old["provenance"] | {"git": "old", "date": "2026-01-01T12:00:00Z"}
+        self.write(name, [old, measured])
+        text = self.expect(0, *words, "^gas-step/dense-loop/1024$").stdout
+        self.assertIn(f"{name}: replaces 1 record of commit {measured['provenance']['git']}, date ", text)
+        self.assertIn(f"{name}: keeps 1 record of other cases, of commit old, date 2026-01-01T12:00:00Z; ", text)
+        kept, new = self.records(name)
+        self.assertEqual(old, kept)
+        self.assertEqual(measured["case"], new["case"])
+        self.assertNotEqual(measured["samples"], new["samples"])
+        self.assertIn("old: commit old, date 2026-01-01T12:00:00Z, to commit ",
+                      self.expect(0, "compare", "baselines", name).stdout)
 
     def test_filter_selects_cases(self):
         new = [record(case, 1.3) for case in CASES]

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -17,11 +18,14 @@ PLOT = perf_program.PROGRAM.with_name("drogue-plot")
 
 
 class Report(perf_program.PerfTest):
-    def test_writes_page_and_exports(self):
+    def require_packages(self):
         if subprocess.run([PLOT, "--version"], capture_output=True, check=False).returncode != 0:
             self.skipTest("drogue-plot has no Python packages")
+
+    def test_writes_page_and_exports(self):
+        self.require_packages()
         text = self.expect(0, "report", RECORDS, "--out", "made").stdout
-        self.assertEqual(["made/records.csv", "made/reframe.json", "made/report.html"], text.splitlines())
+        self.assertEqual(["made/report.html", "made/records.csv", "made/reframe.json"], text.splitlines())
         with (self.folder / "made/records.csv").open(encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(24, len(rows))
@@ -30,6 +34,40 @@ class Report(perf_program.PerfTest):
         self.assertEqual([row["case"] for row in rows], [case["name"] for case in cases])
         page = (self.folder / "made/report.html").read_text(encoding="utf-8")
         self.assertTrue(all(row["case"] in page for row in rows))
+
+    def test_refuses_records_with_file_and_line_and_writes_nothing(self):
+        self.require_packages()
+        with open(RECORDS + "/old.jsonl", encoding="utf-8") as file:
+            good = next(line for line in file if '"gas-step/' in line)
+        record = json.loads(good)
+        facts = record["facts"]
+        scaling = record | {"case": "scaling/flow-step/serial/8x8x8/ranks/2/weak",
+                            "facts": {"backend": "serial", "cells": 512, "threads": 1}}
+        for line, words in (
+            (good[: len(good) // 2], "the line ends within a record"),
+            ('{"name": "BM_sort", "real_time": 1.5}', "no record of drogue-perf"),
+            (good.replace("perf/1", "perf/2"), 'the schema is "drogue.perf/2"'),
+            (json.dumps(record | {"samples": [float("nan")]}), "NaN at column"),
+            (json.dumps(record | {"samples": ["1e-3"]}), "samples[0] of"),
+            (json.dumps(record | {"samples": [1e-200]}), "the samples of"),
+            (json.dumps(record | {"facts": "none"}), "'facts' is no JSON object"),
+            (json.dumps(record | {"facts": [1]}), "'facts' is no JSON object"),
+            (json.dumps(record | {"facts": facts | {"flops": "many"}}), "fact 'flops' of"),
+            (json.dumps(record | {"facts": facts | {"flops": [1.0]}}), "fact 'flops' of"),
+            (json.dumps(record | {"facts": facts | {"bytes": 1e300}}), "fact 'bytes' of"),
+            (json.dumps(record | {"facts": facts | {"launches": 0.5}}), "fact 'launches' of"),
+            (json.dumps(record | {"case": "gas-step/serial"}), "is not gas-step/BACKEND/CELLS"),
+            (json.dumps(record | {"case": "flow-step/serial/8x8x8/periodic", "facts": {}}), "fact 'backend' of"),
+            (json.dumps(scaling), "fact 'ranks' of"),
+            (json.dumps(scaling | {"case": "scaling/sort/serial"}), "names no kernel of gas"),
+            (json.dumps(record | {"provenance": record["provenance"] | {"threads": "two"}}), "threads of"),
+        ):
+            with self.subTest(words):
+                (self.folder / "a.jsonl").write_text(good + "\n" + line + "\n", encoding="utf-8")
+                process = self.expect(3, "report", ".")
+                self.assertRegex(process.stderr, r"^(\./)?a\.jsonl:3: .*" + re.escape(words))
+                self.assertEqual("", process.stdout)
+                self.assertEqual(["a.jsonl"], [file.name for file in self.folder.iterdir()])
 
     def test_refuses_folders_without_valid_records(self):
         self.assertIn("there is no folder 'missing'", self.expect(2, "report", "missing").stderr)

@@ -188,6 +188,11 @@ class RunDirectory(springs_program.SpringsTest):
         self.assertGreater(self.result("b")["timing"]["d2h_s"], 0.0)
         self.assertEqual(["plain", "seed"], [self.result(run)["driver"] for run in "ab"])
 
+    def test_reports_the_time_of_the_frequency_bounds(self):
+        self.expect(0, self.write(DRUM), "--backend", "serial", "--out", "out")
+        timing = self.result("out")["timing"]
+        self.assertTrue(0.0 < timing["bound_s"] < timing["wall_s"], timing)
+
     def test_outputs_keep_the_vertex_order_of_the_file(self):
         """Renumbering for locality does not change the order of the outputs."""
         count = 12

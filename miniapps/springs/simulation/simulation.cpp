@@ -70,6 +70,12 @@ void Simulation::start() {
   plan();
 }
 
+/// Bound of the frequencies, rad/s, as that of the solver, in the time of bounds.
+double Simulation::fastest_frequency() {
+  const ScopedStopwatch stopwatch(_bound_s);
+  return _solver->fastest_frequency();
+}
+
 /// Longest stable step, s, for a largest frequency, rad/s.
 double Simulation::longest_stable_step(double frequency) {
   return fabric::stable_dt(_scene.time.integrator, frequency, _solver->fastest_decay());
@@ -77,7 +83,7 @@ double Simulation::longest_stable_step(double frequency) {
 
 /// Reference of automatic steps, s: time.safety is a share of it.
 double Simulation::stable_dt() {
-  double stable = longest_stable_step(_solver->fastest_frequency());
+  double stable = longest_stable_step(fastest_frequency());
   // Verlet's method is stable at any absolute damping, but resolves damped motion only in steps below
   // 1/damping.
   const double damping = _scene.damping.absolute;
@@ -85,7 +91,10 @@ double Simulation::stable_dt() {
   if (!_scene.contact.self) return stable;
   // The search distance of contact grows with the motion per step: a tenth of an edge keeps its lists short.
   std::vector<Vector> x(_problem.x.size()), v(x.size());
-  _solver->download(x, v);
+  {
+    const ScopedStopwatch stopwatch(_d2h_s);
+    _solver->download(x, v);
+  }
   double fastest = 0.0;
   for (const Vector& velocity : v)
     fastest = std::max(fastest, std::hypot(velocity[0], velocity[1], velocity[2]));
@@ -127,7 +136,7 @@ void Simulation::replan_if_stiffer() {
 /// for it.
 std::string Simulation::too_long_step() {
   const Time& requested = _scene.time;
-  const double dt = _solver->time_state().dt, bound = _solver->fastest_frequency();
+  const double dt = _solver->time_state().dt, bound = fastest_frequency();
   if (!requested.dt) return {};
   std::ostringstream text;
   if (dt == *requested.dt)
@@ -142,7 +151,11 @@ std::string Simulation::too_long_step() {
   if (dt <= longest_stable_step(bound)) return {};
   if (bound > 1.01 * _checked_frequency) {
     _checked_frequency = bound;
-    const double frequency = _solver->frequency_at_least();
+    double frequency = 0.0;
+    {
+      const ScopedStopwatch stopwatch(_bound_s);
+      frequency = _solver->frequency_at_least();
+    }
     // The computed frequency has the round-off of the differences of forces.
     if (fabric::grows(requested.integrator, dt, (1.0 - 1e-5) * frequency, _scene.damping.absolute,
                       _solver->fastest_decay())) {
@@ -270,6 +283,7 @@ void Simulation::describe(run::ResultDocument& result) {
   result.timing.compute_s = _compute_s;
   result.timing.h2d_s = _h2d_s;
   result.timing.d2h_s = _d2h_s;
+  result.timing.bound_s = _bound_s;
 }
 
 }  // namespace drogue::springs_app

@@ -58,6 +58,7 @@ class Simulation final : public framework::Simulation {
  private:
   void plan();
   void replan_if_stiffer();
+  [[nodiscard]] double fastest_frequency();
   [[nodiscard]] double longest_stable_step(double frequency);
   [[nodiscard]] double stable_dt();
   [[nodiscard]] std::string too_long_step();
@@ -80,7 +81,7 @@ class Simulation final : public framework::Simulation {
   std::optional<fabric::StepFailure> _failure;
   double _checked_frequency = 0.0;  ///< 1/s, bound of the frequencies at the last search for the largest
   std::int64_t _batch = 1;          ///< steps that one call of the solver takes
-  double _compute_s = 0.0, _h2d_s = 0.0, _d2h_s = 0.0;
+  double _compute_s = 0.0, _h2d_s = 0.0, _d2h_s = 0.0, _bound_s = 0.0;
 };
 
 }  // namespace drogue::springs_app

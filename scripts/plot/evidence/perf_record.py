@@ -1,11 +1,10 @@
 """Validated record of drogue-perf, one line of a *.jsonl file, with its machine."""
 
 import json
-import math
 import re
 from dataclasses import dataclass
 
-from ..failure import IO_ERROR, Failure
+from ..failure import INVALID, Failure
 
 SCHEMA = "drogue.perf/1"
 BACKENDS = {"serial": "Serial", "openmp": "OpenMP", "cuda": "CUDA"}
@@ -59,6 +58,15 @@ _NAMED_BY_CASE = (
     "options",
     "tridiagonal",
 )  # facts in the case name
+# Kinds of all mini-apps: the word of the case that names the kernel.
+_PLACE_OF_KERNEL = {"abstraction": 2, "scaling": 1}
+_APPS = ("gas", "springs", "options", "flow")
+# Layout of cases whose words the pages show, behind the kind.
+_LAYOUTS = {
+    "flow-pressure": (r"[^/]+/\d{1,9}x\d{1,9}x\d{1,9}/[^/]+/[^/]+(/.*)?", "BACKEND/NXxNYxNZ/SOLVER/SIDES[/TOLERANCE]"),
+    "flow-memory": (r"[^/]+/\d{1,9}x\d{1,9}x\d{1,9}/.+", "BACKEND/NXxNYxNZ/CASE"),
+}
+_METHODS = ("seed", "pide")  # of options-transfers
 _UNTIMED = ("flow-memory",)
 # Counted work of a step, for its bounds.
 _COUNTS = {"instructions": float, "launches": int, "driver": str}
@@ -83,6 +91,8 @@ _OPTIONAL = {
     "options-transfers": {"thesis": dict, "memory": str, "cpu_s": float},
 }  # fmt: skip
 KINDS = frozenset(_FACTS)
+# Ratios and products of numbers within these limits neither overflow nor vanish.
+_LARGEST, _LARGEST_COUNT = 1e100, 2**63 - 1
 _TYPES = {str: "text", int: "positive whole number", float: "number", dict: "JSON object"}
 
 
@@ -127,9 +137,7 @@ class Record:
     @property
     def app(self) -> str:
         """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, canopies to flow."""
-        place = {"abstraction": 2, "scaling": 1}.get(self.kind, 0)
-        kind = self.case.split("/")[place] if self.case.count("/") >= place else self.kind
-        app = kind.partition("-")[0]
+        app = self.case.split("/")[_PLACE_OF_KERNEL.get(self.kind, 0)].partition("-")[0]
         return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow"}.get(app, app)
 
     @property
@@ -157,66 +165,81 @@ class Record:
 
 
 def _has_type(value, kind: type) -> bool:
-    """Whether a value is of the kind; numbers must be finite, integers positive."""
+    """Whether a value is of the kind; numbers must be within the limits, integers positive."""
     if kind in (str, dict) or isinstance(value, bool):
         return kind in (str, dict) and isinstance(value, kind)
     if kind is int:
-        return isinstance(value, int) and value > 0
-    return isinstance(value, int | float) and math.isfinite(value)
+        return isinstance(value, int) and 0 < value <= _LARGEST_COUNT
+    return isinstance(value, int | float) and -_LARGEST <= value <= _LARGEST
+
+
+def _is_time(value) -> bool:
+    """Whether a value is a positive time, s."""
+    return _has_type(value, float) and value >= 1 / _LARGEST
 
 
 def _checked_facts(case: str, facts: dict, place: str) -> dict:
-    """Validated facts, completed by those in the case name; raises Failure (IO_ERROR)."""
+    """Validated facts, completed by those in the case name; raises Failure (INVALID)."""
     kind, *words = case.split("/")
     if kind in _NAMED_BY_CASE:
         if len(words) < 2 or not words[1].isdecimal():
-            raise Failure(IO_ERROR, f"{place}: '{case}' is not {kind}/BACKEND/CELLS[/VARIANT].")
+            raise Failure(INVALID, f"{place}: '{case}' is not {kind}/BACKEND/CELLS[/VARIANT].")
         facts = facts | {"backend": words[0], "cells": int(words[1]), "variant": "/".join(words[2:])}
+    if kind in _LAYOUTS and not re.fullmatch(_LAYOUTS[kind][0], "/".join(words)):
+        raise Failure(INVALID, f"{place}: '{case}' is not {kind}/{_LAYOUTS[kind][1]}.")
+    if kind in _PLACE_OF_KERNEL:
+        kernel = (case.split("/") + ["", ""])[_PLACE_OF_KERNEL[kind]]
+        if kernel.partition("-")[0] not in _APPS:
+            raise Failure(INVALID, f"{place}: '{case}' names no kernel of {', '.join(_APPS)}.")
+        if "/ranks/" in case and facts.get("ranks") is None:
+            raise Failure(INVALID, f"{place}: fact 'ranks' of {case} is no {_TYPES[int]}.")
     for name, wanted in _FACTS[kind].items():
         if not _has_type(facts.get(name), wanted):
-            raise Failure(IO_ERROR, f"{place}: fact '{name}' of {case} is no {_TYPES[wanted]}.")
+            raise Failure(INVALID, f"{place}: fact '{name}' of {case} is no {_TYPES[wanted]}.")
     for name, wanted in _OPTIONAL.get(kind, {}).items():
         if facts.get(name) is not None and not _has_type(facts[name], wanted):
-            raise Failure(IO_ERROR, f"{place}: fact '{name}' of {case} is no {_TYPES[wanted]}.")
+            raise Failure(INVALID, f"{place}: fact '{name}' of {case} is no {_TYPES[wanted]}.")
+    if kind == "options-transfers" and facts["method"] not in _METHODS:
+        raise Failure(INVALID, f"{place}: fact 'method' of {case} is none of {', '.join(_METHODS)}.")
     return {name: value for name, value in facts.items() if value is not None}
 
 
 def _times(document: dict, place: str) -> tuple[float, tuple[float, float]]:
-    """Median and confidence interval, s; raises Failure (IO_ERROR)."""
+    """Median and confidence interval, s; raises Failure (INVALID)."""
     median, interval = document.get("median"), document.get("interval")
-    if not _has_type(median, float) or median <= 0:
-        raise Failure(IO_ERROR, f"{place}: the median of {document['case']} is no time.")
+    if not _is_time(median):
+        raise Failure(INVALID, f"{place}: the median of {document['case']} is no time.")
     if (
         not isinstance(interval, list)
         or len(interval) != 2
-        or not all(_has_type(end, float) and end > 0 for end in interval)
+        or not all(_is_time(end) for end in interval)
     ):
-        raise Failure(IO_ERROR, f"{place}: the interval of {document['case']} is not two times.")
+        raise Failure(INVALID, f"{place}: the interval of {document['case']} is not two times.")
     return median, (interval[0], interval[1])
 
 
 def parse(line: str, place: str) -> Record:
-    """Record of a line of JSON; raises Failure (IO_ERROR) that names `place` (FILE:LINE) if it is invalid."""
+    """Record of a line of JSON; raises Failure (INVALID) that names `place` (FILE:LINE) if it is invalid."""
     try:
         document = json.loads(line)
     except ValueError as error:
-        raise Failure(IO_ERROR, f"{place} is no JSON: {str(error).partition(': line')[0]}.") from None
+        raise Failure(INVALID, f"{place}: no JSON: {str(error).partition(': line')[0]}.") from None
     if not isinstance(document, dict):
-        raise Failure(IO_ERROR, f"{place} holds no JSON object.")
+        raise Failure(INVALID, f"{place}: the line is no JSON object.")
     if document.get("schema") != SCHEMA:
         raise Failure(
-            IO_ERROR, f"{place} has schema '{document.get('schema', '')}'; drogue-plot reads {SCHEMA}."
+            INVALID, f"{place}: the schema is '{document.get('schema', '')}'; drogue-plot reads {SCHEMA}."
         )
     case, check = document.get("case"), document.get("check")
     facts, provenance = document.get("facts", {}), document.get("provenance", {})
     if not isinstance(case, str) or not case:
-        raise Failure(IO_ERROR, f"{place} names no case.")
+        raise Failure(INVALID, f"{place}: the record names no case.")
     if check not in ("passed", "failed"):
-        raise Failure(IO_ERROR, f"{place}: the check of {case} is neither passed nor failed.")
+        raise Failure(INVALID, f"{place}: the check of {case} is neither passed nor failed.")
     if not isinstance(facts, dict) or not isinstance(provenance, dict):
-        raise Failure(IO_ERROR, f"{place}: facts or provenance of {case} is no JSON object.")
+        raise Failure(INVALID, f"{place}: facts or provenance of {case} is no JSON object.")
     if not _has_type(provenance.get("threads", 1), int):
-        raise Failure(IO_ERROR, f"{place}: threads of {case} is no positive whole number.")
+        raise Failure(INVALID, f"{place}: threads of {case} is no positive whole number.")
     median, interval, error = None, None, document.get("error")
     kind = case.partition("/")[0]
     if kind in _FACTS:
@@ -226,9 +249,9 @@ def parse(line: str, place: str) -> Record:
             if document.get("median") is not None or document.get("samples"):
                 median, interval = _times(document, place)
             if kind.endswith("-solution") and not _has_type(error, float):
-                raise Failure(IO_ERROR, f"{place}: the error of {case} is no number.")
+                raise Failure(INVALID, f"{place}: the error of {case} is no number.")
     unit, error = str(document.get("unit", "")), error if _has_type(error, float) else None
     samples = document.get("samples", [])
-    if not isinstance(samples, list) or not all(_has_type(sample, float) and sample > 0 for sample in samples):
-        raise Failure(IO_ERROR, f"{place}: the samples of {case} are no times.")
+    if not isinstance(samples, list) or not all(_is_time(sample) for sample in samples):
+        raise Failure(INVALID, f"{place}: the samples of {case} are no times.")
     return Record(case, unit, check, median, interval, error, facts, provenance, tuple(samples))

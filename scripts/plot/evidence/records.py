@@ -4,7 +4,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..failure import IO_ERROR, Failure
+from ..failure import INVALID, IO_ERROR, Failure
 from ..run_directory import RECORDS
 from .perf_record import KINDS, Machine, Record, parse
 
@@ -71,16 +71,22 @@ def _latest(records: list[Record]) -> list[Record]:
 
 
 def read_records(folder: Path) -> Evidence | None:
-    """Records of all *.jsonl files of a folder, None without files; raises Failure (IO_ERROR) on an invalid line."""
+    """Records of all *.jsonl files of a folder, None without files.
+
+    Raises Failure: INVALID for an invalid line or without records, IO_ERROR for an unreadable file.
+    """
     files = sorted(folder.glob(RECORDS))
     if not files:
         return None
     evidence, known = Evidence(folder), []
     for file in files:
         try:
-            lines = file.read_text(encoding="utf-8").split("\n")
-        except (OSError, UnicodeDecodeError) as error:
+            lines = file.read_bytes().decode("utf-8").split("\n")
+        except OSError as error:
             raise Failure(IO_ERROR, f"{file} cannot be read: {error}.") from None
+        except UnicodeDecodeError as error:
+            line = error.object.count(b"\n", 0, error.start) + 1
+            raise Failure(INVALID, f"{file}:{line}: the file is no text in UTF-8.") from None
         for number, line in enumerate(lines, 1):
             if not line.strip():
                 continue
@@ -91,7 +97,7 @@ def read_records(folder: Path) -> Evidence | None:
             else:
                 evidence.unknown_kinds[record.kind] += 1
     if not known and not evidence.unknown_kinds:
-        raise Failure(IO_ERROR, f"{folder} holds no record: its {RECORDS} are empty.")
+        raise Failure(INVALID, f"{files[0]}: the file holds no records.")
     latest = _latest(known)
     kept = {id(record) for record in latest}
     evidence.superseded = [record for record in known if id(record) not in kept]

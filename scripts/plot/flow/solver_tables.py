@@ -8,6 +8,12 @@ from .goals import BYTES_PER_CELL
 _NAMES = {"fft": "transforms", "diagonalization": "matrix products", "hypre-pfmg": "hypre PFMG"}
 
 
+def _place(record: Record) -> int:
+    """Place of the backend in tables; unknown ones stand last."""
+    backend = record.facts["backend"]
+    return list(BACKENDS).index(backend) if backend in BACKENDS else len(BACKENDS)
+
+
 def _axes(record: Record) -> list[int]:
     """Cells per axis, from the case name."""
     return [int(word) for word in record.case.split("/")[2].split("x")]
@@ -34,7 +40,7 @@ def pressure_sections(records: list[Record]) -> list[Section]:
     """One section on the times of pressure solvers, none without records."""
     if not records:
         return []
-    ordered = sorted(records, key=lambda record: (list(BACKENDS).index(record.facts["backend"]), record.facts["cells"],
+    ordered = sorted(records, key=lambda record: (_place(record), record.facts["cells"],
                                                   record.case.split("/")[4], record.median))  # fmt: skip
     columns = [("backend", False), ("grid", False), ("sides", False), ("solver", False), ("tolerance", True),
                ("ms per solve", True), ("ns per cell", True), ("iterations", True), ("residual", True)]  # fmt: skip
@@ -60,7 +66,7 @@ def memory_sections(records: list[Record]) -> list[Section]:
     """One section on the memory of flow solvers, none without records."""
     if not records:
         return []
-    ordered = sorted(records, key=lambda record: (list(BACKENDS).index(record.facts["backend"]), record.facts["variant"],
+    ordered = sorted(records, key=lambda record: (_place(record), record.facts["variant"],
                                                   record.facts["cells"]))  # fmt: skip
     columns = [("backend", False), ("grid", False), ("case", False), ("arrays", True), ("driver", True)]
     goal, stretch = BYTES_PER_CELL

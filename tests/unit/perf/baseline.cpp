@@ -17,11 +17,16 @@ class BaselineFolder : public testing::Test {
     return {{"cpu", cpu}, {"gpu", gpu}, {"threads", 2}, {"git", "abc"}, {"date", "2026-11-20T12:00:00Z"}};
   }
 
-  std::string write(const std::string& name, const nlohmann::json& provenance) {
+  static std::string line_of(const std::string& name, const nlohmann::json& provenance) {
     nlohmann::json record = nlohmann::json::parse(
-        R"({"schema":"drogue.perf/1","case":"a/b/1","unit":"s per step","samples":[1e-3],"error":0.5,"check":"passed"})");
+        R"({"schema":"drogue.perf/1","unit":"s per step","samples":[1e-3],"error":0.5,"check":"passed"})");
+    record["case"] = name;
     record["provenance"] = provenance;
-    return write_text(name, record.dump() + "\n");
+    return record.dump() + "\n";
+  }
+
+  std::string write(const std::string& name, const nlohmann::json& provenance) {
+    return write_text(name, line_of("a/b/1", provenance));
   }
 
   std::string write_text(const std::string& name, const std::string& text) {
@@ -33,7 +38,9 @@ class BaselineFolder : public testing::Test {
   /// Name of the file in the folder, or the sentence of the refusal.
   std::string file_for(const nlohmann::json& provenance) {
     try {
-      return std::filesystem::path(file_for_baseline(path(), provenance)).filename().string();
+      return std::filesystem::path(file_for_baseline(path(), provenance, {"a/b/1"}, false).file)
+          .filename()
+          .string();
     } catch (const Failure& failure) {
       EXPECT_EQ(failure.code(), ExitCode::usage);
       return failure.what();
@@ -70,12 +77,49 @@ TEST_F(BaselineFolder, ReplacesTheFileOfTheMachineAndNamesItsAge) {
       << printed;
 }
 
+TEST_F(BaselineFolder, KeepsOtherCasesWithTheirAge) {
+  nlohmann::json old = machine("A"), now = machine("A");
+  old["date"] = "2026-11-01T12:00:00Z", old["git"] = "old";
+  now["date"] = "2026-11-23T12:00:00Z";
+  const std::string kept = line_of("c", machine("A")), older = line_of("d", old);
+  write_text("mine.jsonl", line_of("a/b/1", machine("A")) + older + kept + line_of("a/b/1", machine("A")));
+  testing::internal::CaptureStdout();
+  const BaselineFile others = file_for_baseline(path(), now, {"a/b/1"}, true);
+  const std::string printed = testing::internal::GetCapturedStdout();
+  ASSERT_EQ(others.kept.size(), 2U);
+  EXPECT_EQ(others.kept[0].dump() + "\n", older);
+  EXPECT_EQ(others.kept[1].dump() + "\n", kept);
+  EXPECT_NE(printed.find("mine.jsonl: replaces 2 records of commit abc, date 2026-11-20T12:00:00Z; 3.0 days "
+                         "later\n"),
+            std::string::npos)
+      << printed;
+  EXPECT_NE(printed.find("mine.jsonl: keeps 2 records of other cases, of commit old, date "
+                         "2026-11-01T12:00:00Z, to commit abc, date 2026-11-20T12:00:00Z; 22.0 days later\n"),
+            std::string::npos)
+      << printed;
+  EXPECT_TRUE(file_for_baseline(path(), now, {"a/b/1"}, false).kept.empty());
+  EXPECT_EQ(file_for_baseline(path(), now, {"new"}, true).kept.size(), 4U);
+}
+
+TEST_F(BaselineFolder, AgeIsThatOfTheOldestRecordOfKnownDate) {
+  std::vector<MeasuredCase> before(3);
+  MeasuredCase after;
+  before[0].provenance = machine("A");
+  before[1].provenance = before[2].provenance = after.provenance = machine("A");
+  before[0].provenance.erase("date");
+  before[1].provenance["date"] = "2026-10-01T12:00:00Z";
+  EXPECT_EQ(describe_origin(before),
+            "commit abc, date 2026-10-01T12:00:00Z, to commit abc, date 2026-11-20T12:00:00Z");
+  EXPECT_EQ(describe_age(before, after),
+            "; 50.0 days later; measure the old commit again before a verdict matters");
+}
+
 TEST_F(BaselineFolder, RefusesSeveralFilesOfOneMachineAndMissingFolders) {
   write("a.jsonl", machine("A"));
   write("b.jsonl", machine("A"));
   EXPECT_NE(file_for(machine("A")).find("has several baselines of one machine"), std::string::npos);
   try {
-    static_cast<void>(file_for_baseline(path() + "/missing", machine("A")));
+    static_cast<void>(file_for_baseline(path() + "/missing", machine("A"), {"a/b/1"}, false));
     FAIL();
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::usage);

@@ -1,0 +1,62 @@
+#include "perf/bisect/failed_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "common/run/files/temporary_folder.hpp"
+
+namespace drogue::perf {
+namespace {
+
+/// Code and sentence of a run on two ranks that wrote `log`.
+std::pair<ExitCode, std::string> failed(int status, const std::string& log) {
+  const run::TemporaryFolder folder("drogue-test");
+  std::ofstream(folder.path() / "log") << log;
+  const Failure failure = failed_run("2 ranks", status, folder.path() / "log");
+  return {failure.code(), failure.what()};
+}
+
+TEST(FailedRun, HasCodeAndSentenceOfTheProgram) {
+  EXPECT_EQ(
+      failed(4, "--------\ndrogue-parachute: NaN in cell 1\n--------\nmpirun exits since it runs as root\n"),
+      std::pair(ExitCode::numerical_failure,
+                std::string("a run on 2 ranks failed: drogue-parachute: NaN in cell 1")));
+}
+
+TEST(FailedRun, ExplainsThatMpirunRefusesRoot) {
+  const auto [code, sentence] =
+      failed(1,
+             "-------\nmpirun has detected an attempt to run as root.\n\nRunning as "
+             "root is *strongly* discouraged\n------\n");
+  EXPECT_EQ(code, ExitCode::usage);
+  EXPECT_EQ(
+      sentence,
+      "a run on 2 ranks failed: mpirun refuses to run as root; run as another user, or, in a container, set "
+      "OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
+}
+
+TEST(FailedRun, JoinsTheFirstParagraphOfALauncher) {
+  EXPECT_EQ(
+      failed(1, "-----\nThere are not enough slots to satisfy the 64\n  slots that were requested:\n\n  a\n"),
+      std::pair(ExitCode::usage,
+                std::string("a run on 2 ranks failed: There are not enough slots to satisfy the 64 "
+                            "slots that were requested.")));
+}
+
+TEST(FailedRun, NamesForeignEndsInsteadOfPassingTheirCodesOn) {
+  EXPECT_EQ(failed(139, ""),
+            std::pair(ExitCode::io_error, std::string("a run on 2 ranks failed: signal 11 ended it")));
+  EXPECT_EQ(
+      failed(127, "env: 'x': No such file\n"),
+      std::pair(ExitCode::io_error,
+                std::string("a run on 2 ranks failed: it ended with code 127: env: 'x': No such file")));
+  for (const int status : {0, 5})
+    EXPECT_EQ(
+        failed(status, ""),
+        std::pair(ExitCode::io_error, std::string("a run on 2 ranks failed: it ended without a result")));
+  EXPECT_EQ(failed(77, "").first, ExitCode::io_error);
+}
+
+}  // namespace
+}  // namespace drogue::perf
