@@ -130,6 +130,8 @@ Architecture hopper() {
   return a;
 }
 
+int unbounded_registers(int threads) { return std::min(255, 65536 / threads / 8 * 8); }
+
 Occupancy occupancy(const Architecture& on, const Block& block, int carve_out) {
   const int warps = (block.threads + warp - 1) / warp;
   Occupancy o{};

@@ -45,12 +45,18 @@ struct Block {
 /// Largest number of threads of a block on all architectures.
 inline constexpr int largest_block = 1024;
 
+/// Largest number of registers per thread of a kernel without launch bounds that a block of `threads` (1 to
+/// `largest_block`) can have on a multiprocessor with 64 Ki registers, of compute capability 5.0 or later:
+/// the limit of the compiler, 255, or the part of a thread in units of 8. Does not throw.
+int unbounded_registers(int threads);
+
 /// Resident blocks of a multiprocessor and the resulting occupancy.
 struct Occupancy {
   int by_registers, by_shared_memory, by_threads, by_limit;  ///< blocks under each limit alone
   int blocks;                                                ///< the least of these
-  int threads, device_threads;
-  double occupancy;  ///< fraction of the largest number of resident threads
+  int threads;
+  int device_threads;  ///< 0 if the number of multiprocessors is unknown
+  double occupancy;    ///< fraction of the largest number of resident threads
 };
 
 /// Occupancy of `on` by blocks of one kernel. `carve_out`: bytes of the memory of a multiprocessor that a

@@ -175,7 +175,8 @@ std::vector<BlockForm> options_forms(device::Backend backend, bool quick) {
                                 {.method = options::Method::cos, .block = block}, 1e-4);
            },
            [](int block) {
-             return Block{block, bounded_registers, team_buffer(block)};
+             // Its launch states no bounds.
+             return Block{block, unbounded_registers(block), team_buffer(block)};
            }}};
 }
 

@@ -172,6 +172,21 @@ TEST(Occupancy, UnitsOfFermiLeaveTable42) {
         << printed.block;
 }
 
+// One block of so many registers can be launched, and no block of eight more, unless the compiler has no
+// more.
+TEST(Occupancy, RegistersWithoutLaunchBoundsAreTheMostThatABlockCanHave) {
+  EXPECT_EQ(unbounded_registers(32), 255);
+  EXPECT_EQ(unbounded_registers(256), 255);
+  EXPECT_EQ(unbounded_registers(384), 168);
+  EXPECT_EQ(unbounded_registers(512), 128);
+  for (const Architecture& on : architectures().subspan(3))  // 64 Ki registers of up to 255 a thread
+    for (int threads = 128; threads <= largest_block; threads += 128) {
+      const int most = unbounded_registers(threads);
+      EXPECT_GE(occupancy(on, {threads, most, 0}).blocks, 1) << on.name << ", " << threads;
+      EXPECT_EQ(occupancy(on, {threads, most + 1, 0}).blocks, 0) << on.name << ", " << threads;
+    }
+}
+
 TEST(Occupancy, CarveOutLimitsSharedMemory) {
   const Block block{64, 32, 15 * 1024};
   EXPECT_EQ(occupancy(hopper(), block).by_shared_memory, 14);
