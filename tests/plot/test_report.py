@@ -109,8 +109,14 @@ class Report(Folder):
         profiled = computed[-2:]
         self.assertEqual(["gas::FluxFunctor", "sm_90", "128", "168", "0", "3", "4", "2.88", "18.8", "registers", "failed"], profiled[0])
         self.assertEqual("gas::StepFunctor", profiled[1][0])
-        self.assertIn("1 of 2 kernels are predicted to the block", page.words)
+        self.assertIn("1 of 2 profiled kernels are predicted to the block", page.words)
         self.assertIn("The fused step of drogue-gas on sm_86", page.words)
+
+    def test_profiles_with_a_contradiction_are_not_folded(self):
+        *rest, passed, failed = records.occupancy()
+        many = [passed | {"case": f"{passed['case']}/{number}"} for number in range(41)]
+        self.assertIn("<summary>Profiled kernels (41 rows)</summary>", self.report([*rest, *many]))
+        self.assertNotIn("<summary>", self.report([*rest, *many, failed]))
 
     def test_names_records_without_samples(self):
         empty = records.step("cuda/2048", None, records.H200, 2048, samples=[], interval=None)

@@ -5,7 +5,7 @@ from .perf_record import Record
 from .section import Cell, Section, Table
 
 _LIMITS = ("registers", "shared_memory", "threads", "limit")
-_MOST_OPEN_ROWS = 40  # of a table that is not folded
+_MOST_OPEN_ROWS = 40  # of a table without contradictions that is not folded
 
 
 def _percent(record: Record) -> str:
@@ -77,12 +77,9 @@ def profile_table(records: list[Record]) -> Table:
                 _percent(record), facts.get("limited_by", ""), _check(record),
             ]
         )  # fmt: skip
-    right = sum(record.check == "passed" for record in records)
-    note = (
-        f"{right} of {len(records)} kernels are predicted to the block. Achieved: by ncu's limits of the launch; mean: by "
-        "counters, of the largest launch. Contradictions come first."
-    )
-    return Table(columns, rows, "Profiled kernels", note, len(rows) > _MOST_OPEN_ROWS)
+    note = "Achieved: by ncu's limits of the launch; mean: by counters, of the largest launch. Contradictions come first."
+    is_right = all(record.check == "passed" for record in records)
+    return Table(columns, rows, "Profiled kernels", note, is_right and len(rows) > _MOST_OPEN_ROWS)
 
 
 def sections(records: list[Record]) -> list[Section]:
@@ -98,5 +95,7 @@ def sections(records: list[Record]) -> list[Section]:
     tables = [printed_table(printed)] if printed else []
     tables += [steps_table(architecture, own) for architecture, own in of_gas.items()]
     tables += [profile_table(profiled)] if profiled else []
+    right = sum(record.check == "passed" for record in profiled)
+    notes = [f"{right} of {len(profiled)} profiled kernels are predicted to the block."] if profiled else []
     command = "drogue-perf table occupancy [--architecture NAME] [--profile FILE] --out FILE.jsonl"
-    return [Section("Occupancy", command, records, tables=tables)]
+    return [Section("Occupancy", command, records, tables=tables, notes=notes)]
