@@ -133,6 +133,11 @@ def quick_records(folder):
                   if path.with_suffix(".jsonl").exists() and "--quick" in shlex.split(command))  # fmt: skip
 
 
+def cases(file):
+    """Names of the cases of a file, none if it does not exist."""
+    return {json.loads(line)["case"] for line in file.read_text(encoding="utf-8").splitlines()} if file.exists() else set()
+
+
 def copy_records(folder, machine, evidence):
     """Copies all records; those of options alone into one file, in the order of their numbers."""
     joined = {}
@@ -144,6 +149,8 @@ def copy_records(folder, machine, evidence):
         joined[file] = joined.get(file, "") + text
     for file, text in joined.items():
         (evidence / file).parent.mkdir(exist_ok=True)
+        if lost := cases(evidence / file) - {json.loads(line)["case"] for line in text.splitlines()}:
+            print(f"{file} had {len(lost)} other cases, such as {min(lost)}: the new records replace them too")
         (evidence / file).write_text(text, encoding="utf-8")
 
 

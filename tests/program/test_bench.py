@@ -262,11 +262,16 @@ class Bench(unittest.TestCase):
                          (quick.returncode, quick.stderr))
         self.assertEqual(["README.md"], [path.name for path in (tree / "docs/evidence").iterdir()])
         text.write_text(f"{command}\n{printed}")
-        subprocess.run(words, capture_output=True, check=True)
+        first = subprocess.run(words, capture_output=True, text=True, check=True)
+        self.assertEqual("", first.stdout)
         published = {path.relative_to(tree / "docs/evidence").as_posix(): path for path in (tree / "docs").rglob("*.jsonl")}
         flat = {f"{name}-h200.jsonl" for name in self.names("--backend", "cuda") if "/" not in name and not name.startswith("ladder")}
         ladders = {f"ladders/{name}-cuda-h200.jsonl" for name in ("weno", "springs", "options", "transfers")}
         self.assertEqual(flat | ladders | {"alone/options-h200.jsonl"}, set(published))
+        published["occupancy-h200.jsonl"].write_text('{"case": "occupancy/sm_90/kernel"}\n')
+        again = subprocess.run(words, capture_output=True, text=True, check=True)
+        self.assertEqual("occupancy-h200.jsonl had 1 other cases, such as occupancy/sm_90/kernel: the new records replace them too\n",
+                         again.stdout)
         batches = published["alone/options-h200.jsonl"].read_text().splitlines()
         self.assertEqual(["options-1.jsonl", "options-4096.jsonl"], [json.loads(line)["case"] for line in batches])
         self.assertEqual("page", (tree / "docs/evidence/report-h200.html").read_text().strip())
@@ -275,7 +280,7 @@ class Bench(unittest.TestCase):
         self.assertIn("| `occupancy-h200.jsonl` | `drogue-perf table occupancy --out occupancy-h200.jsonl` |", "\n".join(rows))
         calls = [f"drogue-plot {self.out} --report --quiet", *(f"{name} " for name in generators),
                  f"drogue-plot {tree}/docs/evidence --quiet"]  # fmt: skip
-        self.assertEqual(calls, (self.folder / "renewed.txt").read_text().splitlines())
+        self.assertEqual(2 * calls, (self.folder / "renewed.txt").read_text().splitlines())
 
     def test_published_records_replace_older_ones_that_no_document_quotes(self):
         evidence = self.folder / "docs/evidence"

@@ -221,7 +221,7 @@ class ProfiledOccupancy(perf_program.PerfTest):
 
     The file is written by hand, since no table of ncu is kept. It imitates `ncu --csv --page raw --print-units base` of CUDA 13.0:
     columns, units, separators of thousands, and names of kernels by Kokkos 4.5 and by cooperative launches. Its resources, limits
-    of blocks and warps are those that ncu gave on an H100 (docs/evidence/occupancy-h100.jsonl); durations, the second launch of a
+    of blocks and warps are those that ncu gave on an H100 (docs/evidence/occupancy-profile-h100.jsonl); durations, the second launch of a
     step of springs, and the parts of static and dynamic shared memory are invented.
     """
 
@@ -249,7 +249,7 @@ class ProfiledOccupancy(perf_program.PerfTest):
 
     def test_profile_holds_what_ncu_recorded(self):
         _, records = self.rows(0, self.profile)
-        lines = (SOURCE / "docs/evidence/occupancy-h100.jsonl").read_text(encoding="utf-8").splitlines()
+        lines = (SOURCE / "docs/evidence/occupancy-profile-h100.jsonl").read_text(encoding="utf-8").splitlines()
         recorded = {record["case"]: record["facts"] for record in map(json.loads, lines)}
         self.assertEqual(8, len(records))
         for record in records:
