@@ -37,7 +37,7 @@ case "$backend" in '' | cuda | openmp | serial) ;; *) usage "there is no backend
 if [ -z "$bin" ]; then
   preset=host
   [ "$backend" = openmp ] || [ "$backend" = serial ] || [ -z "$(find_nvcc)" ] || ! nvidia-smi -L >/dev/null 2>&1 || preset=cuda
-  [ "$list" = yes ] || { "$root/scripts/setup.sh" && "$root/scripts/build.sh" "$preset" --target drogue-perf; }
+  [ "$list" = yes ] || { "$root/scripts/setup.sh" && "$root/scripts/build.sh" "$preset" --target drogue-perf --target drogue-parachute; }
   bin="$root/build/$preset/bin"
 fi
 perf="$bin/drogue-perf"
@@ -105,6 +105,14 @@ cases() {
   if grep -qE "$filter" <<<"$cases"; then record "$1" run --filter "$filter"; fi
 }
 
+# ranks_here: number of cores, if mpirun starts as many ranks; else fails. Open MPI has no slots for hardware threads.
+ranks_here() {
+  local cores
+  cores="$(lscpu -p=core,socket 2>/dev/null | grep -v '^#' | sort -u | wc -l)"
+  cores="$((cores < $(nproc) ? cores : $(nproc)))"
+  [ "$cores" -gt 1 ] && timeout 60 mpirun -n "$cores" true >/dev/null 2>&1 </dev/null && printf '%s\n' "$cores"
+}
+
 if [ "$list" = no ]; then
   mkdir -p "$folder" && [ -w "$folder" ] || fail "cannot write to $folder."
   exec 9>"$lock"
@@ -130,6 +138,7 @@ cases flight parachute-flight
 for count in $(grep -oE '^options/cuda/[0-9]+/' <<<"$cases" | sort -ut / -k 3n | cut -d / -f 3); do
   [ "$backend" != cuda ] || record "alone/options-$count" run --filter "^options/cuda/$count/"
 done
+record machine table machine --backend "$one"
 record occupancy table occupancy
 if [ "$backend" = cuda ]; then
   for app in gas options flow parachute; do record "$app-block" table block-size --app $app --backend cuda; done
@@ -139,6 +148,15 @@ for app in gas springs options parachute; do record "$app-transfers" table trans
 record flow-pressure table pressure --backend "$one"
 record flow-memory table memory --backend "$one"
 for app in gas springs options flow; do record "scaling-$app" table scaling --app $app --backend "$one"; done
+if [ "$backend" != cuda ]; then
+  [ "$one" = serial ] || record scaling-flow-weak table scaling --weak --backend "$one"
+  if ranks="$(ranks_here)"; then
+    record scaling-flow-ranks table scaling --over ranks --most "$ranks" --backend "$one"
+    record scaling-flow-ranks-weak table scaling --over ranks --weak --most "$ranks" --backend "$one"
+  else
+    say "no scaling over ranks: this is one core, or mpirun does not start a rank on each of its cores"
+  fi
+fi
 for ladder in weno springs options transfers; do record "ladder-$ladder" ladder $ladder --backend "$one"; done
 solver="$([ "$one" != auto ] && echo "$one" || echo serial)"
 if [ "$solutions" = no ]; then

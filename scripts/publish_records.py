@@ -5,14 +5,16 @@
 
 FOLDER: that of bench.sh, here or brought from the machine; its files NAME.txt begin with the command of NAME.jsonl. Copies
 NAME.jsonl to docs/evidence/NAME-MACHINE.jsonl and the page to report-MACHINE.html; writes their rows in docs/evidence/README.md
-(one of the same name is replaced); starts the scripts that write tables, and drogue-plot of --bin. Does nothing if a record
-failed its check.
+(one of the same name is replaced); starts the scripts that write tables, and drogue-plot of --bin. Older records of the same
+cases in other files of MACHINE go, with the rows of files that hold no other; files that a document quotes stay. Does nothing
+if a record failed its check, or was made with --quick.
 """
 
 import argparse
 import json
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -48,7 +50,8 @@ def rows(folder, machine):
             command = command.replace(f"/{name.rpartition('-')[2]}/", "/N/") + ", one run per N,"
         file = published_name(name, record.get("facts", {}).get("backend", ""), machine)
         found.setdefault(file, row(file, command, record))
-    return found
+    report = f"report-{machine}.html"
+    return found | {report: f"| `{report}` | `drogue-plot FOLDER --report` | from the records `*-{machine}.jsonl` of one run of `scripts/bench.sh` |"}
 
 
 def renewed(text, lines):
@@ -63,6 +66,78 @@ def renewed(text, lines):
     return "\n".join(kept[: last + 1] + list(lines.values()) + kept[last + 1 :])
 
 
+def unlisted(evidence):
+    """Names in the first table of the list of files that match no file, and files that it does not name."""
+    lines = (evidence / "README.md").read_text(encoding="utf-8").split("\n")
+    table = lines[next(n for n, line in enumerate(lines) if line.startswith("|---")) + 1 :]
+    table = table[: next((n for n, line in enumerate(table) if not line.startswith("|")), len(table))]
+    names = [name for line in table for name in re.findall("`([^`]+)`", line.split("|")[1])]
+    files = {path.relative_to(evidence).as_posix() for path in evidence.rglob("*") if path.is_file()} - {"README.md"}
+    matched = {name: {path.relative_to(evidence).as_posix() for path in evidence.glob(name)} for name in names}
+    return sorted(name for name in names if not matched[name]), sorted(files.difference(*matched.values()))
+
+
+def without_rows(text, files):
+    """The text of the page without the rows of the files in its first table."""
+    return "".join(line for line in text.splitlines(keepends=True)
+                   if not ((file := re.match(r"\| `([^`]+)` \|", line)) and file[1] in files))  # fmt: skip
+
+
+def identity(record):
+    """Case and machine of a record."""
+    return record["case"], record["provenance"]["gpu"], record["provenance"]["cpu"]
+
+
+def quoting(evidence, file):
+    """Documents that name a file of `evidence`, but its own list of files."""
+    documents = [evidence.parent.parent / "README.md", *sorted(evidence.parent.rglob("*.md"))]
+    return [page for page in documents if page != evidence / "README.md" and page.exists()
+            and f"evidence/{file.relative_to(evidence).as_posix()}" in page.read_text(encoding="utf-8")]  # fmt: skip
+
+
+def remove_older(evidence, published, machine):
+    """Removes records that the published files replace from other files of the machine that no document quotes.
+
+    Returns the names of the files that held no other records, which it deletes. Prints what goes and what stays.
+    """
+    newest = {}
+    for name in published:
+        for line in (evidence / name).read_text(encoding="utf-8").splitlines():
+            record = json.loads(line)
+            newest[identity(record)] = record["provenance"]["date"]
+    emptied = []
+    for file in sorted(evidence.glob(f"*-{machine}.jsonl")):
+        if file.name in published:
+            continue
+        lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+        records = map(json.loads, lines)
+        kept = [line for line, record in zip(lines, records) if record["provenance"]["date"] >= newest.get(identity(record), "")]
+        if len(kept) == len(lines):
+            continue
+        if pages := quoting(evidence, file):
+            print(f"{file.name} stays with {len(lines) - len(kept)} older records: {', '.join(page.name for page in pages)} quotes it")
+        elif kept:
+            file.write_text("".join(kept), encoding="utf-8")
+            print(f"{file.name}: {len(lines) - len(kept)} older records are removed")
+        else:
+            file.unlink()
+            emptied.append(file.name)
+            print(f"{file.name} is deleted: newer records replace all of it")
+    return emptied
+
+
+def quick_records(folder):
+    """Names of the records that were made with --quick, by their commands."""
+    commands = {path: path.read_text(encoding="utf-8").partition("\n")[0] for path in folder.rglob("*.txt")}
+    return sorted(path.stem for path, command in commands.items()
+                  if path.with_suffix(".jsonl").exists() and "--quick" in shlex.split(command))  # fmt: skip
+
+
+def cases(file):
+    """Names of the cases of a file, none if it does not exist."""
+    return {json.loads(line)["case"] for line in file.read_text(encoding="utf-8").splitlines()} if file.exists() else set()
+
+
 def copy_records(folder, machine, evidence):
     """Copies all records; those of options alone into one file, in the order of their numbers."""
     joined = {}
@@ -74,6 +149,8 @@ def copy_records(folder, machine, evidence):
         joined[file] = joined.get(file, "") + text
     for file, text in joined.items():
         (evidence / file).parent.mkdir(exist_ok=True)
+        if lost := cases(evidence / file) - {json.loads(line)["case"] for line in text.splitlines()}:
+            print(f"{file} had {len(lost)} other cases, such as {min(lost)}: the new records replace them too")
         (evidence / file).write_text(text, encoding="utf-8")
 
 
@@ -83,11 +160,14 @@ def publish(folder, machine, programs):
     failed = sorted(path.name.removesuffix(".jsonl.failed") for path in folder.rglob("*.jsonl.failed"))
     if failed:
         sys.exit(f"nothing is published: a row of {', '.join(failed)} failed its check")
+    if quick := quick_records(folder):
+        sys.exit(f"nothing is published: {', '.join(quick)} was made with --quick, whose few samples are no evidence")
     if not any(folder.rglob("*.jsonl")):
         sys.exit(f"{folder} holds no records of scripts/bench.sh")
     if not plot.exists():
         sys.exit(f"there is no {plot}: build it, or name the folder of another by --bin")
     found = rows(folder, machine)
+    published = set(found)
     subprocess.run([plot, folder, "--report", "--quiet"], check=True)
     copy_records(folder, machine, evidence)
     shutil.copy(folder / "report.html", evidence / f"report-{machine}.html")
@@ -95,7 +175,14 @@ def publish(folder, machine, programs):
     page.write_text(renewed(page.read_text(encoding="utf-8"), found), encoding="utf-8")
     for script in GENERATORS:
         subprocess.run([ROOT / "scripts" / script], check=True)
+    # After the documents refer to the newest records.
+    emptied = remove_older(evidence, [name for name in published if name.endswith(".jsonl")], machine)
+    page.write_text(without_rows(page.read_text(encoding="utf-8"), emptied), encoding="utf-8")
     subprocess.run([plot, evidence, "--quiet"], check=True)
+    missing, unnamed = unlisted(evidence)
+    if missing or unnamed:
+        sys.exit(f"{page} has rows without a file ({', '.join(missing) or 'none'}), or files have no row ({', '.join(unnamed) or 'none'}): "
+                 "mend its list")  # fmt: skip
 
 
 def main():

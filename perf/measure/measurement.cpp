@@ -16,30 +16,40 @@ namespace {
 /// Time of successive samples of one case as one sample.
 struct TimedSample {
   double seconds = 0.0;
+  double wall = 0.0;  ///< s, with what is not timed
   long units = 0;
   std::map<std::string, double> parts;  ///< s
 };
 
 /// Resets and works `repeats` times. If the sample has parts, their sum is its time.
 TimedSample take(const Sample& sample, long repeats) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  };
   TimedSample taken;
+  const auto start = Clock::now();
   for (long repeat = 0; repeat < repeats; ++repeat) {
     sample.reset();
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = Clock::now();
     taken.units += sample.work();
-    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double wall = since(begin);
     if (!sample.parts) {
       taken.seconds += wall;
       continue;
     }
     for (const auto& [name, part] : sample.parts()) taken.parts[name] += part, taken.seconds += part;
   }
+  taken.wall = since(start);
   return taken;
 }
 
-/// Works of a sample that fill `shortest_sample`, from the time of one.
-long repeats_for(double seconds) {
-  return static_cast<long>(std::clamp(std::ceil(shortest_sample / std::max(seconds, 1e-9)), 1.0, 200.0));
+/// Works of a sample that fill `shortest_sample`, from the times of one, s; fewer if what is not timed would
+/// make a sample last longer than `longest_repeated_sample`.
+long repeats_for(double seconds, double wall) {
+  const double wanted = std::ceil(shortest_sample / std::max(seconds, 1e-9));
+  const double affordable = std::floor(longest_repeated_sample / std::max(wall, 1e-9));
+  return static_cast<long>(std::clamp(std::min(wanted, affordable), 1.0, 200.0));
 }
 
 }  // namespace
@@ -69,7 +79,8 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       const TimedSample taken = take(samples[i], repeats[i]);
       if (round < 0) {
         warmth.add(cases[i].on_device, taken.seconds);
-        repeats[i] = repeats_for(taken.seconds / static_cast<double>(repeats[i]));
+        const auto works = static_cast<double>(repeats[i]);
+        repeats[i] = repeats_for(taken.seconds / works, taken.wall / works);
         continue;
       }
       if (clocks != nullptr && cases[i].on_device)

@@ -49,8 +49,9 @@ inline constexpr int largest_block = 1024;
 struct Occupancy {
   int by_registers, by_shared_memory, by_threads, by_limit;  ///< blocks under each limit alone
   int blocks;                                                ///< the least of these
-  int threads, device_threads;
-  double occupancy;  ///< fraction of the largest number of resident threads
+  int threads;
+  int device_threads;  ///< 0 if the number of multiprocessors is unknown
+  double occupancy;    ///< fraction of the largest number of resident threads
 };
 
 /// Occupancy of `on` by blocks of one kernel. `carve_out`: bytes of the memory of a multiprocessor that a

@@ -176,6 +176,7 @@ std::vector<BlockForm> options_forms(device::Backend backend, bool quick) {
                                 {.method = options::Method::cos, .tolerance = loose, .block = block}, loose);
            },
            [](int block) {
+             // Its launch states no bounds, but one compiled kernel serves all blocks, up to the largest.
              return Block{block, bounded_registers, team_buffer(block)};
            }}};
 }

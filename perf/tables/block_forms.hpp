@@ -22,7 +22,7 @@ struct BlockForm {
   std::vector<std::int64_t> cells;  ///< of the meshes, or options
   /// Case of a mesh, the index of its number of cells, and a block.
   std::function<Case(const std::string& case_name, std::size_t mesh, int block)> make;
-  /// Block with the registers that the launch bounds allow.
+  /// Block with the registers that the launch bounds allow, or a launch of the largest block.
   std::function<Block(int block)> resources;
   int most_blocks = 0;  ///< on a multiprocessor, by the launch; 0: as many as fit
 };

@@ -14,7 +14,7 @@ namespace {
 constexpr int sweep_rounds = 11;
 
 /// Registers per thread of the kernel of a form in a profile: the most of its variants that were launched
-/// with `block`, or of all within the launch bounds; without any, those that the bounds allow.
+/// with `block`, or of all that the launch allows; without any, those that it allows.
 int registers_of(const std::vector<KernelProfile>& profile, const BlockForm& form, const Block& block) {
   int of_block = 0, of_all = 0;
   for (const KernelProfile& kernel : profile) {
@@ -23,6 +23,11 @@ int registers_of(const std::vector<KernelProfile>& profile, const BlockForm& for
     if (kernel.threads == block.threads) of_block = std::max(of_block, kernel.registers);
   }
   return of_block > 0 ? of_block : of_all > 0 ? of_all : block.registers;
+}
+
+/// Origin of the registers without a profile; the kernel of options is launched without bounds.
+const char* registers_source(const std::string& app) {
+  return app == "options" ? "the limit of a launch without bounds" : "launch bounds";
 }
 
 /// Block with its occupancy.
@@ -112,7 +117,7 @@ Table print_block_sizes(const std::string& app, device::Backend backend, bool qu
       "the\n"
       "probability of one at least as large by chance, 0.05 or less where occupancy explains the order\n",
       app == "gas" ? "Figure 4.4" : "Block sizes", std::string(device::name(backend)).c_str(), on.name.data(),
-      profile.empty() ? "launch bounds" : profile.c_str());
+      profile.empty() ? registers_source(app) : profile.c_str());
   const Record* first = records.data();
   for (std::size_t k = 0; k < forms.size(); ++k) {
     print_form(forms[k], predicted[k], first);

@@ -11,7 +11,7 @@ namespace {
 
 // Iterative solvers run on the host: 128^3 cells would take longer than all other tables of a GPU together.
 constexpr std::int64_t most_iterated_cells = 1 << 19;
-constexpr int iterative_warm_up_rounds = 1, iterative_rounds = 5;
+constexpr int iterative_warm_up_rounds = 1, iterative_rounds = 3;
 
 /// Times the direct solves, and then the iterative ones in fewer rounds; in the order of `solves`.
 std::vector<Record> measure_solves(const std::vector<PressureSolve>& solves, const std::vector<Case>& cases,

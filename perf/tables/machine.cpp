@@ -8,6 +8,7 @@
 #include "common/program/provenance.hpp"
 #include "kernels/device/gpu_hardware.hpp"
 #include "kernels/device/host_cores.hpp"
+#include "perf/caches/host_caches.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/tables/dissertation.hpp"
 #include "perf/tables/tables.hpp"
@@ -45,12 +46,33 @@ std::string amount(double value, double unit, const char* name) {
   return text;
 }
 
-std::string bytes(const nlohmann::json& facts, const char* key) {
+std::string bytes(double value) {
   constexpr double kib = 1024.0, mib = kib * kib, gib = kib * mib;
-  const double value = facts.at(key).get<double>();
   return value >= gib   ? amount(value, gib, "GiB")
          : value >= mib ? amount(value, mib, "MiB")
                         : amount(value, kib, "KiB");
+}
+
+std::string bytes(const nlohmann::json& facts, const char* key) { return bytes(facts.at(key).get<double>()); }
+
+/// Caches of all levels as [Shi] writes them, "L1 16 x 32 KiB, ..."; "not stated" for unknown ones.
+std::string cache_text() {
+  std::string text;
+  for (const int level : {1, 2, 3}) {
+    std::string sizes;
+    for (const auto& [size, count] : host_caches(level))
+      sizes +=
+          (sizes.empty() ? "" : " + ") + std::to_string(count) + " x " + bytes(static_cast<double>(size));
+    text += (level > 1 ? ", L" : "L") + std::to_string(level) + " " + (sizes.empty() ? "not stated" : sizes);
+  }
+  return text;
+}
+
+/// Sum over all caches of a level; null for unknown ones.
+nlohmann::json cache_bytes(int level) {
+  std::int64_t sum = 0;
+  for (const auto& [size, count] : host_caches(level)) sum += count * size;
+  return sum > 0 ? nlohmann::json(sum) : nlohmann::json();
 }
 
 nlohmann::json host_facts() {
@@ -60,9 +82,9 @@ nlohmann::json host_facts() {
           {"cores", device::host_cores().online},
           {"clock_hz", host_clock()},
           {"memory_bytes", system_fact(_SC_PHYS_PAGES) * system_fact(_SC_PAGESIZE)},
-          {"l1_bytes", system_fact(_SC_LEVEL1_DCACHE_SIZE)},
-          {"l2_bytes", system_fact(_SC_LEVEL2_CACHE_SIZE)},
-          {"l3_bytes", system_fact(_SC_LEVEL3_CACHE_SIZE)},
+          {"l1_bytes", cache_bytes(1)},
+          {"l2_bytes", cache_bytes(2)},
+          {"l3_bytes", cache_bytes(3)},
           {"os", value_in("/etc/os-release", "PRETTY_NAME", '=')},
           {"kernel", std::string(system.sysname) + " " + system.release}};
 }
@@ -79,6 +101,18 @@ nlohmann::json gpu_facts(const std::string& name) {
           {"registers", gpu.registers}};
 }
 
+nlohmann::json printed_facts() {
+  const dissertation::Machine& printed = dissertation::table_4_1;
+  return {{"cpu", printed.cpu},
+          {"caches", printed.caches},
+          {"gpu", printed.gpu},
+          {"gpu_memory", printed.gpu_memory},
+          {"registers", printed.registers},
+          {"os", printed.os},
+          {"compiler", printed.compiler},
+          {"cuda", printed.cuda}};
+}
+
 void print_line(const char* part, const char* printed, const std::string& here) {
   std::printf("%-9s %-58s %s\n", part, printed, here.c_str());
 }
@@ -91,9 +125,7 @@ Table print_machine(const device::DeviceFacts& device) {
   print_line("CPU", dissertation::table_4_1.cpu,
              host["cpu"].get<std::string>() + ", " + std::to_string(host["cores"].get<int>()) + " cores, " +
                  amount(host["clock_hz"].get<double>(), 1e9, "GHz") + ", " + bytes(host, "memory_bytes"));
-  print_line("", dissertation::table_4_1.caches,
-             "L1 " + bytes(host, "l1_bytes") + ", L2 " + bytes(host, "l2_bytes") + ", L3 " +
-                 bytes(host, "l3_bytes"));
+  print_line("", dissertation::table_4_1.caches, cache_text());
   if (device.gpu.empty()) {
     print_line("GPU", dissertation::table_4_1.gpu, "none");
   } else {
@@ -116,7 +148,9 @@ Table print_machine(const device::DeviceFacts& device) {
   record.unit_of_work = "machine";
   record.bound = "none";
   Table table;
-  table.add(record, here, {{"host", host}, {"device", device.gpu.empty() ? nlohmann::json() : gpu}});
+  table.add(
+      record, here,
+      {{"host", host}, {"device", device.gpu.empty() ? nlohmann::json() : gpu}, {"thesis", printed_facts()}});
   return table;
 }
 

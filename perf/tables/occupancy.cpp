@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,18 +21,19 @@ namespace drogue::perf {
 namespace {
 
 nlohmann::json facts_of(const Architecture& on, const Block& block, const Occupancy& o) {
-  return {{"architecture", on.name},
-          {"block", block.threads},
-          {"registers", block.registers},
-          {"shared_bytes", block.shared_bytes},
-          {"blocks_by_registers", o.by_registers},
-          {"blocks_by_shared_memory", o.by_shared_memory},
-          {"blocks_by_threads", o.by_threads},
-          {"blocks_by_limit", o.by_limit},
-          {"blocks", o.blocks},
-          {"threads_sm", o.threads},
-          {"threads_device", o.device_threads},
-          {"occupancy", o.occupancy}};
+  nlohmann::json facts = {{"architecture", on.name},
+                          {"block", block.threads},
+                          {"registers", block.registers},
+                          {"shared_bytes", block.shared_bytes},
+                          {"blocks_by_registers", o.by_registers},
+                          {"blocks_by_shared_memory", o.by_shared_memory},
+                          {"blocks_by_threads", o.by_threads},
+                          {"blocks_by_limit", o.by_limit},
+                          {"blocks", o.blocks},
+                          {"threads_sm", o.threads},
+                          {"occupancy", o.occupancy}};
+  if (on.multiprocessors > 0) facts["threads_device"] = o.device_threads;
+  return facts;
 }
 
 /// Record without samples; its error is the number of mismatches.
@@ -118,26 +120,37 @@ std::vector<StepKernel> step_kernels() {
   return kernels;
 }
 
-/// `on` is hopper(), for which the launch bounds are chosen, or an architecture of no device in particular.
+/// Threads of a device; empty if its number of multiprocessors is unknown.
+std::string device_threads(const Architecture& on, const Occupancy& o) {
+  return on.multiprocessors > 0 ? std::to_string(o.device_threads) : "";
+}
+
+/// `on` is hopper(), for which the launch bounds are chosen, or an architecture of no device in particular,
+/// where fewer blocks than they request are stated and no fault.
 void print_step_kernels(Table& table, const Architecture& on, const nlohmann::json& provenance) {
   const bool is_tuned = on.multiprocessors > 0;
-  const std::string device = is_tuned ? ", " + std::to_string(on.multiprocessors) + " multiprocessors" : "";
+  const std::string device = is_tuned ? std::to_string(on.multiprocessors) + " multiprocessors"
+                                      : "number of multiprocessors unknown";
   std::printf(
-      "\nThe fused step of drogue-gas on %s%s; the last row is that of %lld cells and more\n\n"
+      "\nThe fused step of drogue-gas on %s, %s; the last row is that of %lld cells and more\n\n"
       "block  slots  registers  shared bytes  by registers  by shared  by threads  by limit  blocks  "
-      "threads/SM  "
-      "threads/device    %% of the threads\n",
-      on.name.data(), device.c_str(), static_cast<long long>(gas::large_mesh));
+      "threads/SM%s    %% of the threads\n",
+      on.name.data(), device.c_str(), static_cast<long long>(gas::large_mesh),
+      is_tuned ? "  threads/device" : "");
   for (const StepKernel& kernel : step_kernels()) {
     const Block block{kernel.team, kernel.registers,
                       gas::shared_bytes(gas::device_rows, kernel.slots, kernel.team)};
     const Occupancy o = occupancy(on, block);
+    const int missing = std::max(0, kernel.least_teams - o.blocks);
     const Record record =
         untimed(on, std::to_string(block.threads) + kernel.name + (is_tuned ? "" : "/gas-step"),
-                is_tuned ? std::max(0, kernel.least_teams - o.blocks) : 0);
-    std::printf("%5d  %5d  %9d  %12d  %12d  %9d  %10d  %8d  %6d  %10d  %14d  %5.1f%s\n", block.threads,
+                is_tuned ? missing : 0);
+    const std::string shortage =
+        missing > 0 ? "  launch bounds request " + std::to_string(kernel.least_teams) + " blocks" : "";
+    std::printf("%5d  %5d  %9d  %12d  %12d  %9d  %10d  %8d  %6d  %10d%*s  %5.1f%s%s\n", block.threads,
                 kernel.slots, block.registers, block.shared_bytes, o.by_registers, o.by_shared_memory,
-                o.by_threads, o.by_limit, o.blocks, o.threads, o.device_threads, 100.0 * o.occupancy,
+                o.by_threads, o.by_limit, o.blocks, o.threads, is_tuned ? 16 : 0,
+                device_threads(on, o).c_str(), 100.0 * o.occupancy, shortage.c_str(),
                 record.passed() ? "" : "  FAILED");
     nlohmann::json facts = facts_of(on, block, o);
     facts["slots"] = kernel.slots;
@@ -235,8 +248,29 @@ void print_missing(const std::vector<KernelProfile>& kernels) {
   if (!missing.empty()) std::printf("The profile has no kernel of %s.\n", missing.c_str());
 }
 
-void print_profile(Table& table, const std::string& path, const std::vector<KernelProfile>& kernels,
-                   const nlohmann::json& provenance) {
+/// "sm_90 with 132 multiprocessors".
+std::string device_of(const Architecture& on) {
+  return std::string(on.name) +
+         (on.multiprocessors > 0 ? " with " + std::to_string(on.multiprocessors) + " multiprocessors" : "");
+}
+
+/// States which kernels are of another device than `wanted`; they are predicted for their own.
+void print_other_devices(const Architecture& wanted, const std::vector<KernelProfile>& kernels) {
+  std::map<std::string, int> others;
+  for (const KernelProfile& kernel : kernels) {
+    const Architecture on = architecture_of(kernel);
+    const bool both_known = on.multiprocessors > 0 && wanted.multiprocessors > 0;
+    if (on.name != wanted.name || (both_known && on.multiprocessors != wanted.multiprocessors))
+      ++others[device_of(on)];
+  }
+  for (const auto& [device, count] : others)
+    std::printf(
+        "%d of %zu kernels were profiled on another device than %s: on %s, for which they are predicted.\n",
+        count, kernels.size(), device_of(wanted).c_str(), device.c_str());
+}
+
+void print_profile(Table& table, const Architecture& wanted, const std::string& path,
+                   const std::vector<KernelProfile>& kernels, const nlohmann::json& provenance) {
   std::printf(
       "\nKernels of %s: blocks that a multiprocessor holds, predicted from\nregisters, shared memory and "
       "block; "
@@ -263,6 +297,7 @@ void print_profile(Table& table, const std::string& path, const std::vector<Kern
     table.add(record, provenance, profiled_facts(kernel, k));
   }
   std::printf("\n%zu of %zu kernels are predicted to the block.\n", right, kernels.size());
+  print_other_devices(wanted, kernels);
   print_missing(kernels);
   if (right != kernels.size())
     print_notice("drogue-perf",
@@ -288,7 +323,7 @@ Table print_occupancy(const std::string& architecture, const std::string& profil
         "a GPU "
         "by ncu,\nand --profile reads its files here.\n");
   else
-    print_profile(table, profile, kernels, provenance);
+    print_profile(table, on, profile, kernels, provenance);
   return table;
 }
 

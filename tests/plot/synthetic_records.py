@@ -273,6 +273,43 @@ def ladder(name="weno", machine=EPYC, backend="serial"):
     return found
 
 
+def untimed(case, machine, facts, **changes):
+    """A computed record, which has no samples."""
+    return record(case, None, machine, facts, **({"samples": [], "interval": None, "error": 0.0} | changes))
+
+
+def occupancy(machine=EPYC):
+    """Rows of [Shi], of a gas kernel on two architectures, and two profiled kernels, of which one contradicts the model."""
+
+    def facts(architecture, block, registers, blocks, **more):
+        limits = {f"blocks_by_{name}": 8 * blocks for name in ("shared_memory", "threads", "limit")}
+        return {"architecture": architecture, "block": block, "registers": registers, "shared_bytes": 0, "blocks": blocks,
+                "blocks_by_registers": blocks, **limits, "threads_sm": block * blocks, "occupancy": block * blocks / 2048} | more  # fmt: skip
+
+    printed = {"shared_bytes": 0, "blocks_by_registers": 8, "blocks_by_shared_memory": 64, "blocks_by_limit": 64, "blocks": 8,
+               "threads_sm": 512, "threads_device": 7168, "occupancy_percent": 25.0}  # fmt: skip
+    shi = facts("sm_20", 64, 63, 8, threads_device=7168, thesis=printed)
+    found = [untimed("occupancy/sm_20/64", machine, shi), untimed("occupancy/sm_20/544", machine, facts("sm_20", 544, 63, 0, thesis=printed))]
+    for architecture, suffix, blocks in (("sm_90", "", 4), ("sm_86", "/gas-step", 2)):
+        own = facts(architecture, 128, 128, blocks, slots=384, least_blocks=4)
+        found.append(untimed(f"occupancy/{architecture}/128/large-mesh{suffix}", machine, own))
+    for kernel, achieved, check in (("StepFunctor", 3, "passed"), ("FluxFunctor", 4, "failed")):
+        own = facts("sm_90", 128, 168, 3, kernel=f"drogue::gas::{kernel}", launches=5, limited_by="registers",
+                    achieved={"blocks": achieved, "mean_blocks": 2.875})  # fmt: skip
+        found.append(untimed(f"occupancy/sm_90/gas::{kernel}/128/168/0", machine, own, check=check, error=achieved - 3.0))
+    return found
+
+
+def hardware(machine=H200):
+    """The machine of [Shi], and one with a GPU and an unknown L3 cache."""
+    host = {"cpu": machine["cpu"], "cores": 16, "clock_hz": 2.1e9, "memory_bytes": 64 << 30, "l1_bytes": 768 << 10,
+            "l2_bytes": 32 << 20, "l3_bytes": None, "os": "Linux 1", "kernel": "6.1"}  # fmt: skip
+    device = {"gpu": machine["gpu"], "multiprocessors": 132, "clock_hz": 1.98e9, "memory_bytes": 141 << 30, "constant_bytes": 1 << 16,
+              "shared_bytes": 228 << 10, "l2_bytes": 60 << 20, "registers": 65536}  # fmt: skip
+    thesis = {"cpu": "two Xeon E5-2687W", "caches": "L3 2 x 20 MB", "gpu": "two Quadro 6000"}
+    return [untimed("machine", machine, {"host": host, "device": device if machine["gpu"] else None, "thesis": thesis})]
+
+
 def springs_transfers(machine=H200):
     thesis = {"cpu_us": 223565, "h2d_us": 171, "compute_us": 41328, "d2h_us": 644, "total_us": 42143}
     found = []

@@ -88,6 +88,36 @@ class Report(Folder):
         self.assertRegex(page.words, r"\d+ more rows are left out to keep the page below 5 MB")
         self.assertIn("records.csv", page.words)
 
+    def test_shows_occupancy_and_the_machine_as_tables(self):
+        text = self.report([*records.occupancy(), *records.hardware()])
+        self.assertIn(">Machine and occupancy</h2>", text)
+        self.assertIn("<code>drogue-perf table machine --out FILE.jsonl</code>", text)
+        self.assertIn("<code>drogue-perf table occupancy [--architecture NAME] [--profile FILE] --out FILE.jsonl</code>", text)
+        page = Page(text)
+        self.assertNotIn("of a kind that this page does not know", page.words)
+        self.assertNotIn("left out", page.words)
+        self.assertNotIn("Samples of every case", page.words)
+        self.assertEqual([], Outline(text).nameless)
+        hardware = page.tables["Machine and occupancy", MACHINE]
+        self.assertEqual(["CPU", "two Xeon E5-2687W", "Intel(R) Xeon(R) Processor, 16 cores, 2.1 GHz, 64 GiB"], hardware[1])
+        self.assertEqual(["caches", "L3 2 x 20 MB", "L1 768 KiB, L2 32 MiB, L3 not stated, of all cores"], hardware[2])
+        self.assertIn(["GPU", "two Quadro 6000", "NVIDIA H200, 132 multiprocessors, 1.98 GHz"], hardware)
+        computed = page.tables["Machine and occupancy", "AMD EPYC"]
+        self.assertIn(["64", "0 (0)", "8 (8)", "64 (64)", "64 (64)", "8 (8)", "512 (512)", "7168 (7168)", "25.0 (25.0)", "passed"],
+                      computed)
+        self.assertIn(["128, large mesh", "384", "128", "0", "2", "16", "16", "16", "2", "4", "12.5", "passed"], computed)
+        profiled = computed[-2:]
+        self.assertEqual(["gas::FluxFunctor", "sm_90", "128", "168", "0", "3", "4", "2.88", "18.8", "registers", "failed"], profiled[0])
+        self.assertEqual("gas::StepFunctor", profiled[1][0])
+        self.assertIn("1 of 2 profiled kernels are predicted to the block", page.words)
+        self.assertIn("The fused step of drogue-gas on sm_86", page.words)
+
+    def test_profiles_with_a_contradiction_are_not_folded(self):
+        *rest, passed, failed = records.occupancy()
+        many = [passed | {"case": f"{passed['case']}/{number}"} for number in range(41)]
+        self.assertIn("<summary>Profiled kernels (41 rows)</summary>", self.report([*rest, *many]))
+        self.assertNotIn("<summary>", self.report([*rest, *many, failed]))
+
     def test_names_records_without_samples(self):
         empty = records.step("cuda/2048", None, records.H200, 2048, samples=[], interval=None)
         page = Page(self.report([*records.steps_of_h200(), empty]))

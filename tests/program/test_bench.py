@@ -1,17 +1,26 @@
 # ctest-label: no-sanitizer
 """scripts/bench.sh with a program that stands for drogue-perf: what is measured, and how it goes on after an end."""
 
+import contextlib
+import io
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import unittest
 
 SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
+sys.path.insert(0, str(SOURCE / "scripts"))
+
+import publish_records
+
 BENCH = SOURCE / "scripts/bench.sh"
+PERF = pathlib.Path(os.environ["DROGUE_BIN"]) / "drogue-perf"
 # Writes its words to calls.txt, and half a record first, as a program that is killed leaves it. plan.txt maps a part of the words,
 # _ for spaces, to an exit code, or to KILL (kills the script that started it), TERM (sends it that signal), SLOW (a minute of work).
 PROGRAM = """\
@@ -54,6 +63,7 @@ class Bench(unittest.TestCase):
         self.put("version.txt", "drogue-perf 1.0 (git abc)")
         self.put("cases.txt", *HOST)
         self.put("plan.txt")
+        self.host(2, "exit 1")
 
     def put(self, name, *lines):
         (self.bin / name).write_text("".join(line + "\n" for line in lines))
@@ -61,9 +71,20 @@ class Bench(unittest.TestCase):
     def plan(self, acts=None):
         self.put("plan.txt", *(f"{part.replace(' ', '_')} {act}" for part, act in (acts or {}).items()))
 
+    def host(self, cores, launcher):
+        """Programs in PATH of a host with two hardware threads per core, and whose mpirun is the text of a shell."""
+        for name, text in (("lscpu", "echo '# Core,Socket'; for k in $(seq %d); do echo $k,0; echo $k,0; done" % cores),
+                           ("nproc", f"echo {2 * cores}"), ("mpirun", launcher)):
+            file = self.folder / "host" / name
+            file.parent.mkdir(exist_ok=True)
+            file.write_text(f"#!/bin/sh\n{text}\n")
+            file.chmod(0o755)
+        self.environment = {**os.environ, "PATH": f"{self.folder}/host:{os.environ['PATH']}"}
+
     def bench(self, code, *words):
         """Standard error of the script, whose exit code is `code`."""
-        done = subprocess.run([BENCH, self.out, "--bin", self.bin, *words], capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run([BENCH, self.out, "--bin", self.bin, *words], capture_output=True, text=True, timeout=60, check=False,
+                              env=self.environment)
         self.assertEqual(code, done.returncode, done.stdout + done.stderr)
         return done.stderr
 
@@ -78,7 +99,8 @@ class Bench(unittest.TestCase):
         return sorted(path.relative_to(self.out).as_posix() for path in self.out.rglob("*.jsonl"))
 
     def names(self, *words):
-        return subprocess.run([BENCH, "--bin", self.bin, "--list", *words], capture_output=True, text=True, check=True).stdout.split()
+        return subprocess.run([BENCH, "--bin", self.bin, "--list", *words], capture_output=True, text=True, check=True,
+                              env=self.environment).stdout.split()
 
     def test_makes_a_record_and_a_text_of_every_table_and_the_page(self):
         self.bench(0)
@@ -108,6 +130,42 @@ class Bench(unittest.TestCase):
             self.assertIn(f"table abstraction --app {app} --backend cuda --out", "\n".join(calls))
         self.assertEqual(["alone/options-1.jsonl", "alone/options-4096.jsonl"], [name for name in self.made() if "alone" in name])
         self.assertEqual(["flow-step"], [name for name in self.names() if name.startswith(("flow-step", "springs-step"))])
+
+    def test_measures_ranks_on_the_cores_of_a_host_whose_launcher_starts_them(self):
+        self.assertIn("no scaling over ranks", self.bench(0, "--only", "^scaling-flow"))
+        self.assertEqual(["scaling-flow-weak.jsonl", "scaling-flow.jsonl"], self.made())
+        self.host(4, '[ "$*" = "-n 4 true" ]')
+        self.calls()
+        self.assertNotIn("no scaling over ranks", self.bench(0, "--only", "^scaling-flow"))
+        self.assertEqual([f"table scaling --over ranks {weak}--most 4 --backend auto" for weak in ("", "--weak ")],
+                         [call.partition(" --out")[0] for call in self.calls()[:-1]])
+        self.put("cases.txt", *CUDA)
+        self.assertEqual(["scaling-flow"], [name for name in self.names() if name.startswith("scaling-flow")])
+        self.host(1, "exit 0")
+        self.assertNotIn("scaling-flow-ranks", self.names("--backend", "openmp"))
+
+    def test_makes_every_table_of_every_mini_app(self):
+        def tables_of(app):
+            """Names in the sentence of the program that refuses another."""
+            other = "machine" if app == "flow" else "pressure"
+            refused = subprocess.run([PERF, "table", other, "--app", app], capture_output=True, text=True, check=False)
+            self.assertEqual(2, refused.returncode)
+            return set(re.search("valid names are (.*)", refused.stderr)[1].split(", "))
+
+        self.host(2, "exit 0")
+        self.bench(0)
+        self.put("cases.txt", *CUDA)
+        shutil.rmtree(self.out)
+        self.bench(0)
+        calls = "\n".join(self.calls())
+        wanted = {(app, table) for app in ("gas", "springs", "options", "flow", "parachute") for table in tables_of(app)}
+        self.assertGreater(len(wanted), 15)
+        # These have no --app, as they have one mini-app or none.
+        without_app = {"machine", "occupancy", "pressure", "memory"}
+        for app, table in sorted(wanted):
+            self.assertRegex(calls, f"table {table} " if table in without_app else f"table {table} --app {app} ")
+        for words in ("--weak --backend", "--over ranks --most", "--over ranks --weak"):
+            self.assertIn(f"table scaling {words}", calls)
 
     def test_goes_on_after_a_kill_and_makes_no_record_twice(self):
         self.plan({"--app options --backend": "KILL"})
@@ -196,20 +254,58 @@ class Bench(unittest.TestCase):
         origin = {"gpu": "NVIDIA H200", "cpu": "", "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
         for file in self.out.rglob("*.jsonl"):
             file.write_text(json.dumps({"case": file.name, "facts": {"backend": "cuda"}, "provenance": origin}) + "\n")
-        subprocess.run(words, capture_output=True, check=True)
+        text = self.out / "occupancy.txt"
+        command, _, printed = text.read_text().partition("\n")
+        text.write_text(f"{command}--quick \n{printed}")
+        quick = subprocess.run(words, capture_output=True, text=True, check=False)
+        self.assertEqual((1, "nothing is published: occupancy was made with --quick, whose few samples are no evidence\n"),
+                         (quick.returncode, quick.stderr))
+        self.assertEqual(["README.md"], [path.name for path in (tree / "docs/evidence").iterdir()])
+        text.write_text(f"{command}\n{printed}")
+        first = subprocess.run(words, capture_output=True, text=True, check=True)
+        self.assertEqual("", first.stdout)
         published = {path.relative_to(tree / "docs/evidence").as_posix(): path for path in (tree / "docs").rglob("*.jsonl")}
         flat = {f"{name}-h200.jsonl" for name in self.names("--backend", "cuda") if "/" not in name and not name.startswith("ladder")}
         ladders = {f"ladders/{name}-cuda-h200.jsonl" for name in ("weno", "springs", "options", "transfers")}
         self.assertEqual(flat | ladders | {"alone/options-h200.jsonl"}, set(published))
+        published["occupancy-h200.jsonl"].write_text('{"case": "occupancy/sm_90/kernel"}\n')
+        again = subprocess.run(words, capture_output=True, text=True, check=True)
+        self.assertEqual("occupancy-h200.jsonl had 1 other cases, such as occupancy/sm_90/kernel: the new records replace them too\n",
+                         again.stdout)
         batches = published["alone/options-h200.jsonl"].read_text().splitlines()
         self.assertEqual(["options-1.jsonl", "options-4096.jsonl"], [json.loads(line)["case"] for line in batches])
         self.assertEqual("page", (tree / "docs/evidence/report-h200.html").read_text().strip())
         rows = (tree / "docs/evidence/README.md").read_text().splitlines()[2:]
-        self.assertEqual(set(published), {row.split("`")[1] for row in rows})
+        self.assertEqual({*published, "report-h200.html"}, {row.split("`")[1] for row in rows})
         self.assertIn("| `occupancy-h200.jsonl` | `drogue-perf table occupancy --out occupancy-h200.jsonl` |", "\n".join(rows))
         calls = [f"drogue-plot {self.out} --report --quiet", *(f"{name} " for name in generators),
                  f"drogue-plot {tree}/docs/evidence --quiet"]  # fmt: skip
-        self.assertEqual(calls, (self.folder / "renewed.txt").read_text().splitlines())
+        self.assertEqual(2 * calls, (self.folder / "renewed.txt").read_text().splitlines())
+
+    def test_published_records_replace_older_ones_that_no_document_quotes(self):
+        evidence = self.folder / "docs/evidence"
+        evidence.mkdir(parents=True)
+
+        def put(name, *cases):
+            (evidence / name).write_text("".join(
+                json.dumps({"case": case, "provenance": {"gpu": gpu, "cpu": "", "date": date}}) + "\n" for case, gpu, date in cases))
+
+        put("new-h200.jsonl", ("a/1", "H200", "2026-11-27"), ("a/2", "H200", "2026-11-27"))
+        put("all-h200.jsonl", ("a/1", "H200", "2026-11-20"))
+        put("part-h200.jsonl", ("a/1", "H200", "2026-11-20"), ("b", "H200", "2026-11-20"), ("a/2", "H100", "2026-11-20"))
+        put("quoted-h200.jsonl", ("a/2", "H200", "2026-11-20"))
+        put("later-h200.jsonl", ("a/2", "H200", "2026-11-28"))
+        put("all-h100.jsonl", ("a/1", "H200", "2026-11-20"))
+        (self.folder / "docs/gas.md").write_text("[record](evidence/quoted-h200.jsonl)")
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            self.assertEqual(["all-h200.jsonl"], publish_records.remove_older(evidence, ["new-h200.jsonl"], "h200"))
+        left = {path.name: [json.loads(line)["case"] for line in path.read_text().splitlines()] for path in evidence.iterdir()}
+        self.assertEqual({"new-h200.jsonl": ["a/1", "a/2"], "part-h200.jsonl": ["b", "a/2"], "quoted-h200.jsonl": ["a/2"],
+                          "later-h200.jsonl": ["a/2"], "all-h100.jsonl": ["a/1"]}, left)
+        self.assertIn("quoted-h200.jsonl stays with 1 older records: gas.md quotes it", printed.getvalue())
+        page = "| file |\n|---|\n| `all-h200.jsonl` | a |\n| `part-h200.jsonl` | b |\n\nEnd\n"
+        self.assertEqual("| file |\n|---|\n| `part-h200.jsonl` | b |\n\nEnd\n", publish_records.without_rows(page, ["all-h200.jsonl"]))
 
     def test_solutions_replace_the_two_of_the_readme(self):
         self.assertEqual({"gas-shu-osher"}, set(self.names()) - set(self.names("--quick")))

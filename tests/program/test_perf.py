@@ -1,5 +1,6 @@
 """drogue-perf: subcommands, records and usage errors."""
 
+import json
 import os
 import pathlib
 import re
@@ -17,6 +18,7 @@ import gas_program
 import perf_program
 from rank_processes import LAUNCHER, RANK_ENVIRONMENT
 
+SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
 FIELDS = {"schema", "case", "unit", "bound", "samples", "median", "interval", "error", "check", "provenance"}
 PROVENANCE = {"version", "git", "compiler", "flags", "kokkos", "cpu", "gpu", "driver", "threads", "date"}
 
@@ -127,6 +129,15 @@ class Record(perf_program.PerfTest):
         self.assertIn(host["cpu"], text)
         self.assertGreaterEqual(host["cores"], 1)
         self.assertGreater(host["memory_bytes"], 1e8)
+        # Linux states the caches of each core; one that cores share counts once.
+        for level in (1, 2, 3):
+            sizes = {}
+            for cache in pathlib.Path("/sys/devices/system/cpu").glob("cpu[0-9]*/cache/index*"):
+                kind, of = ((cache / name).read_text().strip() for name in ("type", "level"))
+                if kind != "Instruction" and of == str(level):
+                    sizes[(cache / "shared_cpu_list").read_text()] = 1024 * int((cache / "size").read_text().strip("K\n"))
+            self.assertEqual(sum(sizes.values()) or None, host[f"l{level}_bytes"])
+            self.assertIn(f"L{level} {len(sizes)} x " if len(set(sizes.values())) == 1 else f"L{level} ", text)
 
     def test_options_transfers_compare_both_schemes(self):
         text = self.expect(0, "table", "transfers", "--app", "options", "--quick", "--backend", "serial", "--out",
@@ -192,26 +203,36 @@ class Occupancy(perf_program.PerfTest):
 class OtherArchitectures(perf_program.PerfTest):
     def test_step_kernels_on_another_architecture(self):
         text = self.expect(0, "table", "occupancy", "--architecture", "sm_86", "--out", "rows.jsonl").stdout
-        self.assertIn("The fused step of drogue-gas on sm_86;", text)
         facts = {record["case"]: record["facts"] for record in self.records("rows.jsonl")}
         # 64 Ki registers leave room for three blocks of 128 threads, 100 KiB for two of the large tile.
         self.assertEqual(3, facts["occupancy/sm_86/128/gas-step"]["blocks"])
         self.assertEqual((4, 2), tuple(facts["occupancy/sm_86/128/large-mesh/gas-step"][key]
                                        for key in ("blocks_by_registers", "blocks")))
+        self.assertIn("on sm_86, number of multiprocessors unknown;", text)
+        of_gas = text.partition("The fused step")[2]
+        self.assertNotIn("threads/device", of_gas)
+        row, = (line for line in of_gas.splitlines() if line.endswith("launch bounds request 4 blocks"))
+        self.assertRegex(row, r"^ *128 .* 2 +256 +16\.7 ")
+        self.assertTrue(all("threads_device" not in facts[case] for case in facts if "sm_86" in case))
         self.assertIn('did you mean "sm_90"?', self.expect(2, "table", "occupancy", "--architecture", "sm90").stderr)
 
 
 class ProfiledOccupancy(perf_program.PerfTest):
-    """Kernels of a file in the layout of ncu beside the model."""
+    """Kernels of a file in the layout of ncu beside the model.
+
+    The file is written by hand, since no table of ncu is kept. It imitates `ncu --csv --page raw --print-units base` of CUDA 13.0:
+    columns, units, separators of thousands, and names of kernels by Kokkos 4.5 and by cooperative launches. Its resources, limits
+    of blocks and warps are those that ncu gave on an H100 (docs/evidence/occupancy-profile-h100.jsonl); durations, the second launch of a
+    step of springs, and the parts of static and dynamic shared memory are invented.
+    """
 
     def setUp(self):
         super().setUp()
-        source = pathlib.Path(os.environ["DROGUE_SOURCE"])
-        self.profile = (source / "tests/support/profiles/kernels.csv").read_text(encoding="utf-8")
+        self.profile = (SOURCE / "tests/support/profiles/kernels.csv").read_text(encoding="utf-8")
 
-    def rows(self, code, profile):
+    def rows(self, code, profile, *words):
         (self.folder / "kernels.csv").write_text(profile, encoding="utf-8")
-        text = self.expect(code, "table", "occupancy", "--profile", "kernels.csv", "--out", "rows.jsonl").stdout
+        text = self.expect(code, "table", "occupancy", "--profile", "kernels.csv", "--out", "rows.jsonl", *words).stdout
         return text, [record for record in self.records("rows.jsonl") if "achieved" in record["facts"]]
 
     def test_every_kernel_is_predicted_to_the_block(self):
@@ -227,9 +248,22 @@ class ProfiledOccupancy(perf_program.PerfTest):
             self.assertLessEqual(facts["achieved"]["mean_blocks"], 1.02 * facts["blocks"])
             self.assertLess(0.0, facts["achieved"]["mean_blocks"])
 
+    def test_profile_holds_what_ncu_recorded(self):
+        _, records = self.rows(0, self.profile)
+        lines = (SOURCE / "docs/evidence/occupancy-profile-h100.jsonl").read_text(encoding="utf-8").splitlines()
+        recorded = {record["case"]: record["facts"] for record in map(json.loads, lines)}
+        self.assertEqual(8, len(records))
+        for record in records:
+            facts, expected = record["facts"], dict(recorded[record["case"]])
+            mean = facts["achieved"].pop("mean_blocks")
+            self.assertAlmostEqual(expected["achieved"]["mean_blocks"], mean, delta=0.01)
+            expected["achieved"] = {key: value for key, value in expected["achieved"].items() if key != "mean_blocks"}
+            for key in ("kernel", "block", "registers", "shared_bytes", "carve_out_bytes", "grid", "achieved"):
+                self.assertEqual(expected[key], facts[key], (record["case"], key))
+
     def test_reports_a_kernel_with_other_blocks(self):
         # The kernel of flow, whose registers leave room for four blocks, would hold five.
-        wrong = self.profile.replace('"32","4","7","16","126"', '"32","5","7","16","126"')
+        wrong = self.profile.replace('"32","4","15","16","113"', '"32","5","15","16","113"')
         self.assertNotEqual(self.profile, wrong)
         text, records = self.rows(5, wrong)
         failed, = (record for record in records if record["check"] == "failed")
@@ -237,8 +271,20 @@ class ProfiledOccupancy(perf_program.PerfTest):
         self.assertIn("blocks by registers 4 (ncu 5)", text)
         self.assertIn(f"{len(records) - 1} of {len(records)} kernels", text)
 
+    def test_states_that_a_profile_is_of_another_device(self):
+        wrong = self.profile.replace('"32","4","15","16","113"', '"32","5","15","16","113"')
+        text, records = self.rows(5, wrong, "--architecture", "sm_86")
+        self.assertIn(f"{len(records)} of {len(records)} kernels were profiled on another device than sm_86: on sm_90 with "
+                      "132 multiprocessors, for which they are predicted.", text)
+        self.assertIn("blocks by registers 4 (ncu 5)", text)
+        self.assertEqual({"sm_90"}, {record["facts"]["architecture"] for record in records})
+        smaller = self.profile.replace('"9","0","132"', '"9","0","114"')
+        self.assertIn("another device than sm_90 with 132 multiprocessors: on sm_90 with 114 multiprocessors",
+                      self.rows(0, smaller)[0])
+        self.assertNotIn("another device", self.rows(0, self.profile)[0])
+
     def test_reports_more_resident_blocks_than_predicted(self):
-        wrong = self.profile.replace('"25.00","21.30"', '"25.00","26.30"')
+        wrong = self.profile.replace('"25.00","24.36"', '"25.00","26.30"')
         self.assertNotEqual(self.profile, wrong)
         _, records = self.rows(5, wrong)
         failed, = (record for record in records if record["check"] == "failed")
@@ -260,7 +306,11 @@ class ProfiledOccupancy(perf_program.PerfTest):
                       self.expect(2, "table", "transfers", "--profile", "kernels.csv").stderr)
 
     def test_command_profiles_the_kernels_of_a_case(self):
-        words = shlex.split(self.expect(0, "ncu", "gas-step/cuda/65536", "--out", "a.csv").stdout)
+        # Without CUDA there is no list of its cases, which a notice beside the text for the shell states.
+        unchecked = 0 if "/cuda/" in self.expect(0, "list").stdout else 1
+        printed = self.expect(0, "ncu", "gas-step/cuda/65536", "--out", "a.csv", notices=unchecked)
+        self.assertEqual(unchecked, printed.stderr.count("only the kind of 'gas-step/cuda/65536' is checked"))
+        words = shlex.split(printed.stdout)
         self.assertEqual("ncu", words[0])
         self.assertEqual("regex:drogue::gas", words[words.index("--kernel-name") + 1])
         self.assertEqual(["run", "--filter", "^gas-step/cuda/65536$"], words[-3:])
@@ -273,7 +323,7 @@ class ProfiledOccupancy(perf_program.PerfTest):
     @unittest.skipIf("DROGUE_CUDA:BOOL=ON" in perf_program.CACHE, "a CUDA build knows the names of its cases")
     def test_command_exists_for_every_kind_of_case(self):
         for kind in {name.partition("/")[0] for name in self.expect(0, "list").stdout.split()}:
-            self.expect(0, "ncu", kind + "/cuda")
+            self.expect(0, "ncu", kind + "/cuda", notices=1)
 
 
 class WorkPrecision(perf_program.PerfTest):

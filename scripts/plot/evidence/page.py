@@ -8,7 +8,10 @@ from PIL import Image
 from .. import html_page, style
 from ..flow import solver_tables
 from ..options import transfers as options_transfers
-from . import abstraction, block_sizes, bounds, ladders, roofline, scaling, steps, transfers, work_precision_section
+from . import (
+    abstraction, block_sizes, bounds, ladders, machine_table, occupancy, roofline, scaling, steps, transfers,
+    work_precision_section,
+)  # fmt: skip
 from .perf_record import Machine, Record
 from .records import Evidence
 from .section import Cell, Section
@@ -70,9 +73,14 @@ def _ladder_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     return ladders.sections(machine, evidence.select(machine, "ladder"))
 
 
+def _machine_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    found = machine_table.sections(evidence.select(machine, "machine"))
+    return found + occupancy.sections(evidence.select(machine, "occupancy"))
+
+
 _SECTIONS = {
     "gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections,
-    "ladder": _ladder_sections,
+    "ladder": _ladder_sections, "machine": _machine_sections,
 }  # fmt: skip
 
 
@@ -171,5 +179,5 @@ def _write_app(app: str, evidence: Evidence, out: Path, form: str, dpi: int) -> 
                 yield from pictures.save(picture, "" if form == "png" else form)
     yield html_page.write(
         out / f"{app}.html", "evidence/page.html.j2", pictures.filters, app=app, machines=machines, notes=notes(evidence),
-        count=len(evidence.records),
+        count=len(evidence.records), timed=app != "machine",
     )  # fmt: skip

@@ -50,6 +50,12 @@ _FACTS = {
     "ladder": {
         "ladder": str, "rung": str, "backend": str, "cells": int, "predicted_s": float, "predicted_bound": str,
     },
+    "machine": {"host": dict},
+    "occupancy": {
+        "architecture": str, "block": int, "registers": int, "shared_bytes": float, "blocks_by_registers": float,
+        "blocks_by_shared_memory": float, "blocks_by_threads": float, "blocks_by_limit": float, "blocks": float,
+        "threads_sm": float, "occupancy": float,
+    },
 }  # fmt: skip
 _NAMED_BY_CASE = (
     "gas-step",
@@ -67,7 +73,8 @@ _LAYOUTS = {
     "flow-memory": (r"[^/]+/\d{1,9}x\d{1,9}x\d{1,9}/.+", "BACKEND/NXxNYxNZ/CASE"),
 }
 _METHODS = ("seed", "pide")  # of options-transfers
-_UNTIMED = ("flow-memory",)
+STATED = ("machine", "occupancy")  # computed or read, never timed: tables of their own show all of them
+_UNTIMED = ("flow-memory", *STATED)
 # Counted work of a step, for its bounds.
 _COUNTS = {"instructions": float, "launches": int, "driver": str}
 _OPTIONAL = {
@@ -82,6 +89,11 @@ _OPTIONAL = {
     "gas-step": {"flops": float, "bytes": float, "vector_bits": int, **_COUNTS},
     "springs-step": {"bytes": float, **_COUNTS},
     "ceiling": {"flops": float, "bytes": float, "instructions": float},
+    "machine": {"device": dict, "thesis": dict},
+    "occupancy": {
+        "threads_device": float, "thesis": dict, "slots": int, "least_blocks": int, "kernel": str, "limited_by": str,
+        "launches": int, "achieved": dict,
+    },
     "scaling": {"ranks": int, "scaling": str},
     "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
     "gas-transfers": {"thesis": dict, "method": str, "cpu_s": float},
@@ -136,9 +148,12 @@ class Record:
 
     @property
     def app(self) -> str:
-        """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, canopies to flow."""
+        """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, canopies to flow.
+
+        What is of no mini-app is on the page `machine`.
+        """
         app = self.case.split("/")[_PLACE_OF_KERNEL.get(self.kind, 0)].partition("-")[0]
-        return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow"}.get(app, app)
+        return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow", "occupancy": "machine"}.get(app, app)
 
     @property
     def machine(self) -> Machine:

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from .. import html_page
 from . import page
-from .perf_record import Machine, Record
+from .perf_record import STATED, Machine, Record
 from .records import Evidence
 from .section import Cell, Section, Table
 
@@ -21,7 +21,7 @@ _FEW_ROWS = 50  # of a table of a page that is too large otherwise
 _WIDTH, _HEIGHT, _MARGIN = 180, 16, 3
 _APPS = {
     "gas": "Gas dynamics", "springs": "Cloth and strings", "options": "Options", "flow": "Flow and parachutes",
-    "ladder": "Ladders",
+    "ladder": "Ladders", "machine": "Machine and occupancy",
 }  # fmt: skip
 
 
@@ -128,7 +128,8 @@ def _by_machine(records: list[Record]) -> dict[Machine, list[Record]]:
 def write(evidence: Evidence, file: Path, dpi: int) -> Path:
     """Writes the page, which refers to no other file; returns its path. Raises Failure (IO_ERROR)."""
     count = len(evidence.everything)
-    machines = [(machine, _samples_tables(own, count)) for machine, own in _by_machine(evidence.everything).items()]
+    timed = [record for record in evidence.everything if record.kind not in STATED]
+    machines = [(machine, _samples_tables(own, count)) for machine, own in _by_machine(timed).items()]
     with tempfile.TemporaryDirectory() as folder:
         pictures = page.Pictures(Path(folder), dpi)
         apps = []

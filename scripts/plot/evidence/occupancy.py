@@ -1,0 +1,101 @@
+"""Section on the model of occupancy: Table 4.2 of [Shi], step kernels of gas, and profiled kernels."""
+
+from .. import html_page
+from .perf_record import Record
+from .section import Cell, Section, Table
+
+_LIMITS = ("registers", "shared_memory", "threads", "limit")
+_MOST_OPEN_ROWS = 40  # of a table without contradictions that is not folded
+
+
+def _percent(record: Record) -> str:
+    return f"{100 * record.facts['occupancy']:.1f}"
+
+
+def _beside(value, other) -> str:
+    return f"{value} ({other})"
+
+
+def _check(record: Record) -> Cell:
+    return Cell(record.check, "good" if record.check == "passed" else "bad")
+
+
+def printed_table(records: list[Record]) -> Table:
+    """Table 4.2: computed numbers beside those printed."""
+    names = {
+        "shared_bytes": "shared bytes", "blocks_by_registers": "by registers", "blocks_by_shared_memory": "by shared memory",
+        "blocks_by_limit": "by limit", "blocks": "blocks", "threads_sm": "threads per multiprocessor",
+        "threads_device": "threads per device",
+    }  # fmt: skip
+    rows = []
+    for record in records:
+        printed = record.facts["thesis"]
+        row = [str(record.facts["block"])]
+        row += [_beside(record.facts.get(name, ""), printed.get(name, "")) for name in names]
+        rows.append([*row, _beside(_percent(record), printed.get("occupancy_percent", "")), _check(record)])
+    columns = [("block", True), *((heading, True) for heading in names.values()), ("% of the threads", True), ("check", False)]
+    note = "The flux kernel of [Shi] on compute capability 2.0, computed (printed). Blocks: resident on a multiprocessor."
+    return Table(columns, rows, "Table 4.2", note)
+
+
+def steps_table(architecture: str, records: list[Record]) -> Table:
+    """Step kernels of gas by block size on an architecture."""
+    columns = [
+        ("block", True), ("slots", True), ("registers", True), ("shared bytes", True), ("by registers", True),
+        ("by shared memory", True), ("by threads", True), ("by limit", True), ("blocks", True), ("requested", True),
+        ("% of the threads", True), ("check", False),
+    ]  # fmt: skip
+    rows = []
+    for record in records:
+        facts = record.facts
+        block = f"{facts['block']}, large mesh" if "large-mesh" in record.case else str(facts["block"])
+        found = [block, str(facts.get("slots", "")), str(facts["registers"]), html_page.format_grouped(facts["shared_bytes"])]
+        found += [str(facts[f"blocks_by_{limit}"]) for limit in _LIMITS]
+        short = facts["blocks"] < facts.get("least_blocks", 0)
+        found += [Cell(str(facts["blocks"]), "bad" if short else ""), str(facts.get("least_blocks", ""))]
+        rows.append([*found, _percent(record), _check(record)])
+    note = "Predicted from the launch bounds, which request a number of blocks on sm_90; elsewhere fewer blocks are no fault."
+    return Table(columns, rows, f"The fused step of drogue-gas on {architecture}", note)
+
+
+def profile_table(records: list[Record]) -> Table:
+    """Profiled kernels: resident blocks of the model beside those of ncu, contradictions first."""
+    columns = [
+        ("kernel", False), ("device", False), ("block", True), ("registers", True), ("shared bytes", True),
+        ("predicted", True), ("achieved", True), ("mean", True), ("% of the threads", True), ("limited by", False),
+        ("check", False),
+    ]  # fmt: skip
+    rows = []
+    for record in sorted(records, key=lambda record: record.check != "failed"):
+        facts, achieved = record.facts, record.facts.get("achieved", {})
+        mean = achieved.get("mean_blocks")
+        rows.append(
+            [
+                Cell(facts["kernel"].removeprefix("drogue::"), "case"), facts["architecture"], str(facts["block"]),
+                str(facts["registers"]), html_page.format_grouped(facts["shared_bytes"]), str(facts["blocks"]),
+                str(achieved.get("blocks", "")), f"{mean:.2f}" if isinstance(mean, int | float) else "",
+                _percent(record), facts.get("limited_by", ""), _check(record),
+            ]
+        )  # fmt: skip
+    note = "Achieved: by ncu's limits of the launch; mean: by counters, of the largest launch. Contradictions come first."
+    is_right = all(record.check == "passed" for record in records)
+    return Table(columns, rows, "Profiled kernels", note, is_right and len(rows) > _MOST_OPEN_ROWS)
+
+
+def sections(records: list[Record]) -> list[Section]:
+    """One section, none without records."""
+    if not records:
+        return []
+    printed = [record for record in records if "thesis" in record.facts]
+    profiled = [record for record in records if "kernel" in record.facts]
+    of_gas: dict[str, list[Record]] = {}
+    for record in records:
+        if record not in printed and record not in profiled:
+            of_gas.setdefault(record.facts["architecture"], []).append(record)
+    tables = [printed_table(printed)] if printed else []
+    tables += [steps_table(architecture, own) for architecture, own in of_gas.items()]
+    tables += [profile_table(profiled)] if profiled else []
+    right = sum(record.check == "passed" for record in profiled)
+    notes = [f"{right} of {len(profiled)} profiled kernels are predicted to the block."] if profiled else []
+    command = "drogue-perf table occupancy [--architecture NAME] [--profile FILE] --out FILE.jsonl"
+    return [Section("Occupancy", command, records, tables=tables, notes=notes)]
