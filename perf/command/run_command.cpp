@@ -14,6 +14,7 @@
 #include "perf/command/filter.hpp"
 #include "perf/compare/baseline.hpp"
 #include "perf/measure/record.hpp"
+#include "perf/measure/repeats.hpp"
 #include "perf/memory/device_memory.hpp"
 
 namespace drogue::perf {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
 #include "common/run/statistics.hpp"
+#include "perf/measure/repeats.hpp"
 #include "perf/measure/warm_up.hpp"
 
 namespace drogue::perf {
@@ -44,14 +44,6 @@ TimedSample take(const Sample& sample, long repeats) {
   return taken;
 }
 
-/// Works of a sample that fill `shortest_sample`, from the times of one, s; fewer if what is not timed would
-/// make a sample last longer than `longest_repeated_sample`.
-long repeats_for(double seconds, double wall) {
-  const double wanted = std::ceil(shortest_sample / std::max(seconds, 1e-9));
-  const double affordable = std::floor(longest_repeated_sample / std::max(wall, 1e-9));
-  return static_cast<long>(std::clamp(std::min(wanted, affordable), 1.0, 200.0));
-}
-
 }  // namespace
 
 double timer_overhead() {
@@ -80,7 +72,7 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       if (round < 0) {
         warmth.add(cases[i].on_device, taken.seconds);
         const auto works = static_cast<double>(repeats[i]);
-        repeats[i] = repeats_for(taken.seconds / works, taken.wall / works);
+        repeats[i] = repeats_of(taken.seconds / works, taken.wall / works);
         continue;
       }
       if (clocks != nullptr && cases[i].on_device)

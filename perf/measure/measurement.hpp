@@ -71,12 +71,6 @@ constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
 /// Recorded rounds of `run`, whose records a verdict compares: as many as find a change of a tenth at 3 %
 /// noise.
 inline constexpr int run_rounds = 30;
-/// Shorter works are repeated within a sample, s: a sample that a switch to another process can double is
-/// useless.
-inline constexpr double shortest_sample = 5e-3;
-/// Longest sample of repeated works, s, with what is not timed, such as the copies of the scheme of [Shi].
-inline constexpr double longest_repeated_sample = 25e-3;
-
 /// Time that a sample of no work takes, s: median of 200 means.
 double timer_overhead();
 
