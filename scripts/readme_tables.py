@@ -17,14 +17,14 @@ import textwrap
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "README.md"
 EVIDENCE = ROOT / "docs/evidence"
-GPU, HOST = "h200", "epyc"
+GPU, HOST = "h[12]00", "epyc"  # patterns of the names of machines
 MARK = re.compile(r"(<!-- scripts/readme_tables\.py: ([\w-]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
 # Medians of programs that are not part of this project, ms: docs/options-notebook.md states how they were measured.
 HAND_WRITTEN = {1: "0.037 to 0.047", 4096: "0.276"}
 
 
 class Records:
-    """Latest record of every case in files of a machine, and those that were used, in the order of their use."""
+    """Latest record of every case in files of machines, and those that were used, in the order of their use."""
 
     def __init__(self, evidence, files, machine):
         self._evidence, self._found, self.used = evidence, {}, []
