@@ -372,6 +372,16 @@ def options_batches(machine=H200):
     return [record(case, seconds, machine) for case, seconds in times.items()]
 
 
+def surfaces(machine=H200):
+    """Surfaces that share solves, one whose strikes do not, and Bermudan puts by cosine series."""
+    facts = {"backend": "cuda", "cells": 264, "variant": "surface 1x33x8"}
+    return [
+        record("options-surface/cuda/surface/1x33x8", 2e-4, machine, facts),
+        record("options-surface/cuda/apart/1x33x8", 1.2e-4, machine, facts | {"variant": "apart 1x33x8"}),
+        record("options-cos/cuda/256", 0.128, machine, {"backend": "cuda", "cells": 256, "variant": "cos"}),
+    ]
+
+
 def options_transfers(machine=H200):
     """One option on two meshes and one batch, by both methods."""
     found = []

@@ -73,6 +73,15 @@ class Solutions(Folder):
 
 
 class Batches(Folder):
+    def test_surfaces_and_cosine_series_show_their_times(self):
+        page, _ = self.page(records.surfaces(), "options")
+        surfaces = {row[1]: row for row in page.tables[MACHINE, "Surfaces of strikes and maturities"]}
+        self.assertEqual("264", surfaces["surface 1x33x8"][2])
+        self.assertIn("200", surfaces["surface 1x33x8"][3])
+        self.assertIn("120", surfaces["apart 1x33x8"][3])
+        puts = {row[1]: row for row in page.tables[MACHINE, "A batch by cosine series"]}
+        self.assertEqual(["CUDA", "cos", "256"], puts["cos"][:3])
+
     def test_batches_show_verdicts_and_systems_their_times(self):
         page, _ = self.page(records.options_batches(), "options")
         rows = page.tables[MACHINE, "A batch"]

@@ -39,8 +39,8 @@ def _springs_sections(evidence: Evidence, machine: Machine) -> list[Section]:
 def _options_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     solved = evidence.select(machine, "options-solution")
     found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
-    found += steps.sections(evidence.select(machine, "options"))
-    found += steps.sections(evidence.select(machine, "tridiagonal"))
+    for kind in ("options", "options-surface", "options-cos", "tridiagonal"):
+        found += steps.sections(evidence.select(machine, kind))
     found += options_transfers.sections(machine, evidence.select(machine, "options-transfers"))
     return found + block_sizes.sections(machine, evidence.select(machine, "options-block"))
 

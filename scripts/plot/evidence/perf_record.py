@@ -40,6 +40,8 @@ _FACTS = {
         "backend": str, "memory": str, "substeps": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
     },
     "options": {},
+    "options-surface": {"backend": str, "cells": int, "variant": str},
+    "options-cos": {"backend": str, "cells": int, "variant": str},
     "options-solution": {"problem": str, "backend": str, "method": str, "cells": int},
     "options-transfers": {
         "backend": str, "method": str, "mesh": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,

@@ -56,6 +56,8 @@ _KINDS = {
     "springs-step": _Kind("A step", *_SPRINGS),
     "springs-contact": _Kind("A step in contact", *_SPRINGS),
     "options": _Kind("A batch", "options", (OPTION_US, OPTION_RATE), options_goals.GOALS, **_BATCH),
+    "options-surface": _Kind("Surfaces of strikes and maturities", "options", (OPTION_US, OPTION_RATE), **_BATCH),
+    "options-cos": _Kind("A batch by cosine series", "options", (OPTION_US, OPTION_RATE), **_BATCH),
     "tridiagonal": _Kind("Tridiagonal systems", "systems", ("\u00b5s per system", "systems/s"), **_BATCH),
 }
 _Estimate = tuple[float, float, float]  # median, lower and upper end of the 95 % interval
