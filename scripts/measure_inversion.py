@@ -35,10 +35,15 @@ def assignments(angle, seed, amplitude):
     return [word for value in values for word in ("--set", value)]
 
 
+def read_history(directory):
+    """Rows of history.csv as numbers, by the names of the columns without their units."""
+    with open(directory / "history.csv", newline="", encoding="utf-8") as file:
+        return [{name.split(" ")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+
+
 def measures(directory):
     """Last and largest inversion index, largest force of the lines, N, and its time, s."""
-    with open(directory / "history.csv", newline="", encoding="utf-8") as file:
-        rows = [{name.split(" ")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    rows = read_history(directory)
     index = [row["canopy_0_inversion"] for row in rows]
     force, time = max((math.hypot(*(row[f"canopy_0_line_force_{axis}"] for axis in "xyz")), row["time"]) for row in rows)
     return index[-1], max(index), force, time

@@ -13,6 +13,7 @@ from .failure import IO_ERROR, USAGE, Failure
 
 READABLE = ("fields.h5", "history.csv", "study.csv", "surface.csv", "boundary.csv")
 RECORDS = "*.jsonl"
+SHEETS = ("body", "flag")
 
 
 @dataclass(frozen=True)
@@ -27,11 +28,12 @@ class Field:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Fields at one time, s; `canopy` holds those of the canopies in a flow."""
+    """Fields at one time, s; `canopy` holds those of the canopies in a flow, `sheets` those of bodies and flags."""
 
     time: float
     fields: dict[str, Field]
     canopy: dict[str, Field] = field(default_factory=dict)
+    sheets: dict[str, dict[str, Field]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,7 @@ class Run:
     result: dict = field(default_factory=dict)
     mesh: dict[str, Field] = field(default_factory=dict)
     canopy_mesh: dict[str, Field] = field(default_factory=dict)
+    sheet_meshes: dict[str, dict[str, Field]] = field(default_factory=dict)
     snapshots: list[Snapshot] = field(default_factory=list)
     reference: Reference | None = None
     history: dict[str, Field] = field(default_factory=dict)
@@ -98,10 +101,12 @@ def _read_fields(run: Run, file: Path) -> None:
         with h5py.File(file, "r") as h5:
             run.mesh = _datasets(h5["mesh"])
             run.canopy_mesh = _datasets(h5["mesh"].get("canopy", {}))
+            run.sheet_meshes = {name: _datasets(h5["mesh"][name]) for name in SHEETS if name in h5["mesh"]}
             for name in sorted(h5["steps"]):
                 group = h5["steps"][name]
                 time = float(np.ravel(group.attrs["time"])[0])
-                run.snapshots.append(Snapshot(time, _datasets(group), _datasets(group.get("canopy", {}))))
+                sheets = {sheet: _datasets(group[sheet]) for sheet in SHEETS if sheet in group}
+                run.snapshots.append(Snapshot(time, _datasets(group), _datasets(group.get("canopy", {})), sheets))
             if "reference" in h5:
                 group = h5["reference"]
                 fields = _datasets(group)

@@ -249,7 +249,7 @@ class CanopyPictures(unittest.TestCase):
         circles = [[patch for patch in axes.patches if isinstance(patch, Circle)] for axes in (figure.axes[0], plane)]
         (beside,), (cut,) = circles
         self.assertEqual(0.8, beside.radius)
-        self.assertAlmostEqual(np.sqrt(0.8**2 - view.place**2), cut.radius)
+        self.assertAlmostEqual(np.sqrt(0.8**2 - view.plane.place**2), cut.radius)
 
     def test_plates_on_springs_and_flags_are_drawn(self):
         run = read_run(write_springs_and_flags(self.folder / "run"))

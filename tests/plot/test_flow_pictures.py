@@ -8,6 +8,7 @@ import unittest
 from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+import h5py
 import numpy as np
 from matplotlib.text import Text
 from PIL import Image
@@ -15,6 +16,7 @@ from plot import cli, style
 from plot.flow.history_figure import flow_history_figure, keeps_energy
 from plot.flow.plane import plane_of
 from plot.flow.quantities import Quantity, default_names, quantities
+from plot.flow.sheets import sheet_section
 from plot.flow.slices_figure import SlicesFigure, View, colour_scale, slices_figure
 from plot.flow.spectrum import energy_spectrum, is_periodic, spectrum_figure
 from plot.run_directory import read_run
@@ -75,6 +77,31 @@ class FlowPictures(unittest.TestCase):
         self.assertEqual({"fields.png", "fields.gif", "history.png", "spectrum.png"}, self.pictures(run))
         with Image.open(run / "fields.gif") as movie:
             self.assertEqual(2, movie.n_frames)
+
+    def add_sheet(self, path, name, *places):
+        """Adds a triangle of a body or flag: at rest, or at one place along x per snapshot."""
+        corners = np.array([[0.2, 0.1, 0.0], [0.6, 0.1, 0.0], [0.2, 0.1, 2.0]])
+        with h5py.File(path / "fields.h5", "a") as h5:
+            h5[f"mesh/{name}/vertices"] = corners
+            h5[f"mesh/{name}/triangles"] = [[0, 1, 2]]
+            for k, place in enumerate(places):
+                h5[f"steps/{k:06d}/{name}/position"] = corners + [place, 0, 0]
+
+    def test_bodies_and_flags_are_outlined_where_the_plane_cuts_them(self):
+        path = write_flow(self.folder / "run", (4, 4, 4), (1.0, 1.0, 4.0), shear, (0.0, 1.0))
+        self.add_sheet(path, "body")
+        self.add_sheet(path, "flag", 0.1, 0.3)
+        run = read_run(path)
+        # The triangles are narrower by a quarter at z = 0.5, the middle of the first layer of cells.
+        plane = plane_of(run, "z=0.5")
+        figure = SlicesFigure(View(plane, [quantities(run)["speed"]]), run.snapshots)
+        (lines,) = [item for item in figure.figure.axes[0].collections if item.get_zorder() == 2.6]
+        for snapshot, place in zip(run.snapshots, (0.1, 0.3)):
+            figure.show(snapshot)
+            drawn = sorted(sorted(segment[:, 0]) for segment in lines.get_segments())
+            np.testing.assert_allclose(drawn, [[0.2, 0.5], [0.2 + place, 0.5 + place]], atol=1e-12)
+            np.testing.assert_allclose([segment[:, 1] for segment in lines.get_segments()], 0.1)
+        self.assertEqual(0, len(sheet_section(run, run.snapshots[0], 2, 2.5)))
 
     def test_slices_run_at_axis_and_place(self):
         run = read_run(write_flow(self.folder / "run", (4, 6, 8), (1.0, 1.0, 1.0), shear))

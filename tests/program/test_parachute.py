@@ -366,6 +366,41 @@ class Bodies(parachute_program.FlowTest):
         (self.folder / "moved.obj").write_text(text.replace("v 0 -8 -12", "v 0.1 -8 -12"), encoding="utf-8")
         self.assertIn("another scene", self.expect(6, by_file, *quiet, "--out", "file", "--restart", "auto").stderr)
 
+    def grids(self):
+        """Names of the grids of fields.xdmf, whose datasets all exist, and the datasets that it shows."""
+        document = xml.etree.ElementTree.parse(self.folder / "out/fields.xdmf")
+        shown = [item.text.removeprefix("fields.h5:") for item in document.iter("DataItem")]
+        self.assertEqual(set(), set(shown) - set(self.fields("out").datasets))
+        return [grid.get("Name") for grid in document.iter("Grid") if grid.get("GridType") == "Collection"], shown
+
+    def test_fields_hold_bodies_at_rest_once(self):
+        self.expect(0, self.write(PLATE), *QUIET)
+        fields = self.fields("out")
+        triangles = array.array("q", fields.datasets["/mesh/body/triangles"])
+        # Plates of 8 by 12 and of 6 by 12 edges.
+        self.assertEqual((3 * (9 * 13 + 7 * 13), 6 * (8 * 12 + 6 * 12)),
+                         (len(fields.values("/mesh/body/vertices")), len(triangles)))
+        self.assertEqual(set(range(9 * 13 + 7 * 13)), set(triangles))
+        self.assertEqual({0.6}, set(fields.values("/mesh/body/vertices")[:3 * 9 * 13:3]))
+        self.assertEqual({0.4}, set(fields.values("/mesh/body/vertices")[3 * 9 * 13 + 1::3]))
+        self.assertEqual([], [name for name in fields.datasets if name.startswith("/steps/") and "/body" in name])
+        grids, shown = self.grids()
+        self.assertEqual(["scene", "scene body"], grids)
+        self.assertEqual(2, shown.count("/mesh/body/vertices"))
+
+    def test_fields_hold_moving_bodies_at_every_output(self):
+        moving = PLATE.replace('normal = "y"\n', 'normal = "y"\nmotion = { y = "0.05*sin(5*t)" }\n')
+        self.expect(0, self.write(moving), *QUIET)
+        fields = self.fields("out")
+        for step, time in (("000000", 0.12), ("000001", 0.3)):
+            places = fields.values(f"/steps/{step}/body/position")
+            self.assertEqual({0.6}, set(places[:3 * 9 * 13:3]))
+            for place in set(places[3 * 9 * 13 + 1::3]):
+                self.assertAlmostEqual(0.4 + 0.05 * math.sin(5 * time), place, delta=1e-12)
+        self.assertEqual(1, self.grids()[1].count("/steps/000001/body/position"))
+        self.expect(0, self.write(moving), *QUIET, "--overwrite", sets=["output.fields=[]"])
+        self.assertFalse((self.folder / "out/fields.h5").exists())
+
     def test_history_holds_the_forces_of_all_bodies(self):
         self.expect(0, self.write(PLATE), *QUIET)
         rows = self.history("out")
@@ -852,6 +887,9 @@ class Flags(parachute_program.FlowTest):
         scene = self.write(bad_flags.GOOD)
         self.expect(0, scene, *QUIET, sets=sets)
         rows = self.history("out")
+        places = self.fields("out").values("/steps/000000/flag/position")
+        (row,) = [k for k, time in enumerate(rows["time"]) if time == 0.5]
+        self.assertEqual(rows["flag_0_tip_y"][row], 0.5 * (places[-5] + places[-2]))
         self.assertGreater(rows["flag_0_force_x"][-1], 0.0)
         self.assertLess(max(rows["flag_0_tip_x"]), 0.01 + 1.02)  # hardly longer than at rest
         half = self.folder / "half"

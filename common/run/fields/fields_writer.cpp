@@ -212,6 +212,14 @@ void FieldsWriter::State::add_mesh(const DatasetSpec& spec, hid_t type,
   h5::Handle handle = h5::open_file(file, true);
   mesh.push_back(spec);
   const std::string group = spec.grid.empty() ? "mesh" : "mesh/" + spec.grid;
+  // Only grids with fields have a group from the start.
+  if (!spec.grid.empty() && !h5::exists(h5::open_group(handle, "mesh"), spec.grid)) {
+    {
+      const h5::Handle grid = h5::create_group(handle, "", mesh_links, mesh_name_length);
+      publish(std::move(handle), "mesh", spec.grid, grid);
+    }
+    handle = h5::open_file(file, true);
+  }
   if (h5::exists(h5::open_group(handle, group), spec.name)) return;
   const h5::Handle dataset = create_described(handle, "", spec, type);
   const std::uint64_t total = entries(spec);

@@ -1,5 +1,6 @@
 #include "miniapps/parachute/simulation/sheet_output.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <sstream>
 
@@ -19,16 +20,28 @@ run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
   };
 }
 
-/// Elements after the bodies, whose vertices are left out.
+/// Elements whose first vertex is in a range, as numbered from its beginning.
 template <std::size_t n>
-std::vector<std::array<int, n>> of_canopies(const std::vector<std::array<int, n>>& parts, int first_vertex) {
+std::vector<std::array<int, n>> elements_between(const std::vector<std::array<int, n>>& parts,
+                                                 std::size_t begin, std::size_t end) {
+  const auto first = static_cast<int>(begin), last = static_cast<int>(end);
   std::vector<std::array<int, n>> result;
   for (std::array<int, n> part : parts) {
-    if (part[0] < first_vertex) continue;
-    for (int& i : part) i -= first_vertex;
+    if (part[0] < first || part[0] >= last) continue;
+    for (int& i : part) i -= first;
     result.push_back(part);
   }
   return result;
+}
+
+/// Adds the vertices at rest in a range. Add them last: they complete fields.xdmf.
+void add_vertices(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
+                  run::FieldSink& fields) {
+  fields.add_mesh({"vertices", {end - begin, 3}, "m", "vertex", "vertices at rest", grid},
+                  [&](std::uint64_t from, std::span<double> values) {
+                    for (std::size_t k = 0; k < values.size(); ++k)
+                      values[k] = mesh.rest[begin + (from + k) / 3][(from + k) % 3];
+                  });
 }
 
 }  // namespace
@@ -94,10 +107,10 @@ run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name
 
 void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
-  const std::size_t bodies = sheets.canopies.front().begin;
-  const auto first = static_cast<int>(bodies);
-  const auto triangles = of_canopies(mesh.triangles, first);
-  const auto edges = of_canopies(mesh::edges_of(mesh), first), strings = of_canopies(mesh.lines, first);
+  const std::size_t first = sheets.canopies.front().begin, end = mesh.rest.size();
+  const auto triangles = elements_between(mesh.triangles, first, end);
+  const auto edges = elements_between(mesh::edges_of(mesh), first, end);
+  const auto strings = elements_between(mesh.lines, first, end);
   const std::string grid = "canopy";
   fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
                   source_of(triangles));
@@ -106,12 +119,7 @@ void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
   fields.add_mesh(
       {"strings", {strings.size(), 2}, "1", "edge", "vertices of every reinforcement and line", grid},
       source_of(strings));
-  // Add `vertices` last: it completes fields.xdmf.
-  fields.add_mesh({"vertices", {mesh.rest.size() - bodies, 3}, "m", "vertex", "vertices at rest", grid},
-                  [&](std::uint64_t from, std::span<double> values) {
-                    for (std::size_t k = 0; k < values.size(); ++k)
-                      values[k] = mesh.rest[bodies + (from + k) / 3][(from + k) % 3];
-                  });
+  add_vertices(mesh, first, end, grid, fields);
 }
 
 void copy_canopy_positions(const Sheets& sheets, std::span<const Vector> positions,
@@ -124,6 +132,37 @@ void copy_canopy_stress(const Sheets& sheets, std::span<const fabric::Stress> st
                         std::span<double> values) {
   const std::size_t first = sheets.canopies.front().triangles_begin;
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = stress[first + k].von_mises();
+}
+
+std::vector<SheetGrid> grids_beside_canopies(const FlowScene& scene, const Sheets& sheets) {
+  std::vector<SheetGrid> grids;
+  if (!scene.bodies.empty()) {
+    const bool moves = std::ranges::any_of(
+        scene.bodies, [](const Body& body) { return body.moves() || body.mount.has_value(); });
+    grids.push_back({"body", 0, vertices_of(scene.bodies), moves});
+  }
+  if (!sheets.flags.empty())
+    grids.push_back({"flag", sheets.flags.front().begin, sheets.flags.back().end, true});
+  return grids;
+}
+
+run::DatasetSpec position_spec(const SheetGrid& grid) {
+  return {"position", {grid.end - grid.begin, 3}, "m", "vertex", "positions of the vertices", grid.name};
+}
+
+void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSink& fields) {
+  const fabric::Mesh& mesh = sheets.fabric.mesh;
+  const auto triangles = elements_between(mesh.triangles, grid.begin, grid.end);
+  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid.name},
+                  source_of(triangles));
+  // A grid of triangles has strings too; springs of mounts lead to points that are no part of it.
+  const std::vector<std::array<int, 2>> strings;
+  fields.add_mesh({"strings", {0, 2}, "1", "edge", "vertices of every line", grid.name}, source_of(strings));
+  add_vertices(mesh, grid.begin, grid.end, grid.name, fields);
+}
+
+void copy_positions(const SheetGrid& grid, std::span<const Vector> positions, std::span<double> values) {
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = positions[grid.begin + k / 3][k % 3];
 }
 
 const char* cloth_failure_text(fabric::FailureReason reason) {

@@ -9,7 +9,7 @@
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
-// Canopies in history.csv and fields.h5, with or without a fluid.
+// Canopies in history.csv, and all sheets in fields.h5.
 
 namespace drogue::parachute_app {
 
@@ -40,6 +40,26 @@ void copy_canopy_positions(const Sheets& sheets, std::span<const fabric::Vector>
 /// Values of the field `von_mises`, N/m, of the triangles of canopies. Does not throw.
 void copy_canopy_stress(const Sheets& sheets, std::span<const fabric::Stress> stress,
                         std::span<double> values);
+
+/// Bodies or flags of a scene as one grid of fields.h5.
+struct SheetGrid {
+  std::string name;                ///< of the groups below /mesh and /steps/N
+  std::size_t begin = 0, end = 0;  ///< vertices of the sheets
+  bool moves = false;              ///< their positions are written at every output
+};
+
+/// The bodies, then the flags, if the scene has them. Throws only std::bad_alloc.
+[[nodiscard]] std::vector<SheetGrid> grids_beside_canopies(const FlowScene& scene, const Sheets& sheets);
+
+/// Dataset of the positions of a grid that moves. Throws only std::bad_alloc.
+[[nodiscard]] run::DatasetSpec position_spec(const SheetGrid& grid);
+
+/// Writes the mesh of a grid. Throws `Failure` (io_error).
+void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSink& fields);
+
+/// Values of the positions, m, of a grid. Does not throw.
+void copy_positions(const SheetGrid& grid, std::span<const fabric::Vector> positions,
+                    std::span<double> values);
 
 /// Cause of a failed step of cloth. Does not throw.
 [[nodiscard]] const char* cloth_failure_text(fabric::FailureReason reason);

@@ -9,7 +9,6 @@
 #include "common/run/fields/rectilinear_mesh.hpp"
 #include "common/scene/node.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
-#include "miniapps/parachute/simulation/sheet_output.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -65,6 +64,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     : _scene(scene),
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
                               scene.parameters.viscosity, scene.flags)),
+      _grids(grids_beside_canopies(scene, _sheets)),
       _record(scene) {
   if (settings.communicator != nullptr) {
     if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
@@ -180,6 +180,9 @@ std::vector<run::DatasetSpec> Simulation::field_specs() const {
   for (const std::string& name : _scene.output.fields)
     specs.push_back(is_canopy_field(name) ? canopy_field_spec(_sheets, name)
                                           : field_spec(name, _scene.parameters.cells));
+  if (specs.empty()) return specs;
+  for (const SheetGrid& grid : _grids)
+    if (grid.moves) specs.push_back(position_spec(grid));
   return specs;
 }
 
@@ -193,14 +196,19 @@ void Simulation::write_mesh(run::FieldSink& fields) const {
   };
   run::add_rectilinear_mesh(fields, {faces(0), faces(1), faces(2)}, run::AxisOrder::xyz);
   if (std::ranges::any_of(_scene.output.fields, is_canopy_field)) write_canopy_mesh(_sheets, fields);
+  for (const SheetGrid& grid : _grids) write_sheet_mesh(_sheets, grid, fields);
 }
 
 void Simulation::sample_fields(Snapshot& snapshot) {
-  for (std::size_t k = 0; k < snapshot.size(); ++k)
-    if (const std::string& name = _scene.output.fields[k]; is_canopy_field(name))
-      sample_canopy_field(name, snapshot[k]);
+  if (snapshot.empty()) return;
+  auto values = snapshot.begin();
+  for (const std::string& name : _scene.output.fields)
+    if (is_canopy_field(name))
+      sample_canopy_field(name, *values++);
     else
-      _solver->sample(cell_field(name), snapshot[k]);
+      _solver->sample(cell_field(name), *values++);
+  for (const SheetGrid& grid : _grids)
+    if (grid.moves) sample_positions(grid, *values++);
 }
 
 framework::FieldsTask Simulation::snapshot() {
@@ -215,13 +223,22 @@ framework::FieldsTask Simulation::snapshot() {
           const run::FieldPlace place = fields.place(name);
           _shared->write(cell_field(name), place.offset, std::filesystem::absolute(place.file).string());
         }
+      for (const SheetGrid& grid : _grids) {
+        if (!grid.moves) continue;
+        std::vector<double> values(run::entries(position_spec(grid)));
+        sample_positions(grid, values);
+        fields.write(grid.name + "/position", 0, values);
+      }
     };
   const Snapshot& filled = _snapshots[_next_snapshot];
   sample_fields(_snapshots[_next_snapshot]);
   _next_snapshot = (_next_snapshot + 1) % _snapshots.size();
-  return [&filled, &names = _scene.output.fields](run::FieldSink& fields) {
-    for (std::size_t k = 0; k < names.size(); ++k)
-      fields.write((is_canopy_field(names[k]) ? "canopy/" : "") + names[k], 0, filled[k]);
+  return [&filled, &names = _scene.output.fields, &grids = _grids](run::FieldSink& fields) {
+    auto values = filled.begin();
+    for (const std::string& name : names)
+      fields.write((is_canopy_field(name) ? "canopy/" : "") + name, 0, *values++);
+    for (const SheetGrid& grid : grids)
+      if (grid.moves) fields.write(grid.name + "/position", 0, *values++);
   };
 }
 

@@ -8,6 +8,7 @@
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/parachute/parallel/rank_solver.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
+#include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/verify/canopy_record.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
 
@@ -48,7 +49,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] flow::Solver& solver() { return *_solver; }
 
  private:
-  /// Values of the fields of one output, in the order of the scene.
+  /// Values of the fields of one output, in the order of the scene, then positions of grids that move.
   using Snapshot = std::vector<std::vector<double>>;
 
   void sample_fields(Snapshot& snapshot);
@@ -68,6 +69,7 @@ class Simulation final : public framework::Simulation {
   void append_canopy_columns(std::vector<run::Column>& columns) const;
   void append_canopy_values(framework::HistoryRow& row);
   void sample_canopy_field(const std::string& name, std::vector<double>& values);
+  void sample_positions(const SheetGrid& grid, std::vector<double>& values);
   [[nodiscard]] std::string failure_cause();
   [[nodiscard]] std::string flow_failure_text();
   [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);
@@ -82,6 +84,7 @@ class Simulation final : public framework::Simulation {
 
   const FlowScene& _scene;
   Sheets _sheets;
+  std::vector<SheetGrid> _grids;         ///< in fields.h5, beside flow and canopies
   SharedSolver* _shared = nullptr;       ///< `_solver` on several ranks
   coupling::Solver* _coupled = nullptr;  ///< `_solver` with bodies or canopies
   std::unique_ptr<flow::Solver> _solver;

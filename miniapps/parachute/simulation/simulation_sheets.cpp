@@ -5,7 +5,6 @@
 #include <string>
 
 #include "miniapps/parachute/scene/functions.hpp"
-#include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
 // Bodies and canopies in history.csv and fields.h5.
@@ -143,6 +142,12 @@ void Simulation::sample_canopy_field(const std::string& name, std::vector<double
   std::vector<fabric::Stress> stress(_sheets.fabric.mesh.triangles.size());
   _coupled->cloth_stress(fabric::StressMeasure::cauchy, stress);
   copy_canopy_stress(_sheets, stress, values);
+}
+
+void Simulation::sample_positions(const SheetGrid& grid, std::vector<double>& values) {
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  _coupled->download_cloth(positions, velocities);
+  copy_positions(grid, positions, values);
 }
 
 }  // namespace drogue::parachute_app

@@ -51,14 +51,18 @@ class Plane:
         return tuple((f[1:] + f[:-1]) / 2 for f in faces)
 
     @property
+    def place(self) -> float:
+        """Place of the plane on its axis, m."""
+        faces = self.run.mesh[AXES[self.normal]].values
+        return float(faces[self.index] + faces[self.index + 1]) / 2
+
+    @property
     def description(self) -> str:
         """Number of cells, and the place of the slice (m) in a three-dimensional run."""
         counts = cell_counts(self.run)
         if dimension(self.run) < 3:
             return f"{' x '.join(str(counts[axis]) for axis in self.across)} cells"
-        faces = self.run.mesh[AXES[self.normal]].values
-        place = (faces[self.index] + faces[self.index + 1]) / 2
-        return f"{' x '.join(map(str, counts))} cells, {AXES[self.normal]} = {place:.4g} m"
+        return f"{' x '.join(map(str, counts))} cells, {AXES[self.normal]} = {self.place:.4g} m"
 
     def cut(self, values: np.ndarray) -> np.ndarray:
         """Values (nx, ny, nz) in the plane, as rows from bottom to top."""

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 
@@ -12,6 +13,7 @@ from ..run_directory import Snapshot, evenly_spaced
 from ..style import plt
 from .plane import AXES, Plane
 from .quantities import Quantity
+from .sheets import sheet_section
 
 MAX_FRAMES = 60
 _DPI = 100
@@ -119,6 +121,22 @@ def draw_streamlines(axes, plane: Plane, snapshot: Snapshot, density: tuple[floa
     axes.axis(limits)
 
 
+class SheetOutline:
+    """Bodies and flags where a plane cuts them, as black lines."""
+
+    def __init__(self, axes, plane: Plane):
+        self._plane = plane
+        self._lines = LineCollection([], colors="black", linewidth=1.2, zorder=2.6, capstyle="round")
+        if plane.run.sheet_meshes:
+            axes.add_collection(self._lines, autolim=False)
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Replaces the lines by those at the time of a snapshot."""
+        plane = self._plane
+        segments = sheet_section(plane.run, snapshot, plane.normal, plane.place)
+        self._lines.set_segments(segments[..., list(plane.across)])
+
+
 class SlicesFigure:
     """Figure that shows one snapshot at a time; colour scales fit all `snapshots`."""
 
@@ -155,17 +173,18 @@ class SlicesFigure:
 
     def _add_panel(self, axes, key, quantity: Quantity, snapshots: list[Snapshot]) -> None:
         image = draw_slice(axes, key, self._view.plane, quantity, snapshots, self._colours)
-        self._images.append((quantity, image))
+        self._images.append((quantity, image, SheetOutline(axes, self._view.plane)))
 
     def show(self, snapshot: Snapshot) -> None:
         """Replaces the drawn data by those of a snapshot."""
-        for quantity, image in self._images:
+        for quantity, image, outline in self._images:
+            outline.show(snapshot)
             image.set_data(self._view.plane.cut(quantity.values(snapshot)))
         self._caption.set_text(self._view.caption(snapshot))
 
     def add_streamlines(self, snapshot: Snapshot) -> None:
         """Draws streamlines of the velocity in the plane on the panel of the speed, if there is one."""
-        panel = next((image.axes for quantity, image in self._images if quantity.name == "speed"), None)
+        panel = next((image.axes for quantity, image, _ in self._images if quantity.name == "speed"), None)
         if panel is not None:
             width, height = _panel_size(self._view.plane.extent)
             draw_streamlines(panel, self._view.plane, snapshot, (0.3 * width, 0.3 * height))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..flow.sheets import section
 from ..run_directory import Run, Snapshot
 
 
@@ -62,14 +63,4 @@ class Canopies:
 
     def section(self, snapshot: Snapshot, axis: int, place: float) -> np.ndarray:
         """Segments (n, 2, 3) in which the triangles meet the plane at `place` on an axis, m."""
-        corners = self.positions(snapshot)[self.triangles]
-        height = corners[..., axis] - place
-        # A vertex in the plane counts as above it, so that a cut triangle has exactly two cut edges.
-        above = height >= 0
-        cut = above.any(axis=1) & ~above.all(axis=1)
-        corners, height, above = corners[cut], height[cut], above[cut]
-        following = [1, 2, 0]
-        crosses = above != above[:, following]
-        part = height / np.where(crosses, height - height[:, following], 1)
-        points = corners + part[..., None] * (corners[:, following] - corners)
-        return points[crosses].reshape(-1, 2, 3)
+        return section(self.positions(snapshot)[self.triangles], axis, place)

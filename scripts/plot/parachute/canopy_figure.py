@@ -8,9 +8,9 @@ from matplotlib.colors import Normalize, to_rgba
 from matplotlib.patches import Circle
 
 from .. import shading, style
-from ..flow.plane import AXES, Plane
+from ..flow.plane import Plane
 from ..flow.quantities import Quantity
-from ..flow.slices_figure import draw_slice, draw_streamlines
+from ..flow.slices_figure import SheetOutline, draw_slice, draw_streamlines
 from ..movie_file import drawn_frames
 from ..run_directory import Snapshot, evenly_spaced
 from ..style import plt
@@ -44,12 +44,6 @@ class View:
 
     def __post_init__(self):
         self.projection = shading.oblique_projection(_AZIMUTH, _ELEVATION)
-
-    @property
-    def place(self) -> float:
-        """Place of the plane on its axis, m."""
-        faces = self.plane.run.mesh[AXES[self.plane.normal]].values
-        return float(faces[self.plane.index] + faces[self.plane.index + 1]) / 2
 
     def caption(self, snapshot: Snapshot) -> str:
         """Vertices, cells, place of the plane, and time (s)."""
@@ -170,26 +164,28 @@ class CanopyFigure:
         lines = LineCollection([], colors="black", linewidth=0.4, alpha=0.6, zorder=3)
         plane = self._view.plane
         for centre, radius in self._spheres():
-            squared = radius**2 - (centre[plane.normal] - self._view.place) ** 2
+            squared = radius**2 - (centre[plane.normal] - self._view.plane.place) ** 2
             if squared > 0:
                 where = tuple(centre[list(plane.across)])
                 axes.add_patch(Circle(where, np.sqrt(squared), facecolor=_BODY, edgecolor=style.INK, zorder=2.5))
+        outline = SheetOutline(axes, plane)
         cut = LineCollection([], colors=_CUT, linewidth=2.0, zorder=4, capstyle="round")
         axes.add_collection(lines, autolim=False)
         axes.add_collection(cut, autolim=False)
         (payloads,) = axes.plot([], [], "o", color="black", markersize=4.5, zorder=5)
-        return quantity, image, lines, cut, payloads
+        return quantity, image, outline, lines, cut, payloads
 
     def show(self, snapshot: Snapshot) -> None:
         """Replaces the drawn data by those of a snapshot."""
         canopies = self._view.canopies
         self._show_cloth(snapshot)
         positions = canopies.positions(snapshot)
-        for quantity, image, lines, cut, payloads in self._slices:
+        for quantity, image, outline, lines, cut, payloads in self._slices:
+            outline.show(snapshot)
             across = list(self._view.plane.across)
             image.set_data(self._view.plane.cut(quantity.values(snapshot)))
             lines.set_segments(positions[canopies.lines][..., across])
-            cut.set_segments(canopies.section(snapshot, self._view.plane.normal, self._view.place)[..., across])
+            cut.set_segments(canopies.section(snapshot, self._view.plane.normal, self._view.plane.place)[..., across])
             payloads.set_data(*positions[canopies.payloads][:, across].T)
         self._caption.set_text(self._view.caption(snapshot))
 

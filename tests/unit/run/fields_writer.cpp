@@ -273,6 +273,10 @@ TEST(FieldsWriter, KeepsSeveralGridsInOneFile) {
     fields.add_mesh({"triangles", {1, 3}, "1", "face", "", "canopy"}, IntegerSource(corners));
     fields.add_mesh({"strings", {0, 2}, "1", "edge", "", "canopy"}, IntegerSource(corners));
     fields.add_mesh({"vertices", {3, 3}, "m", "vertex", "", "canopy"}, Source(zeros));
+    // A grid at rest, without fields.
+    fields.add_mesh({"triangles", {1, 3}, "1", "face", "", "body"}, IntegerSource(corners));
+    fields.add_mesh({"strings", {0, 2}, "1", "edge", "", "body"}, IntegerSource(corners));
+    fields.add_mesh({"vertices", {3, 3}, "m", "vertex", "", "body"}, Source(zeros));
     EXPECT_EQ(std::filesystem::exists(directory / "fields.xdmf"), resume_time.has_value());
     for (const auto& [name, faces] : {std::pair{"x", 5U}, std::pair{"y", 4U}, std::pair{"z", 3U}})
       fields.add_mesh({name, {faces}, "m", "face", ""}, Source(zeros));
@@ -291,6 +295,7 @@ TEST(FieldsWriter, KeepsSeveralGridsInOneFile) {
   EXPECT_EQ(values, std::vector<double>(9, 4.0));
   const std::string xdmf = content(directory / "fields.xdmf");
   EXPECT_NE(xdmf.find("fields.h5:/steps/000001/canopy/position"), std::string::npos) << xdmf;
+  EXPECT_NE(xdmf.find("fields.h5:/mesh/body/vertices"), std::string::npos) << xdmf;
   EXPECT_NE(xdmf.find("Dimensions=\"3 4 5\""), std::string::npos) << xdmf;
 }
 
