@@ -52,6 +52,9 @@ class Records:
         """Machine, date and commit of the records in use, their files, and the command that made them."""
         here = self.used[0]["provenance"]
         on_gpu = self.used[0]["facts"]["backend"] == "cuda"
+        machines = sorted({record["provenance"]["gpu" if on_gpu else "cpu"] for record in self.used})
+        if len(machines) > 1:
+            sys.exit(f"records of {' and '.join(machines)} in one table, for {command}: record all of its cases on one of them")
         name = re.sub(r"\((R|TM)\)", "", here["gpu"] if on_gpu else here["cpu"]) or "unknown processor"
         dates = sorted({record["provenance"]["date"][:10] for record in self.used})
         files = sorted({record["file"] for record in self.used})

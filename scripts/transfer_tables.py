@@ -22,7 +22,9 @@ HEAD = """# Transfers: tables 5.5 to 5.8 of [Shi]
 Written by `scripts/transfer_tables.py` from the records that `drogue-perf table transfers --app A --out FILE` wrote:
 copy to the device, compute, copy to the host, total, microseconds. In brackets: the times of [Shi] on its Quadro 6000.
 Parts and total are medians of their own, which need not add up. CPU: the computation of the row on one core, and its
-ratios to compute and total, in brackets those of the CPU of [Shi]; a dash where the record has no such time.
+ratios to compute and total, in brackets those of the CPU of [Shi]; a dash where no record has such a time. Of several
+records of a mini-app the latest of a GPU counts; times of a core that it lacks are those of the latest record of a
+host, which the line above a table names.
 """
 PARTS = {"h2d": "H2D", "compute": "compute", "d2h": "D2H", "total": "total"}
 ON_CORE = ["CPU", "CPU / compute", "CPU / total"]
@@ -43,6 +45,15 @@ class Row:
         self.thesis = {part: facts.get("thesis", {}).get(f"{part}_us") for part in (*PARTS, "cpu")}
         self.core = 1e6 * facts["cpu_s"] if "cpu_s" in facts else None
         self.copies = self.time["h2d"] + self.time["d2h"]
+
+    @property
+    def on_gpu(self):
+        return self.facts["backend"] == "cuda"
+
+    @property
+    def place(self):
+        """What is computed, whatever the device and its memory."""
+        return self.ours, self.size, self.mesh, self.steps
 
     @property
     def scheme(self):
@@ -134,7 +145,7 @@ def parachute_words(rows):
     few, many = (choose(pick(rows, size=size, memory=rows[0].memory), key=lambda row: row.steps) for choose in (min, max))
     return (f"[Shi] prints no such table: its table 5.6 is of the fabric alone. A copy moves the whole state of cloth and air. On "
             f"{few.facts['grid']} cells the copies of each step would take {number(few.copies)} us, "
-            f"{share(few.copies, few.time['total'])} of the step; with {many.steps} steps between two copies they take "
+            f"{share(few.copies, few.time['total'])} of the step, from {few.memory} memory; with {many.steps} steps between two copies they take "
             f"{share(many.copies, many.time['total'])}. Runs copy only for output and restarts.")  # fmt: skip
 
 
@@ -146,19 +157,41 @@ APPS = {
 }
 
 
-def section(app, file):
-    """Heading, paragraph and table of a file of records; stops the script if one failed its check."""
+def read(file):
+    """Rows of a file of records; stops the script if one failed its check."""
     records = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
     for record in records:
         if record["check"] != "passed":
             sys.exit(f"{file}: {record['case']} failed its check")
-    rows = [Row(record) for record in records]
+    return [Row(record) for record in records]
+
+
+def latest(files):
+    """File whose first record is the latest, and its rows; None without files."""
+    return max(((file, read(file)) for file in files), key=lambda found: found[1][0].record["provenance"]["date"], default=None)
+
+
+def origin(file, rows):
+    """Machine, date, commit and link of a file of records."""
+    here = rows[0].record["provenance"]
+    machine = here["gpu"] if rows[0].on_gpu else re.sub(r"\((R|TM)\)", "", here["cpu"])
+    return f"{machine}, {here['date'][:10]}, commit {here['git']} ([records](evidence/{file.name}))"
+
+
+def section(app, files):
+    """Heading, paragraph and table of the records of a mini-app."""
+    of_hosts = [file for file in files if not read(file)[0].on_gpu]
+    file, rows = latest([file for file in files if file not in of_hosts]) or latest(files)
     rows.sort(key=lambda row: (row.ours, row.memory, row.size, row.mesh or 0, row.steps or 0))
     title, columns, words = APPS[app]
-    here = records[0]["provenance"]
-    machine = here["gpu"] if records[0]["facts"]["backend"] == "cuda" else re.sub(r"\((R|TM)\)", "", here["cpu"])
-    source = (f"{machine}, {here['date'][:10]}, commit {here['git']} ([records](evidence/{file.name})): `drogue-perf table transfers "
-              f"--app {app} --backend {records[0]['facts']['backend']}`.")  # fmt: skip
+    backend = rows[0].facts["backend"]
+    source = f"{origin(file, rows)}: `drogue-perf table transfers --app {app} --backend {backend}`."
+    host = latest(of_hosts)
+    if host and not any(row.core for row in rows):
+        core = {row.place: row.core for row in host[1]}
+        for row in rows:
+            row.core = core.get(row.place)
+        source += f" CPU: one core of {origin(*host)}."
     with_core = any(row.core or row.thesis["cpu"] for row in rows)
     heading = [*columns, *PARTS.values(), *(ON_CORE if with_core else []), "error"]
     left = columns.index("memory") + 1
@@ -169,7 +202,8 @@ def section(app, file):
 
 def page(evidence=EVIDENCE):
     """Text of the page."""
-    return HEAD + "".join(section(app, file) for app in APPS for file in sorted(evidence.glob(f"{app}-transfers-*.jsonl")))
+    found = {app: sorted(evidence.glob(f"{app}-transfers-*.jsonl")) for app in APPS}
+    return HEAD + "".join(section(app, files) for app, files in found.items() if files)
 
 
 def main(words):

@@ -87,6 +87,13 @@ class Generator(unittest.TestCase):
         with self.assertRaisesRegex(SystemExit, "holds no record of springs-solution/drum/cuda/biquadratic/61"):
             readme_tables.springs_table(self.evidence)
 
+    def test_refuses_a_table_of_two_machines(self):
+        case = "flow-step/cuda/64x64x64/periodic"
+        old = readme_tables.Records(self.evidence, "flow*", readme_tables.GPU)(case)["provenance"]
+        self.change(case, provenance=old | {"gpu": "another GPU", "date": "2099-01-01T00:00:00Z"})
+        with self.assertRaisesRegex(SystemExit, "records of NVIDIA H200 and another GPU in one table"):
+            readme_tables.flow_table(self.evidence)
+
     def test_refuses_pages_without_a_mark(self):
         with self.assertRaisesRegex(SystemExit, "README.md has marks for"):
             readme_tables.renewed(README.replace("readme_tables.py: gas", "other: gas"), self.evidence)
@@ -106,14 +113,14 @@ class Transfers(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.evidence = Path(folder.name)
 
-    def write(self, app, *rows):
+    def write(self, app, *rows, machine="here", date="2026-01-02T00:00:00Z"):
         lines = []
         for facts in rows:
             facts = {"backend": "cuda", "h2d_s": 1e-5, "compute_s": 6e-5, "d2h_s": 3e-5} | facts
             lines.append({"case": f"{app}-transfers/cuda/x", "check": "passed", "error": 2.5e-6, "samples": [1e-4], "facts": facts,
-                          "provenance": {"gpu": "a GPU", "date": "2026-01-02T00:00:00Z", "git": "abc"}})
+                          "provenance": {"gpu": "a GPU", "cpu": "a core", "date": date, "git": "abc"}})
         text = "".join(json.dumps(line) + "\n" for line in lines)
-        (self.evidence / f"{app}-transfers-here.jsonl").write_text(text, encoding="utf-8")
+        (self.evidence / f"{app}-transfers-{machine}.jsonl").write_text(text, encoding="utf-8")
 
     def test_page_equals_its_records(self):
         self.assertEqual(transfer_tables.page(), transfer_tables.PAGE.read_text(encoding="utf-8"), "run scripts/transfer_tables.py")
@@ -140,6 +147,18 @@ class Transfers(unittest.TestCase):
         cells = {line.split(" | ")[2]: line.split(" | ")[7:10] for line in text.splitlines() if line.startswith("| of [Shi]")}
         self.assertEqual({"1024": ["600", "10", "6"], "2048": ["1200 (6000)", "20 (20)", "12 (6)"],
                           "3072": ["- (9000)", "- (30)", "- (9)"]}, cells)
+
+    def test_latest_record_of_a_gpu_counts_with_the_times_of_a_core_of_the_latest_host(self):
+        row = {"cells": 1024, "memory": "pageable", "method": "seed", "thesis": {"h2d_us": 5, "compute_us": 3, "d2h_us": 2, "total_us": 10}}
+        self.write("gas", row | {"compute_s": 6e-5}, machine="new", date="2026-02-01T00:00:00Z")
+        self.write("gas", row | {"compute_s": 9e-5}, machine="old", date="2026-01-01T00:00:00Z")
+        self.write("gas", row | {"backend": "openmp", "cpu_s": 6e-4}, machine="host", date="2026-03-01T00:00:00Z")
+        self.write("gas", row | {"backend": "serial", "cpu_s": 9e-4}, machine="old-host", date="2026-01-01T00:00:00Z")
+        text = transfer_tables.page(self.evidence)
+        self.assertEqual(1, text.count("## Gas"))
+        self.assertIn("evidence/gas-transfers-new.jsonl", text)
+        self.assertIn("CPU: one core of a core, 2026-03-01, commit abc ([records](evidence/gas-transfers-host.jsonl)).", " ".join(text.split()))
+        self.assertIn("| 60 (3) | 30 (2) | 100 (10) | 600 | 10 | 6 |", text)
 
     def test_parachutes_have_no_times_of_the_dissertation(self):
         self.write("parachute", *({"cells": 3456, "grid": "12x12x24", "memory": "pageable", "substeps": steps} for steps in (1, 20)))
