@@ -17,18 +17,17 @@ import textwrap
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "README.md"
 EVIDENCE = ROOT / "docs/evidence"
-GPU, HOST = "h[12]00", "epyc"  # patterns of the names of machines
 MARK = re.compile(r"(<!-- scripts/readme_tables\.py: ([\w-]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
 # Medians of programs that are not part of this project, ms: docs/options-notebook.md states how they were measured.
 HAND_WRITTEN = {1: "0.037 to 0.047", 4096: "0.276"}
 
 
 class Records:
-    """Latest record of every case in files of machines, and those that were used, in the order of their use."""
+    """Latest record of every case in the files of a pattern, and those that were used, in the order of their use."""
 
-    def __init__(self, evidence, files, machine):
+    def __init__(self, evidence, files):
         self._evidence, self._found, self.used = evidence, {}, []
-        for file in sorted(evidence.glob(f"{files}-{machine}.jsonl")):
+        for file in sorted(evidence.glob(f"{files}.jsonl")):
             for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
                 record = json.loads(line) | {"file": file, "place": f"{file}:{number}"}
                 old = self._found.get(record["case"])
@@ -83,7 +82,7 @@ def table(heading, rows):
 
 
 def gas_table(evidence):
-    records, schemes = Records(evidence, "gas-*", GPU), {"js": "JS", "z": "Z", "teno5": "TENO5"}
+    records, schemes = Records(evidence, "gas-*"), {"js": "JS", "z": "Z", "teno5": "TENO5"}
     rows, ratios = [], []
     for cells in (200, 400, 800, 1600):
         own = [records(f"gas-solution/shu-osher/cuda/{scheme}/{cells}") for scheme in schemes]
@@ -100,7 +99,7 @@ def gas_table(evidence):
 
 
 def springs_table(evidence):
-    gpu, host = Records(evidence, "springs-*", GPU), Records(evidence, "springs-*", HOST)
+    gpu, host = Records(evidence, "springs-*"), Records(evidence, "springs-*")
     rows = []
     for vertices in (61, 217, 817, 3169, 12481):
         row = [str(vertices)]
@@ -115,7 +114,7 @@ def springs_table(evidence):
 
 
 def options_table(evidence):
-    gpu, host = Records(evidence, "alone/options", GPU), Records(evidence, "options", HOST)
+    gpu, host = Records(evidence, "alone/options-*"), Records(evidence, "options-*")
     rows = []
     for count, words in ((1, "1"), (256, "256"), (4096, "4096"), (1_000_000, "1 M")):
         case = f"options/{{}}/{count}/128x32"
@@ -131,7 +130,7 @@ def options_table(evidence):
 
 
 def flow_table(evidence):
-    records, rows = Records(evidence, "flow*", GPU), []
+    records, rows = Records(evidence, "flow*"), []
     for grid in ("64x64x64", "60x60x120", "128x128x128", "256x256x256"):
         row = [grid]
         for sides in ("periodic", "tunnel"):

@@ -89,7 +89,7 @@ class Generator(unittest.TestCase):
 
     def test_refuses_a_table_of_two_machines(self):
         case = "flow-step/cuda/64x64x64/periodic"
-        old = readme_tables.Records(self.evidence, "flow*", readme_tables.GPU)(case)["provenance"]
+        old = readme_tables.Records(self.evidence, "flow*")(case)["provenance"]
         self.change(case, provenance=old | {"gpu": "another GPU", "date": "2099-01-01T00:00:00Z"})
         with self.assertRaisesRegex(SystemExit, "records of NVIDIA H200 and another GPU in one table"):
             readme_tables.flow_table(self.evidence)
