@@ -63,7 +63,7 @@ class Bench(unittest.TestCase):
         self.put("version.txt", "drogue-perf 1.0 (git abc)")
         self.put("cases.txt", *HOST)
         self.put("plan.txt")
-        self.host(2, "exit 1")
+        self.host(2, "exit 0")
 
     def put(self, name, *lines):
         (self.bin / name).write_text("".join(line + "\n" for line in lines))
@@ -107,7 +107,7 @@ class Bench(unittest.TestCase):
         self.assertEqual(sorted(f"{name}.jsonl" for name in self.names()), self.made())
         calls = self.calls()
         self.assertEqual(f"report {self.out}", calls[-1])
-        self.assertIn("^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)/", calls[0])
+        self.assertIn("^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)(/|$)", calls[0])
         for app in ("gas", "springs", "options", "parachute"):
             words = f"table transfers --app {app} --backend auto"
             self.assertEqual(1, sum(words in call for call in calls))
@@ -115,14 +115,14 @@ class Bench(unittest.TestCase):
             text = (self.out / f"{app}-transfers.txt").read_text()
             self.assertTrue(text.startswith(f"drogue-perf {words} \nprinted: {words}"), text)
         steps = (self.out / "gas-step.txt").read_text()
-        self.assertTrue(steps.startswith("drogue-perf run --filter '^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)/' \n"))
+        self.assertTrue(steps.startswith("drogue-perf run --filter '^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)(/|$)' \n"))
         self.assertFalse((self.out / ".partial").exists())
 
     def test_measures_the_gpu_alone_in_a_build_for_it(self):
         self.put("cases.txt", *CUDA)
         self.bench(0)
         calls = self.calls()
-        self.assertTrue(all("/cuda/" in call for call in calls if call.startswith("run")), calls)
+        self.assertTrue(all(re.search(r"/cuda(/|\(/)", call) for call in calls if call.startswith("run")), calls)
         self.assertTrue(all("--backend cuda" in call for call in calls if call.startswith(("table transfers", "work", "ladder"))))
         for app in ("gas", "options", "flow", "parachute"):
             self.assertIn(f"table block-size --app {app} --backend cuda --out", "\n".join(calls))
@@ -132,6 +132,7 @@ class Bench(unittest.TestCase):
         self.assertEqual(["flow-step"], [name for name in self.names() if name.startswith(("flow-step", "springs-step"))])
 
     def test_measures_ranks_on_the_cores_of_a_host_whose_launcher_starts_them(self):
+        self.host(2, "exit 1")
         self.assertIn("no scaling over ranks", self.bench(0, "--only", "^scaling-flow"))
         self.assertEqual(["scaling-flow-weak.jsonl", "scaling-flow.jsonl"], self.made())
         self.host(4, '[ "$*" = "-n 4 true" ]')
@@ -141,6 +142,12 @@ class Bench(unittest.TestCase):
                          [call.partition(" --out")[0] for call in self.calls()[:-1]])
         self.put("cases.txt", *CUDA)
         self.assertEqual(["scaling-flow"], [name for name in self.names() if name.startswith("scaling-flow")])
+        # Names and other records start no ranks.
+        self.put("cases.txt", *HOST)
+        self.host(2, f"touch {self.folder}/started")
+        self.assertIn("scaling-flow-ranks", self.names())
+        self.bench(0, "--only", "^occupancy$")
+        self.assertFalse((self.folder / "started").exists())
         self.host(1, "exit 0")
         self.assertNotIn("scaling-flow-ranks", self.names("--backend", "openmp"))
 
@@ -152,7 +159,6 @@ class Bench(unittest.TestCase):
             self.assertEqual(2, refused.returncode)
             return set(re.search("valid names are (.*)", refused.stderr)[1].split(", "))
 
-        self.host(2, "exit 0")
         self.bench(0)
         self.put("cases.txt", *CUDA)
         shutil.rmtree(self.out)
@@ -315,9 +321,21 @@ class Bench(unittest.TestCase):
 
     def test_refuses_unknown_words(self):
         for words, sentence in ((["--quik"], "unknown argument --quik"), (["--backend", "hip"], "no backend 'hip'"),
-                                (["--only"], "--only needs a value"),
+                                (["--only"], "--only needs a value"), (["--only", "("], "--only '(' is no regular expression"),
                                 (["--bin", "nowhere"], "there is no program")):
             self.assertIn(sentence, self.bench(2, *words))
+
+    def test_refuses_an_expression_that_matches_no_record(self):
+        for words in (["--only", "zz"], ["--only", "zz", "--list"]):
+            self.assertEqual("bench.sh: no record of this machine matches --only 'zz': --list prints the names of all.\n",
+                             self.bench(2, *words))
+        self.host(2, "exit 1")
+        self.assertIn("no record of this machine matches", self.bench(2, "--only", "ranks"))
+        self.assertFalse(self.out.exists())
+
+    def test_list_names_what_it_needs_where_no_program_is_built(self):
+        shutil.rmtree(self.bin)
+        self.assertIn("which --list needs: build it by scripts/build.sh host, or name its folder by --bin", self.bench(2, "--list"))
 
     def test_commands_of_the_readme_are_made(self):
         """Every command under a table of README.md is one of this script, or selects from one."""
