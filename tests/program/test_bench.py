@@ -257,7 +257,7 @@ class Bench(unittest.TestCase):
         (self.out / "occupancy.jsonl").unlink()
         self.plan()
         self.bench(0)
-        origin = {"gpu": "NVIDIA H200", "cpu": "", "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
+        origin = {"gpu": "NVIDIA H200", "cpu": "", "threads": 16, "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
         for file in self.out.rglob("*.jsonl"):
             file.write_text(json.dumps({"case": file.name, "facts": {"backend": "cuda"}, "provenance": origin}) + "\n")
         text = self.out / "occupancy.txt"
@@ -283,6 +283,9 @@ class Bench(unittest.TestCase):
         self.assertEqual("page", (tree / "docs/evidence/report-h200.html").read_text().strip())
         rows = (tree / "docs/evidence/README.md").read_text().splitlines()[2:]
         self.assertEqual({*published, "report-h200.html"}, {row.split("`")[1] for row in rows})
+        self.assertIn("| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/' --out options-N.jsonl`, one run per N |",
+                      "\n".join(rows))
+        self.assertIn("of one run of `scripts/bench.sh`", "\n".join(rows))
         self.assertIn("| `occupancy-h200.jsonl` | `drogue-perf table occupancy --out occupancy-h200.jsonl` |", "\n".join(rows))
         calls = [f"drogue-plot {self.out} --report --quiet", *(f"{name} " for name in generators),
                  f"drogue-plot {tree}/docs/evidence --quiet"]  # fmt: skip
@@ -302,16 +305,35 @@ class Bench(unittest.TestCase):
         put("quoted-h200.jsonl", ("a/2", "H200", "2026-11-20"))
         put("later-h200.jsonl", ("a/2", "H200", "2026-11-28"))
         put("all-h100.jsonl", ("a/1", "H200", "2026-11-20"))
-        (self.folder / "docs/gas.md").write_text("[record](evidence/quoted-h200.jsonl)")
+        put("in-code-h200.jsonl", ("a/2", "H200", "2026-11-20"))
+        (self.folder / "docs/gas.md").write_text("[record](evidence/quoted-h200.jsonl), [other](evidence/overall-h200.jsonl)")
+        (self.folder / "sheet.hpp").write_text("// docs/evidence/in-code-h200.jsonl")
+        (evidence / "README.md").write_text("| `all-h200.jsonl` |")
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             self.assertEqual(["all-h200.jsonl"], publish_records.remove_older(evidence, ["new-h200.jsonl"], "h200"))
-        left = {path.name: [json.loads(line)["case"] for line in path.read_text().splitlines()] for path in evidence.iterdir()}
+        left = {path.name: [json.loads(line)["case"] for line in path.read_text().splitlines()] for path in evidence.glob("*.jsonl")}
         self.assertEqual({"new-h200.jsonl": ["a/1", "a/2"], "part-h200.jsonl": ["b", "a/2"], "quoted-h200.jsonl": ["a/2"],
-                          "later-h200.jsonl": ["a/2"], "all-h100.jsonl": ["a/1"]}, left)
-        self.assertIn("quoted-h200.jsonl stays with 1 older records: gas.md quotes it", printed.getvalue())
+                          "in-code-h200.jsonl": ["a/2"], "later-h200.jsonl": ["a/2"], "all-h100.jsonl": ["a/1"]}, left)
+        self.assertIn("quoted-h200.jsonl stays with 1 older records: it is quoted by docs/gas.md", printed.getvalue())
+        self.assertIn("in-code-h200.jsonl stays with 1 older records: it is quoted by sheet.hpp", printed.getvalue())
         page = "| file |\n|---|\n| `all-h200.jsonl` | a |\n| `part-h200.jsonl` | b |\n\nEnd\n"
         self.assertEqual("| file |\n|---|\n| `part-h200.jsonl` | b |\n\nEnd\n", publish_records.without_rows(page, ["all-h200.jsonl"]))
+
+    def test_rows_name_the_threads_of_a_host_and_the_runs_of_two_builds(self):
+        def put(name, build, threads, cpu):
+            origin = {"gpu": "", "cpu": cpu, "threads": threads, "date": "2026-11-27T01:02:03Z", "git": build}
+            (self.folder / f"{name}.jsonl").write_text(json.dumps({"case": name, "provenance": origin}) + "\n")
+            (self.folder / f"{name}.txt").write_text(f"drogue-perf table {name} \n")
+
+        put("memory", "abc", 1, "Intel(R) Xeon(R)")
+        put("machine", "abc", 8, "Neoverse")
+        rows = publish_records.rows(self.folder, "host")
+        self.assertIn("| one thread of an Intel Xeon, ", rows["memory-host.jsonl"])
+        self.assertIn("| 8 threads of a Neoverse, ", rows["machine-host.jsonl"])
+        self.assertIn("of one run of `scripts/bench.sh`", rows["report-host.html"])
+        put("machine", "def", 8, "Neoverse")
+        self.assertIn("of runs of `scripts/bench.sh`", publish_records.rows(self.folder, "host")["report-host.html"])
 
     def test_solutions_replace_the_two_of_the_readme(self):
         self.assertEqual({"gas-shu-osher"}, set(self.names()) - set(self.names("--quick")))
