@@ -32,15 +32,19 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
+code=0
+[[ '' =~ $only ]] 2>/dev/null || code=$?
+[ "$code" -lt 2 ] || usage "--only '$only' is no regular expression."
 case "$backend" in '' | cuda | openmp | serial) ;; *) usage "there is no backend '$backend'; valid are cuda, openmp and serial." ;; esac
 
+preset=host
 if [ -z "$bin" ]; then
-  preset=host
   [ "$backend" = openmp ] || [ "$backend" = serial ] || [ -z "$(find_nvcc)" ] || ! nvidia-smi -L >/dev/null 2>&1 || preset=cuda
   [ "$list" = yes ] || { "$root/scripts/setup.sh" && "$root/scripts/build.sh" "$preset" --target drogue-perf --target drogue-parachute; }
   bin="$root/build/$preset/bin"
 fi
 perf="$bin/drogue-perf"
+[ -x "$perf" ] || [ "$list" = no ] || usage "there is no program $perf, which --list needs: build it by scripts/build.sh $preset, or name its folder by --bin."
 [ -x "$perf" ] || usage "there is no program $perf: leave out --bin to build it."
 cases="$("$perf" list ${quick[@]+"${quick[@]}"})" || fail "$perf list failed."
 # CUDA alone in a build for it: its host backends are not vectorised, and a GPU that waits for a host lowers its clock.
@@ -67,11 +71,18 @@ command_line() {
   done
 }
 
+# wanted NAMES...: whether --only matches one of them.
+wanted() {
+  local name
+  for name in "$@"; do [[ -z "$only" || "$name" =~ $only ]] && return 0; done
+  return 1
+}
+
 # record NAME WORDS...: makes FOLDER/NAME.jsonl by drogue-perf WORDS --out, unless it is there.
 record() {
   local name="$1" file="$folder/$1.jsonl" begin=$SECONDS code=0
   shift
-  [[ -z "$only" || "$name" =~ $only ]] || return 0
+  wanted "$name" || return 0
   [ "$list" = no ] || { printf '%s\n' "$name" && return 0; }
   if [ -e "$file" ]; then
     if [ ! -e "$file.failed" ]; then say "$name is there" && return 0; fi
@@ -105,68 +116,78 @@ cases() {
   if grep -qE "$filter" <<<"$cases"; then record "$1" run --filter "$filter"; fi
 }
 
-# ranks_here: number of cores, if mpirun starts as many ranks; else fails. Open MPI has no slots for hardware threads.
+# ranks_here: number of cores, if mpirun starts as many ranks; else fails. Open MPI has no slots for hardware threads. --list starts
+# no ranks: it needs an mpirun alone.
 ranks_here() {
   local cores
   cores="$(lscpu -p=core,socket 2>/dev/null | grep -v '^#' | sort -u | wc -l)"
   cores="$((cores < $(nproc) ? cores : $(nproc)))"
-  [ "$cores" -gt 1 ] && timeout 60 mpirun -n "$cores" true >/dev/null 2>&1 </dev/null && printf '%s\n' "$cores"
+  [ "$cores" -gt 1 ] && [ -n "$(command -v mpirun)" ] || return 1
+  [ "$list" = yes ] || timeout 60 mpirun -n "$cores" true >/dev/null 2>&1 </dev/null || return 1
+  printf '%s\n' "$cores"
 }
 
-if [ "$list" = no ]; then
-  mkdir -p "$folder" && [ -w "$folder" ] || fail "cannot write to $folder."
-  exec 9>"$lock"
-  flock -w 1 9 || fail "another bench.sh, or a program that it started, works in $folder."
-  # A killed one leaves the record that it had begun.
-  rm -rf "$partial"
-  build="$("$perf" --version) ${quick[*]-}"
-  [ -e "$folder/build.txt" ] || printf '%s\n' "$build" >"$folder/build.txt"
-  [ "$(cat "$folder/build.txt")" = "$build" ] ||
-    fail "$folder holds records of another build or with other options ($(head -n 1 "$folder/build.txt")): name another folder, or remove it."
-  trap stop INT TERM HUP
-fi
-
-cases gas-step 'gas-step|ceiling/[^/]+'
-cases springs-step springs-step
-cases springs-contact springs-contact
-cases options 'options|options-surface'
-cases options-cos options-cos
-cases tridiagonal tridiagonal
-cases flow-step flow-step
-cases flight parachute-flight
-# Batches of options without other cases in turns, which change what is in the caches.
-for count in $(grep -oE '^options/cuda/[0-9]+/' <<<"$cases" | sort -ut / -k 3n | cut -d / -f 3); do
-  [ "$backend" != cuda ] || record "alone/options-$count" run --filter "^options/cuda/$count/"
-done
-record machine table machine --backend "$one"
-record occupancy table occupancy
-if [ "$backend" = cuda ]; then
-  for app in gas options flow parachute; do record "$app-block" table block-size --app $app --backend cuda; done
-  for app in gas springs flow; do record "$app-abstraction" table abstraction --app $app --backend cuda; done
-fi
-for app in gas springs options parachute; do record "$app-transfers" table transfers --app $app --backend "$one"; done
-record flow-pressure table pressure --backend "$one"
-record flow-memory table memory --backend "$one"
-for app in gas springs options flow; do record "scaling-$app" table scaling --app $app --backend "$one"; done
-if [ "$backend" != cuda ]; then
-  [ "$one" = serial ] || record scaling-flow-weak table scaling --weak --backend "$one"
-  if ranks="$(ranks_here)"; then
-    record scaling-flow-ranks table scaling --over ranks --most "$ranks" --backend "$one"
-    record scaling-flow-ranks-weak table scaling --over ranks --weak --most "$ranks" --backend "$one"
-  else
-    say "no scaling over ranks: this is one core, or mpirun does not start a rank on each of its cores"
+# all_records: makes or lists all records of this machine that --only matches.
+all_records() {
+  cases gas-step 'gas-step|ceiling/[^/]+'
+  cases springs-step springs-step
+  cases springs-contact springs-contact
+  cases options 'options|options-surface'
+  cases options-cos options-cos
+  cases tridiagonal tridiagonal
+  cases flow-step flow-step
+  cases flight parachute-flight
+  # Batches of options without other cases in turns, which change what is in the caches.
+  for count in $(grep -oE '^options/cuda/[0-9]+/' <<<"$cases" | sort -ut / -k 3n | cut -d / -f 3); do
+    [ "$backend" != cuda ] || record "alone/options-$count" run --filter "^options/cuda/$count/"
+  done
+  record machine table machine --backend "$one"
+  record occupancy table occupancy
+  if [ "$backend" = cuda ]; then
+    for app in gas options flow parachute; do record "$app-block" table block-size --app $app --backend cuda; done
+    for app in gas springs flow; do record "$app-abstraction" table abstraction --app $app --backend cuda; done
   fi
+  for app in gas springs options parachute; do record "$app-transfers" table transfers --app $app --backend "$one"; done
+  record flow-pressure table pressure --backend "$one"
+  record flow-memory table memory --backend "$one"
+  for app in gas springs options flow; do record "scaling-$app" table scaling --app $app --backend "$one"; done
+  if [ "$backend" != cuda ]; then
+    [ "$one" = serial ] || record scaling-flow-weak table scaling --weak --backend "$one"
+    if [ -n "$ranks" ]; then
+      record scaling-flow-ranks table scaling --over ranks --most "$ranks" --backend "$one"
+      record scaling-flow-ranks-weak table scaling --over ranks --weak --most "$ranks" --backend "$one"
+    fi
+  fi
+  for ladder in weno springs options transfers; do record "ladder-$ladder" ladder $ladder --backend "$one"; done
+  solver="$([ "$one" != auto ] && echo "$one" || echo serial)"
+  if [ "$solutions" = no ]; then
+    # It is none of the quick problems.
+    [ ${#quick[@]} -gt 0 ] || record gas-shu-osher work-precision --app gas --filter '^shu-osher$' --backend "$solver"
+    record springs-drum work-precision --app springs --filter '^drum$' --backend "$solver"
+  else
+    for app in gas springs options flow parachute; do record "$app-solution" work-precision --app $app --backend "$solver"; done
+  fi
+}
+
+ranks=''
+if [ "$backend" != cuda ] && wanted scaling-flow-ranks scaling-flow-ranks-weak && ! ranks="$(ranks_here)"; then
+  say "no scaling over ranks: this is one core, or mpirun does not start a rank on each of its cores"
 fi
-for ladder in weno springs options transfers; do record "ladder-$ladder" ladder $ladder --backend "$one"; done
-solver="$([ "$one" != auto ] && echo "$one" || echo serial)"
-if [ "$solutions" = no ]; then
-  # It is none of the quick problems.
-  [ ${#quick[@]} -gt 0 ] || record gas-shu-osher work-precision --app gas --filter '^shu-osher$' --backend "$solver"
-  record springs-drum work-precision --app springs --filter '^drum$' --backend "$solver"
-else
-  for app in gas springs options flow parachute; do record "$app-solution" work-precision --app $app --backend "$solver"; done
-fi
-[ "$list" = no ] || exit 0
+names="$(list=yes && all_records)"
+[ -n "$names" ] || usage "no record of this machine matches --only '$only': --list prints the names of all."
+[ "$list" = no ] || { printf '%s\n' "$names" && exit 0; }
+
+mkdir -p "$folder" && [ -w "$folder" ] || fail "cannot write to $folder."
+exec 9>"$lock"
+flock -w 1 9 || fail "another bench.sh, or a program that it started, works in $folder."
+# A killed one leaves the record that it had begun.
+rm -rf "$partial"
+build="$("$perf" --version) ${quick[*]-}"
+[ -e "$folder/build.txt" ] || printf '%s\n' "$build" >"$folder/build.txt"
+[ "$(cat "$folder/build.txt")" = "$build" ] ||
+  fail "$folder holds records of another build or with other options ($(head -n 1 "$folder/build.txt")): name another folder, or remove it."
+trap stop INT TERM HUP
+all_records
 
 code=0
 "$perf" report "$folder" || code=$?

@@ -6,7 +6,7 @@
 FOLDER: that of bench.sh, here or brought from the machine; its files NAME.txt begin with the command of NAME.jsonl. Copies
 NAME.jsonl to docs/evidence/NAME-MACHINE.jsonl and the page to report-MACHINE.html; writes their rows in docs/evidence/README.md
 (one of the same name is replaced); starts the scripts that write tables, and drogue-plot of --bin. Older records of the same
-cases in other files of MACHINE go, with the rows of files that hold no other; files that a document quotes stay. Does nothing
+cases in other files of MACHINE go, with the rows of files that hold no other; files that documents, code or tests quote stay. Does nothing
 if a record failed its check, or was made with --quick.
 """
 
@@ -34,24 +34,31 @@ def row(file, command, record):
     """Line of the table on a file, whose first record is `record`."""
     here = record["provenance"]
     name = re.sub(r"\((R|TM)\)", "", here["gpu"] or here["cpu"]) or "unknown processor"
-    machine = f"one {name}, CUDA {here['driver']}" if here["gpu"] else f"{here['threads']} threads of an {name}"
-    command = f"{command} --out {pathlib.Path(file).name}".replace("|", r"\|")
-    return f"| `{file}` | `{command}` | {machine}, {here['date'][:10]}, commit {here['git']} |"
+    threads = "one thread" if here["threads"] == 1 else f"{here['threads']} threads"
+    machine = f"one {name}, CUDA {here['driver']}" if here["gpu"] else f"{threads} of {'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+    out, per = pathlib.Path(file).name, ""
+    if file.startswith("alone/"):
+        out, per = "options-N.jsonl", ", one run per N"
+    command = f"{command} --out {out}".replace("|", r"\|")
+    return f"| `{file}` | `{command}`{per} | {machine}, {here['date'][:10]}, commit {here['git']} |"
 
 
 def rows(folder, machine):
     """Lines by file of docs/evidence; batches of options alone share one file, and one line."""
-    found = {}
+    found, builds = {}, set()
     for path in sorted(folder.rglob("*.jsonl")):
         name = path.relative_to(folder).with_suffix("").as_posix()
-        record = json.loads(path.read_text(encoding="utf-8").partition("\n")[0])
+        records = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+        record = records[0]
+        builds |= {record["provenance"]["git"] for record in records}
         command = path.with_suffix(".txt").read_text(encoding="utf-8").partition("\n")[0].strip()
         if name.startswith("alone/"):
-            command = command.replace(f"/{name.rpartition('-')[2]}/", "/N/") + ", one run per N,"
+            command = command.replace(f"/{name.rpartition('-')[2]}/", "/N/")
         file = published_name(name, record.get("facts", {}).get("backend", ""), machine)
         found.setdefault(file, row(file, command, record))
     report = f"report-{machine}.html"
-    return found | {report: f"| `{report}` | `drogue-plot FOLDER --report` | from the records `*-{machine}.jsonl` of one run of `scripts/bench.sh` |"}
+    runs = "one run" if len(builds) == 1 else "runs"
+    return found | {report: f"| `{report}` | `drogue-plot FOLDER --report` | from the records `*-{machine}.jsonl` of {runs} of `scripts/bench.sh` |"}
 
 
 def renewed(text, lines):
@@ -89,14 +96,18 @@ def identity(record):
 
 
 def quoting(evidence, file):
-    """Documents that name a file of `evidence`, but its own list of files."""
-    documents = [evidence.parent.parent / "README.md", *sorted(evidence.parent.rglob("*.md"))]
-    return [page for page in documents if page != evidence / "README.md" and page.exists()
-            and f"evidence/{file.relative_to(evidence).as_posix()}" in page.read_text(encoding="utf-8")]  # fmt: skip
+    """Documents, code and tests outside of `evidence` that name a file of it."""
+    name = "(^|[^A-Za-z0-9_-])" + re.escape(file.name)
+    # Without an index, so that it serves an archive of the sources too.
+    search = ["git", "grep", "--no-index", "--exclude-standard", "-lIE", "-e", name, "--", ".", ":!docs/evidence"]
+    found = subprocess.run(search, cwd=evidence.parent.parent, capture_output=True, text=True, check=False)
+    if found.returncode > 1:
+        sys.exit(f"cannot search for the files that quote {file.name}: {found.stderr.strip()}")
+    return found.stdout.splitlines()
 
 
 def remove_older(evidence, published, machine):
-    """Removes records that the published files replace from other files of the machine that no document quotes.
+    """Removes records that the published files replace from other files of the machine that nothing quotes.
 
     Returns the names of the files that held no other records, which it deletes. Prints what goes and what stays.
     """
@@ -115,7 +126,7 @@ def remove_older(evidence, published, machine):
         if len(kept) == len(lines):
             continue
         if pages := quoting(evidence, file):
-            print(f"{file.name} stays with {len(lines) - len(kept)} older records: {', '.join(page.name for page in pages)} quotes it")
+            print(f"{file.name} stays with {len(lines) - len(kept)} older records: it is quoted by {', '.join(pages)}")
         elif kept:
             file.write_text("".join(kept), encoding="utf-8")
             print(f"{file.name}: {len(lines) - len(kept)} older records are removed")
@@ -187,9 +198,10 @@ def publish(folder, machine, programs):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
+    parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path, help="records of scripts/bench.sh, here or brought from the machine")
     parser.add_argument("machine", metavar="MACHINE", help="part of the names of files, such as h200")
-    parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/host/bin")
+    parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/host/bin",
+                        help="folder of drogue-plot, which makes the pages (default: build/host/bin)")  # fmt: skip
     options = parser.parse_args()
     if not re.fullmatch("[a-z0-9-]+", options.machine):
         parser.error(f"the machine '{options.machine}' is part of names of files: use a-z, 0-9 and -")

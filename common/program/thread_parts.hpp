@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 #include <thread>
 #include <vector>
 
@@ -14,15 +15,26 @@ namespace drogue {
   return std::clamp<std::size_t>(count / least, 1, cores);
 }
 
-/// Calls `work(part, begin, end)` for each of `parts` equal ranges of [0, count), each in a thread of its own
-/// and the first in the calling one. `work` must not throw. Blocking. Throws std::system_error if a thread
-/// cannot start.
+/// Calls `work(part, begin, end)` for each of `parts` (> 0) equal ranges of [0, count), each in a thread of
+/// its own and the first in the calling one. Blocking. Rethrows the exception of the first part that threw,
+/// once all parts have ended. Throws std::system_error if a thread cannot start.
 template <class Work>
 void for_thread_parts(std::size_t parts, std::size_t count, const Work& work) {
-  std::vector<std::jthread> threads;
-  for (std::size_t part = 1; part < parts; ++part)
-    threads.emplace_back([=, &work] { work(part, count * part / parts, count * (part + 1) / parts); });
-  work(std::size_t{0}, std::size_t{0}, count / parts);
+  std::vector<std::exception_ptr> failures(parts);
+  const auto run = [&](std::size_t part) noexcept {
+    try {
+      work(part, count * part / parts, count * (part + 1) / parts);
+    } catch (...) {
+      failures[part] = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t part = 1; part < parts; ++part) threads.emplace_back([&run, part] { run(part); });
+    run(0);
+  }
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace drogue

@@ -65,7 +65,8 @@ struct ResultDocument {
   Metrics metrics;  ///< limiter counts, energies and the like, after `checks`
   struct WallTimes {
     double wall_s = 0, setup_s = 0, compute_s = 0, h2d_s = 0, d2h_s = 0, io_s = 0;
-    double bound_s = 0;  ///< bounds of the stable step, where they are no part of `compute_s`
+    double bound_s =
+        0;  ///< bounds of the stable step, no part of `compute_s`; the first are in `setup_s` too
   } timing;
   struct ProfilingCounters {
     std::int64_t kernel_launches = 0, fences = 0, device_allocations_after_warmup = 0, h2d_bytes = 0,

@@ -32,10 +32,10 @@ Reason reason_in(const std::filesystem::path& log) {
   return reason;
 }
 
-/// Code of a program of this suite, which a launcher passes on.
-bool is_own_code(int status) {
-  constexpr ExitCode codes[] = {ExitCode::usage,    ExitCode::invalid_scene, ExitCode::numerical_failure,
-                                ExitCode::io_error, ExitCode::no_backend,    ExitCode::interrupted};
+/// True for a code with which a program of this suite prints a sentence, and which a launcher passes on.
+bool has_sentence(int status) {
+  constexpr ExitCode codes[] = {ExitCode::usage, ExitCode::invalid_scene, ExitCode::numerical_failure,
+                                ExitCode::io_error, ExitCode::no_backend};
   return std::ranges::any_of(codes, [&](ExitCode code) { return static_cast<int>(code) == status; });
 }
 
@@ -52,7 +52,9 @@ std::string describe_end(int status) {
 Failure failed_run(const std::string& units, int status, const std::filesystem::path& log) {
   const Reason reason = reason_in(log);
   const std::string failed = "a run on " + units + " failed: ";
-  if (is_own_code(status) && !reason.sentence.empty())
+  // 130 is that of a signal from the keyboard, whoever prints a sentence.
+  const bool interrupted = status == static_cast<int>(ExitCode::interrupted) && !reason.sentence.empty();
+  if (interrupted || (has_sentence(status) && reason.of_program))
     return {static_cast<ExitCode>(status), failed + reason.sentence};
   if (!reason.of_program && reason.as_root)
     return {ExitCode::usage,

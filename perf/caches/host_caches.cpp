@@ -4,6 +4,8 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
 namespace drogue::perf {
 namespace {
@@ -29,15 +31,24 @@ bool is_core(const std::string& name) {
          name.find_first_not_of("0123456789", 3) == std::string::npos;
 }
 
+/// Paths in a folder, none where it cannot be read. A core that is offline has no folder of caches.
+std::vector<std::filesystem::path> entries(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> paths;
+  std::error_code error;
+  // Not by a range: `++` of the iterator throws.
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    paths.push_back(entry->path());
+  return paths;
+}
+
 }  // namespace
 
 std::map<std::int64_t, int> host_caches(int level, const std::filesystem::path& cpus) {
   std::map<std::string, std::int64_t> by_cores;  // bytes by the list of cores that share a cache
-  std::error_code ignored;
-  for (const auto& core : std::filesystem::directory_iterator(cpus, ignored)) {
-    if (!is_core(core.path().filename().string())) continue;
-    for (const auto& cache : std::filesystem::directory_iterator(core.path() / "cache", ignored)) {
-      const std::filesystem::path& folder = cache.path();
+  for (const std::filesystem::path& core : entries(cpus)) {
+    if (!is_core(core.filename().string())) continue;
+    for (const std::filesystem::path& folder : entries(core / "cache")) {
       if (first_line(folder / "level") != std::to_string(level) ||
           first_line(folder / "type") == "Instruction")
         continue;

@@ -63,7 +63,7 @@ class Bench(unittest.TestCase):
         self.put("version.txt", "drogue-perf 1.0 (git abc)")
         self.put("cases.txt", *HOST)
         self.put("plan.txt")
-        self.host(2, "exit 1")
+        self.host(2, "exit 0")
 
     def put(self, name, *lines):
         (self.bin / name).write_text("".join(line + "\n" for line in lines))
@@ -107,7 +107,7 @@ class Bench(unittest.TestCase):
         self.assertEqual(sorted(f"{name}.jsonl" for name in self.names()), self.made())
         calls = self.calls()
         self.assertEqual(f"report {self.out}", calls[-1])
-        self.assertIn("^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)/", calls[0])
+        self.assertIn("^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)(/|$)", calls[0])
         for app in ("gas", "springs", "options", "parachute"):
             words = f"table transfers --app {app} --backend auto"
             self.assertEqual(1, sum(words in call for call in calls))
@@ -115,14 +115,14 @@ class Bench(unittest.TestCase):
             text = (self.out / f"{app}-transfers.txt").read_text()
             self.assertTrue(text.startswith(f"drogue-perf {words} \nprinted: {words}"), text)
         steps = (self.out / "gas-step.txt").read_text()
-        self.assertTrue(steps.startswith("drogue-perf run --filter '^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)/' \n"))
+        self.assertTrue(steps.startswith("drogue-perf run --filter '^(gas-step|ceiling/[^/]+)/(serial|openmp|dense-loop|scatter-loop)(/|$)' \n"))
         self.assertFalse((self.out / ".partial").exists())
 
     def test_measures_the_gpu_alone_in_a_build_for_it(self):
         self.put("cases.txt", *CUDA)
         self.bench(0)
         calls = self.calls()
-        self.assertTrue(all("/cuda/" in call for call in calls if call.startswith("run")), calls)
+        self.assertTrue(all(re.search(r"/cuda(/|\(/)", call) for call in calls if call.startswith("run")), calls)
         self.assertTrue(all("--backend cuda" in call for call in calls if call.startswith(("table transfers", "work", "ladder"))))
         for app in ("gas", "options", "flow", "parachute"):
             self.assertIn(f"table block-size --app {app} --backend cuda --out", "\n".join(calls))
@@ -132,6 +132,7 @@ class Bench(unittest.TestCase):
         self.assertEqual(["flow-step"], [name for name in self.names() if name.startswith(("flow-step", "springs-step"))])
 
     def test_measures_ranks_on_the_cores_of_a_host_whose_launcher_starts_them(self):
+        self.host(2, "exit 1")
         self.assertIn("no scaling over ranks", self.bench(0, "--only", "^scaling-flow"))
         self.assertEqual(["scaling-flow-weak.jsonl", "scaling-flow.jsonl"], self.made())
         self.host(4, '[ "$*" = "-n 4 true" ]')
@@ -141,6 +142,12 @@ class Bench(unittest.TestCase):
                          [call.partition(" --out")[0] for call in self.calls()[:-1]])
         self.put("cases.txt", *CUDA)
         self.assertEqual(["scaling-flow"], [name for name in self.names() if name.startswith("scaling-flow")])
+        # Names and other records start no ranks.
+        self.put("cases.txt", *HOST)
+        self.host(2, f"touch {self.folder}/started")
+        self.assertIn("scaling-flow-ranks", self.names())
+        self.bench(0, "--only", "^occupancy$")
+        self.assertFalse((self.folder / "started").exists())
         self.host(1, "exit 0")
         self.assertNotIn("scaling-flow-ranks", self.names("--backend", "openmp"))
 
@@ -152,7 +159,6 @@ class Bench(unittest.TestCase):
             self.assertEqual(2, refused.returncode)
             return set(re.search("valid names are (.*)", refused.stderr)[1].split(", "))
 
-        self.host(2, "exit 0")
         self.bench(0)
         self.put("cases.txt", *CUDA)
         shutil.rmtree(self.out)
@@ -251,7 +257,7 @@ class Bench(unittest.TestCase):
         (self.out / "occupancy.jsonl").unlink()
         self.plan()
         self.bench(0)
-        origin = {"gpu": "NVIDIA H200", "cpu": "", "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
+        origin = {"gpu": "NVIDIA H200", "cpu": "", "threads": 16, "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
         for file in self.out.rglob("*.jsonl"):
             file.write_text(json.dumps({"case": file.name, "facts": {"backend": "cuda"}, "provenance": origin}) + "\n")
         text = self.out / "occupancy.txt"
@@ -277,6 +283,9 @@ class Bench(unittest.TestCase):
         self.assertEqual("page", (tree / "docs/evidence/report-h200.html").read_text().strip())
         rows = (tree / "docs/evidence/README.md").read_text().splitlines()[2:]
         self.assertEqual({*published, "report-h200.html"}, {row.split("`")[1] for row in rows})
+        self.assertIn("| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/' --out options-N.jsonl`, one run per N |",
+                      "\n".join(rows))
+        self.assertIn("of one run of `scripts/bench.sh`", "\n".join(rows))
         self.assertIn("| `occupancy-h200.jsonl` | `drogue-perf table occupancy --out occupancy-h200.jsonl` |", "\n".join(rows))
         calls = [f"drogue-plot {self.out} --report --quiet", *(f"{name} " for name in generators),
                  f"drogue-plot {tree}/docs/evidence --quiet"]  # fmt: skip
@@ -296,16 +305,35 @@ class Bench(unittest.TestCase):
         put("quoted-h200.jsonl", ("a/2", "H200", "2026-11-20"))
         put("later-h200.jsonl", ("a/2", "H200", "2026-11-28"))
         put("all-h100.jsonl", ("a/1", "H200", "2026-11-20"))
-        (self.folder / "docs/gas.md").write_text("[record](evidence/quoted-h200.jsonl)")
+        put("in-code-h200.jsonl", ("a/2", "H200", "2026-11-20"))
+        (self.folder / "docs/gas.md").write_text("[record](evidence/quoted-h200.jsonl), [other](evidence/overall-h200.jsonl)")
+        (self.folder / "sheet.hpp").write_text("// docs/evidence/in-code-h200.jsonl")
+        (evidence / "README.md").write_text("| `all-h200.jsonl` |")
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             self.assertEqual(["all-h200.jsonl"], publish_records.remove_older(evidence, ["new-h200.jsonl"], "h200"))
-        left = {path.name: [json.loads(line)["case"] for line in path.read_text().splitlines()] for path in evidence.iterdir()}
+        left = {path.name: [json.loads(line)["case"] for line in path.read_text().splitlines()] for path in evidence.glob("*.jsonl")}
         self.assertEqual({"new-h200.jsonl": ["a/1", "a/2"], "part-h200.jsonl": ["b", "a/2"], "quoted-h200.jsonl": ["a/2"],
-                          "later-h200.jsonl": ["a/2"], "all-h100.jsonl": ["a/1"]}, left)
-        self.assertIn("quoted-h200.jsonl stays with 1 older records: gas.md quotes it", printed.getvalue())
+                          "in-code-h200.jsonl": ["a/2"], "later-h200.jsonl": ["a/2"], "all-h100.jsonl": ["a/1"]}, left)
+        self.assertIn("quoted-h200.jsonl stays with 1 older records: it is quoted by docs/gas.md", printed.getvalue())
+        self.assertIn("in-code-h200.jsonl stays with 1 older records: it is quoted by sheet.hpp", printed.getvalue())
         page = "| file |\n|---|\n| `all-h200.jsonl` | a |\n| `part-h200.jsonl` | b |\n\nEnd\n"
         self.assertEqual("| file |\n|---|\n| `part-h200.jsonl` | b |\n\nEnd\n", publish_records.without_rows(page, ["all-h200.jsonl"]))
+
+    def test_rows_name_the_threads_of_a_host_and_the_runs_of_two_builds(self):
+        def put(name, build, threads, cpu):
+            origin = {"gpu": "", "cpu": cpu, "threads": threads, "date": "2026-11-27T01:02:03Z", "git": build}
+            (self.folder / f"{name}.jsonl").write_text(json.dumps({"case": name, "provenance": origin}) + "\n")
+            (self.folder / f"{name}.txt").write_text(f"drogue-perf table {name} \n")
+
+        put("memory", "abc", 1, "Intel(R) Xeon(R)")
+        put("machine", "abc", 8, "Neoverse")
+        rows = publish_records.rows(self.folder, "host")
+        self.assertIn("| one thread of an Intel Xeon, ", rows["memory-host.jsonl"])
+        self.assertIn("| 8 threads of a Neoverse, ", rows["machine-host.jsonl"])
+        self.assertIn("of one run of `scripts/bench.sh`", rows["report-host.html"])
+        put("machine", "def", 8, "Neoverse")
+        self.assertIn("of runs of `scripts/bench.sh`", publish_records.rows(self.folder, "host")["report-host.html"])
 
     def test_solutions_replace_the_two_of_the_readme(self):
         self.assertEqual({"gas-shu-osher"}, set(self.names()) - set(self.names("--quick")))
@@ -315,9 +343,21 @@ class Bench(unittest.TestCase):
 
     def test_refuses_unknown_words(self):
         for words, sentence in ((["--quik"], "unknown argument --quik"), (["--backend", "hip"], "no backend 'hip'"),
-                                (["--only"], "--only needs a value"),
+                                (["--only"], "--only needs a value"), (["--only", "("], "--only '(' is no regular expression"),
                                 (["--bin", "nowhere"], "there is no program")):
             self.assertIn(sentence, self.bench(2, *words))
+
+    def test_refuses_an_expression_that_matches_no_record(self):
+        for words in (["--only", "zz"], ["--only", "zz", "--list"]):
+            self.assertEqual("bench.sh: no record of this machine matches --only 'zz': --list prints the names of all.\n",
+                             self.bench(2, *words))
+        self.host(2, "exit 1")
+        self.assertIn("no record of this machine matches", self.bench(2, "--only", "ranks"))
+        self.assertFalse(self.out.exists())
+
+    def test_list_names_what_it_needs_where_no_program_is_built(self):
+        shutil.rmtree(self.bin)
+        self.assertIn("which --list needs: build it by scripts/build.sh host, or name its folder by --bin", self.bench(2, "--list"))
 
     def test_commands_of_the_readme_are_made(self):
         """Every command under a table of README.md is one of this script, or selects from one."""

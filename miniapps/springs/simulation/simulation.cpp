@@ -136,8 +136,8 @@ void Simulation::replan_if_stiffer() {
 /// for it.
 std::string Simulation::too_long_step() {
   const Time& requested = _scene.time;
-  const double dt = _solver->time_state().dt, bound = fastest_frequency();
   if (!requested.dt) return {};
+  const double dt = _solver->time_state().dt, bound = fastest_frequency();
   std::ostringstream text;
   if (dt == *requested.dt)
     text << "a step of " << dt << " s is too long: ";

@@ -14,8 +14,8 @@ class PersistentRung final : public LibraryRung<ExecutionSpace> {
   static constexpr RungText text{
       "persistent", "One launch for all steps; the state stays in shared memory.",
       "The model omits waiting: on an H200 two of five microseconds per step pass until the "
-      "fastest signal of all teams has arrived (docs/gas-notebook.md). The record of this "
-      "ladder on a GPU is still to be made."};
+      "fastest signal of all teams has arrived (docs/gas-notebook.md). On an H100 at 8192 cells "
+      "a step takes 5.34 us where the model has 0.636 us (docs/lessons/tables.md)."};
   static constexpr bool available = !device::is_host<ExecutionSpace>;
 
   static Work work(const WenoProblem& problem) {

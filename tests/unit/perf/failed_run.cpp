@@ -56,6 +56,17 @@ TEST(FailedRun, NamesForeignEndsInsteadOfPassingTheirCodesOn) {
         failed(status, ""),
         std::pair(ExitCode::io_error, std::string("a run on 2 ranks failed: it ended without a result")));
   EXPECT_EQ(failed(77, "").first, ExitCode::io_error);
+  for (const int status : {2, 3, 4, 6, 77})
+    EXPECT_EQ(failed(status, "launcher: a node is lost\n"),
+              std::pair(ExitCode::io_error, "a run on 2 ranks failed: it ended with code " +
+                                                std::to_string(status) + ": launcher: a node is lost"));
+}
+
+TEST(FailedRun, IsInterruptedWhoeverPrintsASentence) {
+  for (const std::string sentence :
+       {"drogue-parachute: interrupted by a signal", "mpirun: Forwarding signal 2"})
+    EXPECT_EQ(failed(130, sentence + "\n"),
+              std::pair(ExitCode::interrupted, "a run on 2 ranks failed: " + sentence));
 }
 
 }  // namespace

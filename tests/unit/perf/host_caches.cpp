@@ -50,6 +50,14 @@ TEST_F(HostCaches, CoresOfTwoKindsHaveSizesOfTheirOwn) {
   EXPECT_EQ(host_caches(2, folder()), (Caches{{2 << 20, 1}, {4 << 20, 1}}));
 }
 
+TEST_F(HostCaches, OfACoreWithoutAFolderOfCachesAreLeftOut) {
+  add(0, "index2", "2", "Unified", "256K", "0");
+  std::filesystem::create_directories(folder() / "cpu1");
+  std::ofstream(folder() / "cpu2") << "no folder\n";
+  add(3, "index2", "2", "Unified", "256K", "3");
+  EXPECT_EQ(host_caches(2, folder()), (Caches{{256 << 10, 2}}));
+}
+
 TEST_F(HostCaches, AreUnknownWhereTheSystemStatesTooLittle) {
   EXPECT_EQ(host_caches(3, folder()), Caches{});
   EXPECT_EQ(host_caches(3, folder() / "missing"), Caches{});

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -38,6 +40,22 @@ TEST(ThreadParts, WorkInThreadsOfTheirOwn) {
   EXPECT_EQ(ids[0], std::this_thread::get_id());
   EXPECT_NE(ids[1], ids[0]);
   EXPECT_NE(ids[2], ids[0]);
+}
+
+TEST(ThreadParts, ThrowWhatTheFirstFailedPartThrewAfterAllHaveEnded) {
+  for (const std::size_t first : {0U, 1U, 2U}) {
+    std::vector<int> ended(4, 0);
+    try {
+      for_thread_parts(4, 4, [&](std::size_t part, std::size_t, std::size_t) {
+        ended[part] = 1;
+        if (part >= first) throw std::runtime_error(std::to_string(part));
+      });
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(error.what(), std::to_string(first));
+    }
+    EXPECT_EQ(ended, std::vector<int>(4, 1)) << first;
+  }
 }
 
 }  // namespace
