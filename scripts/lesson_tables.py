@@ -6,6 +6,7 @@
 
 import json
 import pathlib
+import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -31,7 +32,7 @@ def table(file):
         if record["check"] != "passed":
             sys.exit(f"{file}: {record['case']} failed its check")
     facts, here = records[0]["facts"], records[0]["provenance"]
-    machine = here["gpu"] if facts["backend"] == "cuda" else here["cpu"]
+    machine = here["gpu"] if facts["backend"] == "cuda" else re.sub(r"\((R|TM)\)", "", here["cpu"])
     lines = [f"\n## `{facts['ladder']}` on {facts['backend']}\n",
              f"{machine}, {here['date'][:10]}, size {facts['cells']}, {records[0]['unit'].removeprefix('s ')} "
              f"([record](../evidence/ladders/{file.name}))\n",

@@ -52,7 +52,7 @@ class Row:
 
     @property
     def place(self):
-        """What is computed, whatever the device and its memory."""
+        """Scheme and sizes of the row, which do not depend on the device or its memory."""
         return self.ours, self.size, self.mesh, self.steps
 
     @property

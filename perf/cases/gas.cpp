@@ -100,12 +100,12 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
 }
 
 /// The scheme of [Shi], which copies the state to and from the device in each stage.
-Case seed_case(device::Backend backend, std::int64_t cells) {
+Case baseline_step_case(device::Backend backend, std::int64_t cells) {
   const std::string name(device::name(backend));
-  Case seed = baseline_case("gas-step/" + name + "/" + std::to_string(cells) + "/seed",
+  Case step = baseline_case("gas-step/" + name + "/" + std::to_string(cells) + "/seed",
                             "copies between host and device", backend, sod::parameters(cells), all_phases);
-  seed.facts = [=] { return Facts{name, cells, "seed"}; };
-  return seed;
+  step.facts = [=] { return Facts{name, cells, "seed"}; };
+  return step;
 }
 
 }  // namespace
@@ -127,7 +127,7 @@ std::vector<Case> gas_cases(bool quick) {
       if (gpu && cells == 8192)
         for (const Variant& variant : small_variants)
           cases.push_back(solver_case(backend, cells, steps, variant));
-      if (gpu && cells == 8192) cases.push_back(seed_case(backend, cells));
+      if (gpu && cells == 8192) cases.push_back(baseline_step_case(backend, cells));
       if (gpu && cells == 1 << 24)
         for (const Variant& variant : large_variants)
           cases.push_back(solver_case(backend, cells, steps, variant));

@@ -1,10 +1,10 @@
 #include "perf/measure/measurement.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
+#include "common/program/stopwatch.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/measure/repeats.hpp"
 #include "perf/measure/warm_up.hpp"
@@ -23,24 +23,20 @@ struct TimedSample {
 
 /// Resets and works `repeats` times. If the sample has parts, their sum is its time.
 TimedSample take(const Sample& sample, long repeats) {
-  using Clock = std::chrono::steady_clock;
-  const auto since = [](Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-  };
   TimedSample taken;
-  const auto start = Clock::now();
+  const Stopwatch whole;
   for (long repeat = 0; repeat < repeats; ++repeat) {
     sample.reset();
-    const auto begin = Clock::now();
+    const Stopwatch work;
     taken.units += sample.work();
-    const double wall = since(begin);
+    const double wall = work.seconds();
     if (!sample.parts) {
       taken.seconds += wall;
       continue;
     }
     for (const auto& [name, part] : sample.parts()) taken.parts[name] += part, taken.seconds += part;
   }
-  taken.wall = since(start);
+  taken.wall = whole.seconds();
   return taken;
 }
 

@@ -59,7 +59,7 @@ class Documents(unittest.TestCase):
         self.assertGreater(count, 20)
 
     def test_table_of_flow_in_the_readme_holds_the_numbers_of_its_record(self):
-        lines = (SOURCE / "docs/evidence/flow-h200.jsonl").read_text(encoding="utf-8").splitlines()
+        lines = (SOURCE / "docs/evidence/flow-step-h100.jsonl").read_text(encoding="utf-8").splitlines()
         records = {record["case"]: record for record in map(json.loads, lines)}
         readme = (SOURCE / "README.md").read_text(encoding="utf-8")
         rows = re.findall(r"^\| (\d+x\d+x\d+) \| (.*) \|$", readme, re.MULTILINE)
