@@ -26,8 +26,8 @@ double centre(const gas::Parameters& p, std::size_t i);
 /// Initial state of all cells.
 Fields start(const gas::Parameters& p);
 
-/// Sample of `count` steps from the initial state, which is kept in pinned memory: pageable copies of the
-/// largest one take ten times as long as the steps. `solver`, made for `p` on `backend`, must outlive the
+/// Sample of `count` steps from the initial state, which is kept in pinned memory: pageable copies of a large
+/// one take longer than the steps. `solver`, made for `p` on `backend`, must outlive the
 /// sample. Blocking.
 Sample steps(const gas::Parameters& p, device::Backend backend, gas::Solver& solver, long count);
 

@@ -163,7 +163,7 @@ std::vector<BlockForm> parachute_forms(device::Backend backend, bool quick) {
 
 std::vector<BlockForm> options_forms(device::Backend backend, bool quick) {
   const std::int64_t count = quick ? 4 : 256;
-  const double loose = 1e-3;  // at 1e-4 a batch of blocks of 32 takes a second
+  const double loose = 1e-3;  // at 1e-4 a batch of blocks of 32 takes too long for a round of all blocks
   return {{"options-block",
            "cos",
            "Puts by cosine series; a put has a team, tables of the host are included",

@@ -282,6 +282,8 @@ class Devices(Folder):
         page, _ = self.page(records.blocks())
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Block size, CUDA"]
         self.assertEqual(rows[1][:4], ["1\u2009024", "6.35", "6.24", "6.02"])
+        self.assertIn("The flux kernel of [Shi]; the fastest block of a mesh is marked", page.words)
+        self.assertIn("[Shi]: Qiangqiang Shi", page.words)
 
     def test_block_sizes_of_flow_and_canopies_have_own_pictures(self):
         _, files = self.page(records.flow_blocks(), "flow")

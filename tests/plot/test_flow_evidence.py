@@ -49,6 +49,7 @@ class Page(Folder):
     def test_memory_is_given_per_cell(self):
         page, _ = self.page(records.flow_solvers(), app="flow")
         self.assertEqual(["124", "140"], page.tables[H200, "Memory"][1][3:])
+        self.assertEqual("CUDA", page.tables[H200, "Memory"][1][0])
 
     def test_solutions_are_drawn_with_the_published_results(self):
         page, files = self.page(records.flow_solutions(), app="flow")

@@ -111,6 +111,7 @@ class Report(Folder):
         self.assertEqual("gas::StepFunctor", profiled[1][0])
         self.assertIn("1 of 2 profiled kernels are predicted to the block", page.words)
         self.assertIn("The fused step of drogue-gas on sm_86", page.words)
+        self.assertIn("The kernels ran on a GPU of architecture sm_90", page.words)
 
     def test_profiles_with_a_contradiction_are_not_folded(self):
         *rest, passed, failed = records.occupancy()

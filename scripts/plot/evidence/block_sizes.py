@@ -93,9 +93,8 @@ def _table(form: str, data: _Times) -> Table:
             row.append(Cell(text, "good" if block == fastest else ""))
         rows.append(row)
     columns = [("cells", True)] + [(f"block {block} (\u00b5s)", True) for block in blocks]
-    return Table(
-        columns, rows, f"{_FORMS.get(form, form).capitalize()}; the fastest block of a mesh is marked"
-    )
+    name = _FORMS.get(form, form)
+    return Table(columns, rows, f"{name[:1].upper()}{name[1:]}; the fastest block of a mesh is marked")
 
 
 def sections(machine: Machine, records: list[Record]) -> list[Section]:

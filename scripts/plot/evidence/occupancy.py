@@ -23,9 +23,8 @@ def _check(record: Record) -> Cell:
 def printed_table(records: list[Record]) -> Table:
     """Table 4.2: computed numbers beside those printed."""
     names = {
-        "shared_bytes": "shared bytes", "blocks_by_registers": "by registers", "blocks_by_shared_memory": "by shared memory",
-        "blocks_by_limit": "by limit", "blocks": "blocks", "threads_sm": "threads per multiprocessor",
-        "threads_device": "threads per device",
+        "shared_bytes": "shared B", "blocks_by_registers": "by registers", "blocks_by_shared_memory": "by shared B",
+        "blocks_by_limit": "by limit", "blocks": "blocks", "threads_sm": "threads", "threads_device": "of the device",
     }  # fmt: skip
     rows = []
     for record in records:
@@ -33,17 +32,20 @@ def printed_table(records: list[Record]) -> Table:
         row = [str(record.facts["block"])]
         row += [_beside(record.facts.get(name, ""), printed.get(name, "")) for name in names]
         rows.append([*row, _beside(_percent(record), printed.get("occupancy_percent", "")), _check(record)])
-    columns = [("block", True), *((heading, True) for heading in names.values()), ("% of the threads", True), ("check", False)]
-    note = "The flux kernel of [Shi] on compute capability 2.0, computed (printed). Blocks: resident on a multiprocessor."
+    columns = [("block", True), *((heading, True) for heading in names.values()), ("% full", True), ("check", False)]
+    note = (
+        "The flux kernel of [Shi] on compute capability 2.0, computed (printed). Shared B: bytes of shared memory. Blocks and "
+        "threads: resident on a multiprocessor; % full: of the threads that it holds."
+    )
     return Table(columns, rows, "Table 4.2", note)
 
 
 def steps_table(architecture: str, records: list[Record]) -> Table:
     """Step kernels of gas by block size on an architecture."""
     columns = [
-        ("block", True), ("slots", True), ("registers", True), ("shared bytes", True), ("by registers", True),
-        ("by shared memory", True), ("by threads", True), ("by limit", True), ("blocks", True), ("requested", True),
-        ("% of the threads", True), ("check", False),
+        ("block", True), ("slots", True), ("registers", True), ("shared B", True), ("by registers", True),
+        ("by shared B", True), ("by threads", True), ("by limit", True), ("blocks", True), ("requested", True),
+        ("% full", True), ("check", False),
     ]  # fmt: skip
     rows = []
     for record in records:
@@ -58,11 +60,21 @@ def steps_table(architecture: str, records: list[Record]) -> Table:
     return Table(columns, rows, f"The fused step of drogue-gas on {architecture}", note)
 
 
+def _devices(records: list[Record]) -> str:
+    """GPUs of profiled kernels in words. A profile states their architecture and size, not their name."""
+    found = set()
+    for record in records:
+        facts = record.facts
+        count = facts.get("threads_device", 0) // max(1, facts["threads_sm"])
+        found.add(f"a GPU of architecture {facts['architecture']}" + (f" with {count} multiprocessors" if count else ""))
+    return " and ".join(sorted(found))
+
+
 def profile_table(records: list[Record]) -> Table:
     """Profiled kernels: resident blocks of the model beside those of ncu, contradictions first."""
     columns = [
-        ("kernel", False), ("device", False), ("block", True), ("registers", True), ("shared bytes", True),
-        ("predicted", True), ("achieved", True), ("mean", True), ("% of the threads", True), ("limited by", False),
+        ("kernel", False), ("device", False), ("block", True), ("registers", True), ("shared B", True),
+        ("model", True), ("ncu", True), ("mean", True), ("% full", True), ("limit", False),
         ("check", False),
     ]  # fmt: skip
     rows = []
@@ -74,10 +86,13 @@ def profile_table(records: list[Record]) -> Table:
                 Cell(facts["kernel"].removeprefix("drogue::"), "case"), facts["architecture"], str(facts["block"]),
                 str(facts["registers"]), html_page.format_grouped(facts["shared_bytes"]), str(facts["blocks"]),
                 str(achieved.get("blocks", "")), f"{mean:.2f}" if isinstance(mean, int | float) else "",
-                _percent(record), facts.get("limited_by", ""), _check(record),
+                _percent(record), facts.get("limited_by", "").replace("shared_memory", "shared B"), _check(record),
             ]
         )  # fmt: skip
-    note = "Achieved: by ncu's limits of the launch; mean: by counters, of the largest launch. Contradictions come first."
+    note = (
+        f"The kernels ran on {_devices(records)}; the processor in the title computed the model. Model and ncu: resident "
+        "blocks, predicted and by ncu's limits of the launch; mean: by counters, of the largest launch. Contradictions come first."
+    )
     is_right = all(record.check == "passed" for record in records)
     return Table(columns, rows, "Profiled kernels", note, is_right and len(rows) > _MOST_OPEN_ROWS)
 

@@ -55,7 +55,8 @@ def pressure_sections(records: list[Record]) -> list[Section]:
 
 def _memory_row(record: Record) -> list[Cell | str]:
     cells = record.facts["cells"]
-    found = [record.facts["backend"], "x".join(map(str, _axes(record))), record.facts["variant"]]
+    backend = record.facts["backend"]
+    found = [BACKENDS.get(backend, backend), "x".join(map(str, _axes(record))), record.facts["variant"]]
     for name in ("array_bytes", "driver_bytes"):
         value = record.facts.get(name)
         found.append("" if value is None else html_page.format_number(value / cells))
