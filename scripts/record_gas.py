@@ -14,6 +14,7 @@ scheme of [Shi] (--seed-mode) on the meshes of its Table 5.5. Further parts:
 Prints a summary. The exit code is 1 if any run failed.
 """
 
+import pathlib
 import sys
 
 from recording import (
@@ -97,6 +98,7 @@ def long_rows(program, backend, work, largest):
 
 def main():
     options = argument_parser(__doc__)
+    options.add_argument("--exact", type=pathlib.Path)
     options.add_argument("--largest", action="store_true")
     options.add_argument("--long", action="store_true")
     arguments = options.parse_args()

@@ -18,6 +18,7 @@ Needs numpy and h5py. Prints the tables as Markdown. The exit code is 1 if any r
 
 import csv
 import json
+import pathlib
 import subprocess
 import sys
 
@@ -320,6 +321,7 @@ def print_tables(record):
 
 def main():
     options = argument_parser(__doc__)
+    options.add_argument("--exact", type=pathlib.Path)
     options.add_argument("--tables")
     options.add_argument("--largest", action="store_true")
     arguments = options.parse_args()

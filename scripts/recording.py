@@ -6,16 +6,40 @@ import pathlib
 import subprocess
 
 
-def run(program, scene, backend, folder, *more):
-    """Runs a scene into `folder`; returns its result.json with the keys `exit_code` and `message`."""
-    command = [program, scene, "--backend", backend, "--overwrite", "--quiet", "--out", folder, *more]
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+# mpi_yield_when_idle: ranks that wait leave their core to others.
+LAUNCHER = ("mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n")
+STOPPING_S = 30.0  # from the signal until a run is killed
+
+
+def run(program, scene, backend, folder, *more, ranks=1, limit=None):
+    """Runs a scene into `folder`; returns its result.json with the keys `exit_code` and `message`.
+
+    `ranks` above 1 start it through mpirun. A run that takes more than `limit` seconds is stopped; its exit code is None.
+    """
     file = pathlib.Path(folder) / "result.json"
+    file.unlink(missing_ok=True)
+    launch = [*LAUNCHER, ranks] if ranks > 1 else []
+    command = [*launch, program, scene, "--backend", backend, "--overwrite", "--quiet", "--out", folder, *more]
+    words = [str(word) for word in command]
+    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            errors = process.communicate(timeout=limit)[1]
+        except subprocess.TimeoutExpired:
+            process.terminate()
+            try:
+                process.communicate(timeout=STOPPING_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+            return {"exit_code": None, "message": f"stopped after {limit:g} s"}
     result = json.loads(file.read_text()) if file.exists() else {}
-    return result | {
-        "exit_code": done.returncode,
-        "message": done.stderr.strip() or result.get("message", ""),
-    }
+    message = own_message(errors) if ranks > 1 else errors.strip()
+    return result | {"exit_code": process.returncode, "message": message or result.get("message", "")}
+
+
+def own_message(errors):
+    """The lines of stderr that are of a program: mpirun adds others after a failure."""
+    own = [line for line in errors.splitlines() if line.startswith("drogue-")]
+    return "\n".join(own) if own else errors.strip()
 
 
 def assignments(*sets):
@@ -108,7 +132,6 @@ def argument_parser(description):
     )
     parser.add_argument("machine")
     parser.add_argument("--bin", type=pathlib.Path, required=True)
-    parser.add_argument("--exact", type=pathlib.Path)
     parser.add_argument("--backends", default="serial,openmp")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/record"))
     parser.add_argument(
@@ -117,10 +140,15 @@ def argument_parser(description):
     return parser
 
 
-def write_record(record, file, failed, shown):
-    """Writes the record, prints a summary with the keys `shown`, and returns the exit code: 1 if a run failed."""
+def save_record(record, file):
+    """Writes the record to `file`, whose folder it creates."""
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(json.dumps(record, indent=1) + "\n")
+
+
+def write_record(record, file, failed, shown):
+    """Writes the record, prints a summary with the keys `shown`, and returns the exit code: 1 if a run failed."""
+    save_record(record, file)
     print(f"{len(record['runs'])} runs, {len(failed)} failed")
     for row in failed:
         print("failed:", json.dumps(row)[:300])

@@ -1,15 +1,47 @@
-"""Arithmetic of scripts/record_springs.py and scripts/recording.py on files with known results."""
+"""Scripts that make records: arithmetic on files with known results, rows of a stand-in for drogue-parachute."""
 
+import contextlib
+import io
+import json
+import os
 import shutil
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import packages  # before modules that need the packages  isort: skip
 import h5py
 import numpy as np
+import record_parachute
 import record_springs
 import recording
+
+# Scenes that pass, fail, last, and refuse ranks.
+PROGRAM = """\
+#!/bin/sh
+if [ "$1" = --list-scenes ]; then
+  printf '%s  A scene.\\n' passes fails lasts alone passes-full
+  exit
+fi
+echo "$1 $3 ${RANKS:-1}" >> FOLDER/runs
+case $1 in
+  lasts) exec sleep 60 ;;
+  alone) if [ -n "$RANKS" ]; then echo "drogue-parachute: works on one rank" >&2; exit 2; fi ;;
+esac
+mkdir -p "$7"
+echo '{"steps": 3, "checks": [], "pressure": {"solver": "fft"}, "timing": {"wall_s": 0.5}}' > "$7/result.json"
+if [ "$1" = fails ]; then echo "drogue-parachute: a check failed" >&2; exit 1; fi
+"""
+# Like mpirun, with words of its own on stderr after a failure.
+LAUNCHER = """\
+#!/bin/sh
+while [ "$1" != -n ]; do shift; done
+export RANKS=$2
+shift 2
+"$@" || { code=$?; echo "mpirun detected that a process failed" >&2; exit $code; }
+"""
 
 
 def _write_strip(file, strain, poisson, columns=10, rows=4):
@@ -27,11 +59,55 @@ def _write_strip(file, strain, poisson, columns=10, rows=4):
         h5["steps/000001/position"] = rest * [1 + strain, 1 - poisson * strain, 1.0]
 
 
-class Records(unittest.TestCase):
+class TemporaryFolder(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
 
+
+class ParachuteRecords(TemporaryFolder):
+    def record(self, *words):
+        """Exit code, rows by scene and ranks, and printed lines of a record of a stand-in for the program."""
+        for name, text in (("drogue-parachute", PROGRAM), ("mpirun", LAUNCHER)):
+            (self.folder / name).write_text(text.replace("FOLDER", str(self.folder)))
+            (self.folder / name).chmod(0o755)
+        folders = ["--bin", self.folder, "--work", self.folder / "work", "--to", self.folder]
+        line = ["record_parachute.py", "test", *map(str, folders), "--backends", "serial", *words]
+        path = f"{self.folder}{os.pathsep}{os.environ['PATH']}"
+        with (mock.patch.object(sys, "argv", line), mock.patch.dict(os.environ, {"PATH": path}),
+              contextlib.redirect_stdout(io.StringIO()) as printed):  # fmt: skip
+            code = record_parachute.main()
+        rows = json.loads((self.folder / "parachute-test.json").read_text())["runs"]
+        return code, {(row["scene"], row["ranks"]): row for row in rows}, printed.getvalue().splitlines()
+
+    def runs(self):
+        return (self.folder / "runs").read_text().splitlines()
+
+    def test_every_small_scene_has_a_row_of_each_number_of_ranks(self):
+        code, rows, lines = self.record("--ranks", "1,2", "--skip", "lasts")
+        self.assertEqual((1, 8), (code, len(rows)))
+        passed = [rows["passes", 2][key] for key in ("exit_code", "steps", "solver", "wall_s")]
+        self.assertEqual([0, 3, "fft", 0.5], passed)
+        self.assertEqual(1, rows["fails", 2]["exit_code"])
+        self.assertEqual("drogue-parachute: a check failed", rows["fails", 2]["message"])
+        self.assertEqual("drogue-parachute: works on one rank", rows["alone", 2]["refused"])
+        self.assertEqual(0, rows["alone", 1]["exit_code"])
+        self.assertEqual("left out by --skip 'lasts'", rows["lasts", 1]["not_run"])
+        self.assertIn("8 runs, 2 failed", lines)
+        self.assertIn("not_run: lasts, serial, ranks 2: left out by --skip 'lasts'", lines)
+        self.assertNotIn("lasts serial 1", self.runs())
+
+    def test_limit_stops_a_run_that_a_later_call_repeats(self):
+        code, rows, _ = self.record("--ranks", "1", "--only", "^(passes|lasts)", "--limit", "0.5", "--full")
+        self.assertEqual({("passes", 1), ("lasts", 1), ("passes-full", 1)}, set(rows))
+        self.assertEqual((0, "stopped after 0.5 s"), (code, rows["lasts", 1]["not_run"]))
+        _, rows, _ = self.record("--ranks", "1", "--only", "^lasts", "--limit", "0.25", "--add")
+        self.assertEqual(3, len(rows))
+        self.assertEqual("stopped after 0.25 s", rows["lasts", 1]["not_run"])
+        self.assertEqual((1, 2), (self.runs().count("passes serial 1"), self.runs().count("lasts serial 1")))
+
+
+class Records(TemporaryFolder):
     def test_response_of_strip_is_that_of_material(self):
         _write_strip(self.folder / "fields.h5", 1e-6, 0.3)
         found = record_springs.response(self.folder / "fields.h5", 5000.0, 0.3)
