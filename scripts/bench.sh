@@ -71,8 +71,8 @@ command_line() {
   done
 }
 
-# wanted NAMES...: whether --only matches one of them.
-wanted() {
+# is_selected NAMES...: whether --only matches one of them.
+is_selected() {
   local name
   for name in "$@"; do [[ -z "$only" || "$name" =~ $only ]] && return 0; done
   return 1
@@ -82,7 +82,7 @@ wanted() {
 record() {
   local name="$1" file="$folder/$1.jsonl" begin=$SECONDS code=0
   shift
-  wanted "$name" || return 0
+  is_selected "$name" || return 0
   [ "$list" = no ] || { printf '%s\n' "$name" && return 0; }
   if [ -e "$file" ]; then
     if [ ! -e "$file.failed" ]; then say "$name is there" && return 0; fi
@@ -170,7 +170,7 @@ all_records() {
 }
 
 ranks=''
-if [ "$backend" != cuda ] && wanted scaling-flow-ranks scaling-flow-ranks-weak && ! ranks="$(ranks_here)"; then
+if [ "$backend" != cuda ] && is_selected scaling-flow-ranks scaling-flow-ranks-weak && ! ranks="$(ranks_here)"; then
   say "no scaling over ranks: this is one core, or mpirun does not start a rank on each of its cores"
 fi
 names="$(list=yes && all_records)"
