@@ -34,11 +34,11 @@ def row(file, command, record):
     """Line of the table on a file, whose first record is `record`."""
     here = record["provenance"]
     name = re.sub(r"\((R|TM)\)", "", here["gpu"] or here["cpu"]) or "unknown processor"
+    article = "an" if name[0] in "AEIOUaeiou" else "a"
     if here["gpu"]:
         machine = f"one {name}, CUDA {here['driver']}"
     else:
-        threads = "one thread" if here["threads"] == 1 else f"{here['threads']} threads"
-        machine = f"{threads} of {'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+        machine = f"{'one thread' if here['threads'] == 1 else str(here['threads']) + ' threads'} of {article} {name}"
     out, per = pathlib.Path(file).name, ""
     if file.startswith("alone/"):
         out, per = "options-N.jsonl", ", one run per N"

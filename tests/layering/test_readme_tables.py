@@ -200,7 +200,7 @@ class EvidenceRows(unittest.TestCase):
         self.assertEqual(
             ["# Evidence", "", "| file | written by | machine |", "|---|---|---|",
              f"| `a-h200.jsonl` | `drogue-perf run --filter '^(a\\|b)/' --out a-h200.jsonl` | {machine} |", "| `z.png` | x | y |",
-             f"| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/', one run per N, --out options-h200.jsonl` | {machine} |",
+             f"| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/' --out options-N.jsonl`, one run per N | {machine} |",
              f"| `ladders/weno-cuda-h200.jsonl` | `drogue-perf ladder weno --out weno-cuda-h200.jsonl` | {machine} |",
              "| `report-h200.html` | `drogue-plot FOLDER --report` | from the records `*-h200.jsonl` of one run of `scripts/bench.sh` |",
              "", "End", ""],

@@ -154,7 +154,7 @@ class Bench(unittest.TestCase):
     def test_makes_every_table_of_every_mini_app(self):
         def tables_of(app):
             """Names in the sentence of the program that refuses another."""
-            other = "machine" if app == "flow" else "pressure"
+            other = "occupancy" if app == "flow" else "pressure"
             refused = subprocess.run([PERF, "table", other, "--app", app], capture_output=True, text=True, check=False)
             self.assertEqual(2, refused.returncode)
             return set(re.search("valid names are (.*)", refused.stderr)[1].split(", "))

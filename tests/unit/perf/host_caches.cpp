@@ -50,7 +50,7 @@ TEST_F(HostCaches, CoresOfTwoKindsHaveSizesOfTheirOwn) {
   EXPECT_EQ(host_caches(2, folder()), (Caches{{2 << 20, 1}, {4 << 20, 1}}));
 }
 
-TEST_F(HostCaches, LeaveOutACoreWithoutAFolderOfCaches) {
+TEST_F(HostCaches, LeaveOutCoresWithoutAFolder) {
   add(0, "index2", "2", "Unified", "256K", "0");
   std::filesystem::create_directories(folder() / "cpu1");
   std::ofstream(folder() / "cpu2") << "no folder\n";
