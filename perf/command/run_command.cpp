@@ -1,8 +1,12 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <regex>
+#include <string_view>
 #include <utility>
 
 #include "common/program/signals.hpp"
@@ -16,6 +20,7 @@
 #include "perf/measure/record.hpp"
 #include "perf/measure/repeats.hpp"
 #include "perf/memory/device_memory.hpp"
+#include "perf/profile/kernel_profile.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -48,17 +53,43 @@ std::vector<Case> matching_cases(const std::regex& filter, bool quick) {
   return cases;
 }
 
+/// The nearest kind of case if the kind that a filter begins with, a plain word up to a slash, is none.
+std::optional<std::string> mistyped_kind(const std::string& filter) {
+  const std::size_t begin = filter.starts_with('^') ? 1 : 0;
+  const std::string kind = filter.substr(begin, filter.find_first_of("/$", begin) - begin);
+  if (!std::ranges::all_of(kind, [](unsigned char c) { return std::isalpha(c) || c == '-'; })) return {};
+  const std::vector<std::string> kinds = case_kinds();
+  if (std::ranges::any_of(kinds, [&](const std::string& valid) { return valid.ends_with(kind); })) return {};
+  return scene::nearest(kind, kinds);
+}
+
+/// Reason why a backend that a filter names between slashes cannot run here.
+std::optional<std::string> missing_backend(const std::string& filter) {
+  constexpr std::string_view separators = "/^$|()";
+  for (std::size_t begin = 0; begin < filter.size();) {
+    const std::size_t end = std::min(filter.find_first_of(separators, begin), filter.size());
+    if (const auto backend = device::backend_from_name(filter.substr(begin, end - begin)))
+      if (const auto reason = device::why_unavailable(*backend)) return reason;
+    begin = end + 1;
+  }
+  return {};
+}
+
 Failure no_case(const RunOptions& options, const std::regex& filter) {
   const std::string list = options.quick ? "drogue-perf list --quick" : "drogue-perf list";
-  const auto left_out = options.quick ? matching_cases(filter, false).size() : 0;
+  const std::string what = "no case matches '" + options.filter + "'";
+  if (const auto left_out = options.quick ? matching_cases(filter, false).size() : 0; left_out > 0)
+    return {ExitCode::usage,
+            what + " but " + std::to_string(left_out) + " that --quick leaves out; see " + list};
+  if (const auto kind = mistyped_kind(options.filter))
+    return {ExitCode::usage, what + "; did you mean the kind \"" + *kind + "\"?"};
+  if (const auto reason = missing_backend(options.filter))
+    return {ExitCode::no_backend, what + ": " + *reason};
   std::vector<std::string> names;
   for (const Case& c : all_cases(options.quick)) names.push_back(c.name);
-  if (const auto nearest = scene::nearest(options.filter, names); nearest && left_out == 0)
-    return {ExitCode::usage, "no case matches '" + options.filter + "'; did you mean \"" + *nearest + "\"?"};
-  return {ExitCode::usage,
-          "no case matches '" + options.filter + "'" +
-              (left_out > 0 ? " but " + std::to_string(left_out) + " that --quick leaves out" : "") +
-              "; see " + list};
+  if (const auto nearest = scene::nearest(options.filter, names))
+    return {ExitCode::usage, what + "; did you mean \"" + *nearest + "\"?"};
+  return {ExitCode::usage, what + "; see " + list};
 }
 
 ExitCode run_cases(RunOptions options, const std::regex& filter) {

@@ -36,6 +36,10 @@ std::string kernel_label(std::string_view demangled);
 /// that are rounded or missing, a file without kernels, and errors that ncu reports.
 std::vector<KernelProfile> read_profiles(const std::filesystem::path& path);
 
+/// Kinds of cases of `drogue-perf run` on any machine: the parts of their names before the first slash. Does
+/// not throw.
+std::vector<std::string> case_kinds();
+
 /// Command line that profiles `case_name`, a case of `drogue-perf run` on CUDA, and writes the CSV file `out`
 /// by running `program`. The first `launches` kernels of the case's namespaces are profiled; then ncu ends
 /// the program. Throws Failure(usage) for a case of another backend or of an unknown kind, with the nearest

@@ -57,13 +57,17 @@ std::string_view namespaces_of(const std::string& case_name) {
   const std::string kind = case_name.substr(0, case_name.find('/'));
   const auto found = std::ranges::find(kinds, kind, &decltype(kinds)::value_type::first);
   if (found != kinds.end()) return found->second;
-  std::vector<std::string> valid;
-  for (const auto& [name, spaces] : kinds) valid.emplace_back(name);
   throw Failure(ExitCode::usage, "there is no case '" + case_name + "': of its kind '" + kind + "' " +
-                                     scene::suggestion(kind, valid));
+                                     scene::suggestion(kind, case_kinds()));
 }
 
 }  // namespace
+
+std::vector<std::string> case_kinds() {
+  std::vector<std::string> names;
+  for (const auto& [name, spaces] : kinds) names.emplace_back(name);
+  return names;
+}
 
 std::string profiling_command(const std::string& case_name, const std::string& program,
                               const std::string& out, int launches) {

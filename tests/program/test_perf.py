@@ -627,6 +627,9 @@ class Refusals(perf_program.PerfTest):
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
                             (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),
                             (["run", "--filter", "gas-step/serial/1025"], 'did you mean "gas-step/serial/1024"?'),
+                            (["run", "--filter", "gass-step"], 'did you mean the kind "gas-step"?'),
+                            (["run", "--filter", "^gas-stp/cuda/1024$"], 'did you mean the kind "gas-step"?'),
+                            (["run", "--filter", "step/serial/x"], "no case matches 'step/serial/x'; see drogue-perf list"),
                             (["run", "--filter", "["], "--filter '[' is not a valid regular expression"),
                             (["run", "--filter", "(" * 20000 + ")" * 20000], "more than 1000 characters"),
                             (["run", "--quick", "--filter", "^options/serial/256/128x32$"], "but 1 that --quick leaves out"),
@@ -661,6 +664,10 @@ class Refusals(perf_program.PerfTest):
             self.skipTest("a CUDA build has that backend")
         for table in ("block-size", "transfers", "abstraction"):
             self.assertRegex(self.expect(77, "table", table, "--backend", "cuda").stderr, "cuda.*not compiled in")
+        for name in ("gas-step/cuda", "cuda", "^gas-step/cuda$", "step/cuda/1024", "gas.step/(cuda|none)/1"):
+            with self.subTest(name):
+                self.assertIn(f"no case matches '{name}': the backend 'cuda' is not compiled in",
+                              self.expect(77, "run", "--filter", name).stderr)
 
     def test_reports_an_unwritable_record_file(self):
         self.assertIn("no/such/folder", self.expect(6, "table", "occupancy", "--out", "no/such/folder/x").stderr)

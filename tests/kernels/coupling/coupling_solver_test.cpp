@@ -247,11 +247,6 @@ TEST(CoupledSolver, ContinuesBitForBitAroundACut) {
 }
 
 TEST(CoupledSolver, BackendsAgree) {
-#if defined(DROGUE_EXACT)
-  constexpr double tolerance = 0.0;
-#else
-  constexpr double tolerance = 1e-10;
-#endif
   for (const bool no_slip : {false, true}) {
     CoupledCase c = strip_with_lines(0.0501);
     c.p.sheet.law.no_slip = no_slip;
@@ -263,7 +258,7 @@ TEST(CoupledSolver, BackendsAgree) {
     const State here = end(tested_backend);
     for (const device::Backend backend : device::compiled_backends()) {
       if (backend == tested_backend) continue;
-      EXPECT_LE(distance(here, end(backend)), tolerance);
+      EXPECT_LE(distance(here, end(backend)), drogue::testing::backend_tolerance(tested_backend, backend));
     }
   }
 }
