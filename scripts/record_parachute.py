@@ -53,7 +53,7 @@ def scene_names(program, arguments):
 
 def record_rows(program, arguments, earlier, save):
     """Rows of all scenes, backends and ranks in the order of ranks; calls `save` with the rows after each run."""
-    kept = {(row["scene"], row["backend"], row["ranks"]): row for row in earlier if "not_run" not in row}
+    kept = {(row["scene"], row["backend"], row["ranks"]): row for row in earlier}
     rows = []
     cases = [
         (scene, backend, ranks)
@@ -63,8 +63,9 @@ def record_rows(program, arguments, earlier, save):
     ]
     for case in cases:
         scene, backend, ranks = case
-        if case in kept:
-            rows.append(kept.pop(case))
+        before = kept.pop(case, None)
+        if before and "not_run" not in before:
+            rows.append(before)
             continue
         if arguments.skip and re.search(arguments.skip, scene):
             result = {"exit_code": None, "message": f"left out by --skip '{arguments.skip}'"}
