@@ -24,7 +24,7 @@ import sys
 
 from recording import argument_parser, list_scenes, run, save_record, write_record
 
-KEEP = ("scene", "backend", "ranks", "device", "threads", "git", "steps", "exit_code", "message", "checks")
+KEEP = ("scene", "backend", "ranks", "device", "threads", "git", "provenance", "steps", "exit_code", "message", "checks")
 
 
 def row_of(result, scene, backend, ranks):
@@ -64,10 +64,11 @@ def record_rows(program, arguments, earlier, save):
     for case in cases:
         scene, backend, ranks = case
         before = kept.pop(case, None)
-        if before and "not_run" not in before:
+        skipped = arguments.skip and re.search(arguments.skip, scene)
+        if before and (skipped or "not_run" not in before):
             rows.append(before)
             continue
-        if arguments.skip and re.search(arguments.skip, scene):
+        if skipped:
             result = {"exit_code": None, "message": f"left out by --skip '{arguments.skip}'"}
         else:
             folder = arguments.work / f"{scene}-{backend}-{ranks}"

@@ -105,7 +105,7 @@ class ParachuteRecords(TemporaryFolder):
         self.assertEqual(3, len(rows))
         self.assertEqual("stopped after 0.25 s", rows["lasts", 1]["not_run"])
         self.assertEqual((1, 2), (self.runs().count("passes serial 1"), self.runs().count("lasts serial 1")))
-        _, rows, _ = self.record("--ranks", "2", "--only", "^passes", "--add")
+        _, rows, _ = self.record("--ranks", "2", "--skip", "lasts", "--add")
         self.assertEqual("stopped after 0.25 s", rows["lasts", 1]["not_run"])
 
 
