@@ -6,8 +6,9 @@
 
 import json
 import pathlib
-import re
 import sys
+
+from readme_tables import device_name
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/lessons/tables.md"
@@ -32,7 +33,7 @@ def table(file):
         if record["check"] != "passed":
             sys.exit(f"{file}: {record['case']} failed its check")
     facts, here = records[0]["facts"], records[0]["provenance"]
-    machine = here["gpu"] if facts["backend"] == "cuda" else re.sub(r"\((R|TM)\)", "", here["cpu"])
+    machine = device_name(here, facts["backend"] == "cuda")
     lines = [f"\n## `{facts['ladder']}` on {facts['backend']}\n",
              f"{machine}, {here['date'][:10]}, size {facts['cells']}, {records[0]['unit'].removeprefix('s ')} "
              f"([record](../evidence/ladders/{file.name}))\n",

@@ -54,7 +54,7 @@ class Records:
         machines = sorted({record["provenance"]["gpu" if on_gpu else "cpu"] for record in self.used})
         if len(machines) > 1:
             sys.exit(f"records of {' and '.join(machines)} in one table, for {command}: record all of its cases on one of them")
-        name = re.sub(r"\((R|TM)\)", "", here["gpu"] if on_gpu else here["cpu"]) or "unknown processor"
+        name = device_name(here, on_gpu)
         dates = sorted({record["provenance"]["date"][:10] for record in self.used})
         files = sorted({record["file"] for record in self.used})
         links = ", ".join(f"[records](docs/evidence/{file.relative_to(self._evidence).as_posix()})" for file in files)
@@ -62,6 +62,11 @@ class Records:
         if not on_gpu and self.used[0]["facts"]["backend"] == "serial":
             machine = f"One core of an {name}"
         return f"{machine}, {' and '.join(dates)} ({links}): `{command}`."
+
+
+def device_name(provenance, on_gpu):
+    """Name of the GPU or the processor of a record, without marks of trade."""
+    return re.sub(r"\((R|TM)\)", "", provenance["gpu" if on_gpu else "cpu"]) or "unknown processor"
 
 
 def time_of(record, unit):

@@ -8,11 +8,10 @@ scripts/bench.sh and scripts/publish_records.py make the records anew.
 
 import json
 import pathlib
-import re
 import statistics
 import sys
 
-from readme_tables import error_of, wrapped
+from readme_tables import device_name, error_of, wrapped
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/transfers.md"
@@ -166,27 +165,26 @@ def read(file):
     return [Row(record) for record in records]
 
 
-def latest(files):
-    """File whose first record is the latest, and its rows; None without files."""
-    return max(((file, read(file)) for file in files), key=lambda found: found[1][0].record["provenance"]["date"], default=None)
+def latest(found):
+    """File with its rows whose first record is the latest; None without files."""
+    return max(found, key=lambda one: one[1][0].record["provenance"]["date"], default=None)
 
 
 def origin(file, rows):
     """Machine, date, commit and link of a file of records."""
     here = rows[0].record["provenance"]
-    machine = here["gpu"] if rows[0].on_gpu else re.sub(r"\((R|TM)\)", "", here["cpu"])
-    return f"{machine}, {here['date'][:10]}, commit {here['git']} ([records](evidence/{file.name}))"
+    return f"{device_name(here, rows[0].on_gpu)}, {here['date'][:10]}, commit {here['git']} ([records](evidence/{file.name}))"
 
 
 def section(app, files):
     """Heading, paragraph and table of the records of a mini-app."""
-    of_hosts = [file for file in files if not read(file)[0].on_gpu]
-    file, rows = latest([file for file in files if file not in of_hosts]) or latest(files)
+    found = [(file, read(file)) for file in files]
+    host = latest([one for one in found if not one[1][0].on_gpu])
+    file, rows = latest([one for one in found if one[1][0].on_gpu]) or host
     rows.sort(key=lambda row: (row.ours, row.memory, row.size, row.mesh or 0, row.steps or 0))
     title, columns, words = APPS[app]
     backend = rows[0].facts["backend"]
     source = f"{origin(file, rows)}: `drogue-perf table transfers --app {app} --backend {backend}`."
-    host = latest(of_hosts)
     if host and not any(row.core for row in rows):
         core = {row.place: row.core for row in host[1]}
         for row in rows:

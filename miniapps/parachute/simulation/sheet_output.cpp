@@ -34,6 +34,14 @@ std::vector<std::array<int, n>> elements_between(const std::vector<std::array<in
   return result;
 }
 
+/// Adds the triangles of a range of vertices.
+void add_triangles(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
+                   run::FieldSink& fields) {
+  const auto triangles = elements_between(mesh.triangles, begin, end);
+  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
+                  source_of(triangles));
+}
+
 /// Adds the vertices at rest in a range. Add them last: they complete fields.xdmf.
 void add_vertices(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
                   run::FieldSink& fields) {
@@ -108,12 +116,10 @@ run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name
 void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
   const std::size_t first = sheets.canopies.front().begin, end = mesh.rest.size();
-  const auto triangles = elements_between(mesh.triangles, first, end);
   const auto edges = elements_between(mesh::edges_of(mesh), first, end);
   const auto strings = elements_between(mesh.lines, first, end);
   const std::string grid = "canopy";
-  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
-                  source_of(triangles));
+  add_triangles(mesh, first, end, grid, fields);
   fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line", grid},
                   source_of(edges));
   fields.add_mesh(
@@ -124,8 +130,7 @@ void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
 
 void copy_canopy_positions(const Sheets& sheets, std::span<const Vector> positions,
                            std::span<double> values) {
-  const std::size_t first = sheets.canopies.front().begin;
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = positions[first + k / 3][k % 3];
+  copy_positions(sheets.canopies.front().begin, positions, values);
 }
 
 void copy_canopy_stress(const Sheets& sheets, std::span<const fabric::Stress> stress,
@@ -152,17 +157,15 @@ run::DatasetSpec position_spec(const SheetGrid& grid) {
 
 void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSink& fields) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
-  const auto triangles = elements_between(mesh.triangles, grid.begin, grid.end);
-  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid.name},
-                  source_of(triangles));
+  add_triangles(mesh, grid.begin, grid.end, grid.name, fields);
   // A grid of triangles has strings too; springs of mounts lead to points that are no part of it.
   const std::vector<std::array<int, 2>> strings;
   fields.add_mesh({"strings", {0, 2}, "1", "edge", "vertices of every line", grid.name}, source_of(strings));
   add_vertices(mesh, grid.begin, grid.end, grid.name, fields);
 }
 
-void copy_positions(const SheetGrid& grid, std::span<const Vector> positions, std::span<double> values) {
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = positions[grid.begin + k / 3][k % 3];
+void copy_positions(std::size_t begin, std::span<const Vector> positions, std::span<double> values) {
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = positions[begin + k / 3][k % 3];
 }
 
 const char* cloth_failure_text(fabric::FailureReason reason) {

@@ -57,9 +57,8 @@ struct SheetGrid {
 /// Writes the mesh of a grid. Throws `Failure` (io_error).
 void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSink& fields);
 
-/// Values of the positions, m, of a grid. Does not throw.
-void copy_positions(const SheetGrid& grid, std::span<const fabric::Vector> positions,
-                    std::span<double> values);
+/// Values of the positions, m, of the vertices from `begin` on. Does not throw.
+void copy_positions(std::size_t begin, std::span<const fabric::Vector> positions, std::span<double> values);
 
 /// Cause of a failed step of cloth. Does not throw.
 [[nodiscard]] const char* cloth_failure_text(fabric::FailureReason reason);

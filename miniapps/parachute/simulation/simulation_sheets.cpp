@@ -147,7 +147,7 @@ void Simulation::sample_canopy_field(const std::string& name, std::vector<double
 void Simulation::sample_positions(const SheetGrid& grid, std::vector<double>& values) {
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
   _coupled->download_cloth(positions, velocities);
-  copy_positions(grid, positions, values);
+  copy_positions(grid.begin, positions, values);
 }
 
 }  // namespace drogue::parachute_app
