@@ -40,7 +40,9 @@ Failure unwanted_word(const CLI::App& app, const std::string& word) {
 
 /// The value of an unknown option remains too: report the option.
 void refuse_extras(const CLI::App& app) {
-  const std::vector<std::string> extras = app.remaining();
+  std::vector<std::string> extras = app.remaining();
+  // The mark before words that are no options, which CLI11 keeps.
+  std::erase(extras, "--");
   if (extras.empty()) return;
   const auto option = std::find_if(extras.begin(), extras.end(),
                                    [](const std::string& word) { return word.starts_with("-"); });

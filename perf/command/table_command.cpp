@@ -27,8 +27,11 @@ struct TableOptions {
   [[nodiscard]] bool scales_program() const { return over == "ranks" || weak; }
 };
 
-const std::vector<std::string> table_names = {"machine", "occupancy",   "block-size", "transfers",
-                                              "scaling", "abstraction", "pressure",   "memory"};
+const std::vector<std::string> table_names = {"machine", "occupancy",   "kernels",  "block-size", "transfers",
+                                              "scaling", "abstraction", "pressure", "memory"};
+
+/// Tables that are computed, without a backend.
+bool is_computed(const std::string& table) { return table == "occupancy" || table == "kernels"; }
 
 /// Option that some tables use, and those.
 struct SpecialOption {
@@ -39,7 +42,7 @@ struct SpecialOption {
 const std::vector<SpecialOption> special_options = {
     {"--app", {"occupancy", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"}},
     {"--backend", {"machine", "block-size", "transfers", "scaling", "abstraction", "pressure", "memory"}},
-    {"--profile", {"occupancy", "block-size"}},
+    {"--profile", {"occupancy", "kernels", "block-size"}},
     {"--architecture", {"occupancy"}},
     {"--over", {"scaling"}},
     {"--weak", {"scaling"}},
@@ -127,17 +130,23 @@ ExitCode print_table(TableOptions options, const CLI::App& given, const std::vec
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
-  if (options.table != "machine")
+  if (options.table == "kernels" && options.profile.empty())
+    throw Failure(
+        ExitCode::usage,
+        "the table kernels needs --profile with a CSV file of ncu; drogue-perf ncu prints the command "
+        "that makes one");
+  if (options.table != "machine" && options.table != "kernels")
     require_name("table of " + options.app, options.table, tables_of(options.app));
   check_scaling(options);
   run::require_writable(options.out);
   install_signal_handlers();
   Table table;
-  if (options.table == "occupancy")
-    table =
-        print_occupancy(options.architecture, options.profile,
-                        provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
-  else if (options.table == "scaling")
+  if (is_computed(options.table)) {
+    const nlohmann::json here =
+        provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""});
+    table = options.table == "occupancy" ? print_occupancy(options.architecture, options.profile, here)
+                                         : print_kernel_times(options.profile, here);
+  } else if (options.table == "scaling")
     table = scaling_table(options);
   else
     table = timed_table(options, kokkos);
@@ -152,7 +161,8 @@ Command table_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "table", "Print a table, most of them of [Shi] (README.md cites it) beside our own numbers");
   app->add_option("TABLE", options->table,
-                  "machine; occupancy (computed); block-size or transfers; scaling with size and threads; "
+                  "machine; occupancy (computed); kernels (of a profile); block-size or transfers; scaling "
+                  "with size and threads; "
                   "abstraction: "
                   "kernels in Kokkos against CUDA; pressure or memory of flow")
       ->required();
@@ -160,8 +170,9 @@ Command table_command(CLI::App& program) {
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
       ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
-  app->add_option("--profile", options->profile,
-                  "CSV file of ncu, or folder of them: kernels for occupancy, registers for block-size");
+  app->add_option(
+      "--profile", options->profile,
+      "CSV file of ncu, or folder of them: kernels for occupancy and kernels, registers for block-size");
   app->add_option("--architecture", options->architecture,
                   "For occupancy: compute capability of the step kernels of gas, sm_20 to sm_121")
       ->capture_default_str();

@@ -24,6 +24,7 @@ struct KernelProfile {
   /// multiprocessors while they worked; NaN: not measured.
   double active_fraction = 0.0;
   int launches = 0;
+  double duration = 0.0;  ///< of all launches, s; 0: not measured
 };
 
 /// Name of the functor in a demangled name of a kernel of Kokkos or of `device::PersistentKernel`, without
@@ -40,11 +41,21 @@ std::vector<KernelProfile> read_profiles(const std::filesystem::path& path);
 /// not throw.
 std::vector<std::string> case_kinds();
 
-/// Command line that profiles `case_name`, a case of `drogue-perf run` on CUDA, and writes the CSV file `out`
-/// by running `program`. The first `launches` kernels of the case's namespaces are profiled; then ncu ends
-/// the program. Throws Failure(usage) for a case of another backend or of an unknown kind, with the nearest
+/// Launches that ncu profiles.
+struct ProfiledLaunches {
+  std::string kernels;  ///< regular expression for the demangled names
+  int skip = 0;         ///< matching launches before the first one that is profiled
+  int count = 300;      ///< then ncu ends the program
+};
+
+/// Command line that profiles launches of `command`, the words of a program and its arguments, and writes the
+/// CSV file `out`. Does not throw.
+std::string profiling_command(const std::vector<std::string>& command, const std::string& out,
+                              const ProfiledLaunches& launches);
+
+/// Regular expression for the kernels of `case_name`, a case of `drogue-perf run` on CUDA: those of its
+/// namespaces. Throws Failure(usage) for a case of another backend or of an unknown kind, with the nearest
 /// one.
-std::string profiling_command(const std::string& case_name, const std::string& program,
-                              const std::string& out, int launches);
+std::string kernels_of_case(const std::string& case_name);
 
 }  // namespace drogue::perf

@@ -69,24 +69,28 @@ std::vector<std::string> case_kinds() {
   return names;
 }
 
-std::string profiling_command(const std::string& case_name, const std::string& program,
-                              const std::string& out, int launches) {
+std::string kernels_of_case(const std::string& case_name) {
   const std::string_view spaces = namespaces_of(case_name);
   if (("/" + case_name + "/").find("/cuda/") == std::string::npos)
     throw Failure(ExitCode::usage,
                   "'" + case_name + "' is no case on cuda, and ncu profiles kernels of CUDA alone");
+  return "drogue::" + std::string(spaces);
+}
+
+std::string profiling_command(const std::vector<std::string>& command, const std::string& out,
+                              const ProfiledLaunches& launches) {
   std::string names;
   for (const char* metric : metrics) names += (names.empty() ? "" : ",") + std::string(metric);
-  std::string text = "ncu";
-  const std::vector<std::string> words = {
+  std::vector<std::string> words = {
       // Exact numbers and whole names: rounded bytes and shortened templates would be ambiguous.
       "--csv", "--page", "raw", "--print-units", "base", "--print-kernel-base", "demangled",
       "--rename-kernels", "no", "--kernel-name-base", "demangled", "--kernel-name",
-      "regex:drogue::" + std::string(spaces), "--launch-count", std::to_string(launches), "--kill", "yes",
-      "--graph-profiling", "node",
+      "regex:" + launches.kernels, "--launch-skip", std::to_string(launches.skip), "--launch-count",
+      std::to_string(launches.count), "--kill", "yes", "--graph-profiling", "node",
       // As in a run without a profiler.
-      "--clock-control", "none", "--cache-control", "none", "--metrics", names, "--log-file", out, program,
-      "run", "--filter", "^" + case_name + "$"};
+      "--clock-control", "none", "--cache-control", "none", "--metrics", names, "--log-file", out};
+  words.insert(words.end(), command.begin(), command.end());
+  std::string text = "ncu";
   for (const std::string& word : words) text += " " + quoted(word);
   return text;
 }

@@ -115,6 +115,7 @@ KernelProfile profile_of(const Row& row) {
       0.01 *
       row.number_if_present("sm__warps_active.avg.pct_of_peak_sustained_active").value_or(std::nan(""));
   k.launches = 1;
+  k.duration = 1e-9 * row.number_if_present("gpu__time_duration.sum").value_or(0.0);
   return k;
 }
 
@@ -127,6 +128,7 @@ void merge(Profiles& into, const KernelProfile& k) {
   if (is_new) return;
   KernelProfile& sum = known->second;
   ++sum.launches;
+  sum.duration += k.duration;
   if (k.grid <= sum.grid && !std::isnan(sum.active_fraction)) return;
   sum.grid = k.grid;
   sum.active_fraction = k.active_fraction;

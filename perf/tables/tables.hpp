@@ -33,6 +33,10 @@ Table print_machine(const device::DeviceFacts& device);
 Table print_occupancy(const std::string& architecture, const std::string& profile,
                       const nlohmann::json& provenance);
 
+/// Time and share of each kernel, and of all of an area, in `profile`, a file or folder for `read_profiles`.
+/// The records have no samples. Throws as `read_profiles`, and Failure(invalid_scene) without durations.
+Table print_kernel_times(const std::string& profile, const nlohmann::json& provenance);
+
 /// Table 5.5: copy to the device, compute and copy to the host by the baseline solver and by ours, from
 /// pageable memory and, on a GPU, pinned memory, as in all tables of transfers.
 Table print_gas_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);

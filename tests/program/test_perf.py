@@ -1,5 +1,6 @@
 """drogue-perf: subcommands, records and usage errors."""
 
+import csv
 import json
 import os
 import pathlib
@@ -302,7 +303,7 @@ class ProfiledOccupancy(perf_program.PerfTest):
                 (self.folder / "kernels.csv").write_text(profile, encoding="utf-8")
                 self.assertIn(hint, self.expect(3, "table", "occupancy", "--profile", "kernels.csv").stderr)
         self.assertIn("missing.csv", self.expect(2, "table", "occupancy", "--profile", "missing.csv").stderr)
-        self.assertIn("it is for the tables occupancy, block-size",
+        self.assertIn("it is for the tables occupancy, kernels, block-size",
                       self.expect(2, "table", "transfers", "--profile", "kernels.csv").stderr)
 
     def test_command_profiles_the_kernels_of_a_case(self):
@@ -319,6 +320,40 @@ class ProfiledOccupancy(perf_program.PerfTest):
         for metric in words[words.index("--metrics") + 1].split(","):
             self.assertIn(f'"{metric}"', self.profile)
         self.assertIn("no case on cuda", self.expect(2, "ncu", "gas-step/serial/1024").stderr)
+
+    def test_command_profiles_launches_of_a_program(self):
+        printed = self.expect(0, "ncu", "--skip", "40", "--launches", "9", "--kernels", "Stress", "--command", "--", "drogue-springs",
+                              "twist", "--backend", "cuda").stdout
+        words = shlex.split(printed)
+        self.assertEqual(["drogue-springs", "twist", "--backend", "cuda"], words[-4:])
+        for option, value in (("--kernel-name", "regex:Stress"), ("--launch-skip", "40"), ("--launch-count", "9"),
+                              ("--log-file", "drogue-springs.csv")):
+            self.assertEqual(value, words[words.index(option) + 1])
+        self.assertIn("CASE is required", self.expect(2, "ncu").stderr)
+        self.assertIn("follow --command --", self.expect(2, "ncu", "gas-step/cuda/65536", "gas").stderr)
+
+    def test_times_of_kernels_add_up(self):
+        (self.folder / "kernels.csv").write_text(self.profile, encoding="utf-8")
+        text = self.expect(0, "table", "kernels", "--profile", "kernels.csv", "--out", "rows.jsonl").stdout
+        facts = {record["case"].removeprefix("kernels/"): record["facts"] for record in self.records("rows.jsonl")}
+        areas = {name: row for name, row in facts.items() if "::" not in name}
+        kernels = {name: row for name, row in facts.items() if "::" in name}
+        self.assertLess(1, len(areas))
+        for rows in (areas, kernels):
+            self.assertAlmostEqual(1.0, sum(row["share"] for row in rows.values()))
+        for area, row in areas.items():
+            parts = [part for name, part in kernels.items() if name.startswith(area + "::")]
+            self.assertEqual(row["launches"], sum(part["launches"] for part in parts))
+            self.assertAlmostEqual(row["seconds"], sum(part["seconds"] for part in parts))
+        lines = list(csv.DictReader(line for line in self.profile.splitlines() if line.startswith('"')))
+        nanoseconds = [int(line["gpu__time_duration.sum"].replace(",", "")) for line in lines if line["ID"]]
+        self.assertAlmostEqual(1e-9 * sum(nanoseconds), sum(row["seconds"] for row in areas.values()))
+        self.assertIn("all of flow", text)
+
+    def test_times_of_kernels_need_durations(self):
+        self.assertIn("needs --profile", self.expect(2, "table", "kernels").stderr)
+        (self.folder / "kernels.csv").write_text(self.profile.replace("gpu__time_duration.sum", "gpu__time"), encoding="utf-8")
+        self.assertIn("no launch has a duration", self.expect(3, "table", "kernels", "--profile", "kernels.csv").stderr)
 
     @unittest.skipIf("DROGUE_CUDA:BOOL=ON" in perf_program.CACHE, "a CUDA build knows the names of its cases")
     def test_command_exists_for_every_kind_of_case(self):
@@ -615,7 +650,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "transfers", "--architecture", "sm_90"],
                              "the table transfers does not use --architecture; it is for the table occupancy"),
                             (["table", "machine", "--app", "gas"],
-                             "it is for the tables occupancy, block-size, transfers, scaling, abstraction, pressure, memory"),
+                             "it is for the tables occupancy, kernels, block-size, transfers, scaling, abstraction, pressure, memory"),
                             (["table", "occupancy", "--backend", "serial"],
                              "it is for the tables machine, block-size, transfers, scaling, abstraction, pressure, memory"),
                             (["table", "scaling", "--over", "nodes"], "nodes"),

@@ -14,13 +14,13 @@ SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
 PERF = f"""#!/bin/sh
 case "$1" in
   list) printf 'gas-step/cuda/8192\\ngas-step/serial/8192\\nsprings-step/cuda/2640\\n' ;;
-  ncu) echo "ncu '$2' $4" ;;
+  ncu) echo "ncu '$4' $3" ;;
   *) exec {perf_program.PROGRAM} "$@" ;;
 esac
 """
 NCU = """#!/bin/sh
 case "$1" in
-  gas-step*) cp PROFILE "$2" ;;
+  gas-step* | --launches) cp PROFILE "$2" ;;
   *) echo '==ERROR== ERR_NVGPUCTRPERM - no permission' >"$2"; exit 1 ;;
 esac
 """
@@ -47,10 +47,10 @@ class ProfileOccupancy(perf_program.PerfTest):
         process = self.profile()
         self.assertEqual(1, process.returncode, process.stderr)
         self.assertIn("springs-step/cuda/2640 has no profiled kernel: ==ERROR== ERR_NVGPUCTRPERM", process.stderr)
-        self.assertIn("1 of 2 cases were profiled", process.stderr)
+        self.assertIn("19 of 20 cases and runs were profiled", process.stderr)
         self.assertIn("kernels are predicted to the block", process.stdout)
         self.assertTrue((self.folder / "out/occupancy.jsonl").exists())
-        self.assertEqual(["gas-step-cuda-8192.csv"], [file.name for file in (self.folder / "out").glob("*.csv")])
+        self.assertEqual(["gas-step-cuda-8192.csv"], [file.name for file in (self.folder / "out").glob("*-step-*.csv")])
         self.assertEqual(0, self.profile("gas").returncode)
 
     def test_reports_a_build_without_cases_on_cuda(self):

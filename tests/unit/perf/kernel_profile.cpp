@@ -34,13 +34,13 @@ class ProfileFile : public testing::Test {
       "\"launch__shared_mem_per_block_static\",\"launch__shared_mem_per_block_dynamic\","
       "\"launch__occupancy_limit_registers\",\"launch__occupancy_limit_shared_mem\","
       "\"launch__occupancy_limit_warps\",\"launch__occupancy_limit_blocks\",\"launch__grid_size\","
-      "\"sm__warps_active.avg.pct_of_peak_sustained_active\"\n"
+      "\"sm__warps_active.avg.pct_of_peak_sustained_active\",\"gpu__time_duration.sum\"\n"
       "\"\",\"\",\"\",\"\",\"register/thread\",\"byte/block\",\"byte/block\",\"block\",\"block\",\"block\","
-      "\"block\",\"\",\"%\"\n";
+      "\"block\",\"\",\"%\",\"ns\"\n";
 
   static std::string row(const std::string& resources, const std::string& grid, const std::string& active) {
     return "\"0\",\"void f<drogue::gas::StageFunctor<int, (bool)0>>(T1)\",\"9.0\"," + resources +
-           ",\"3\",\"4\",\"16\",\"32\",\"" + grid + "\",\"" + active + "\"\n";
+           ",\"3\",\"4\",\"16\",\"32\",\"" + grid + "\",\"" + active + "\",\"1,500\"\n";
   }
 
   std::vector<KernelProfile> read(const std::string& content) {
@@ -102,6 +102,7 @@ TEST_F(ProfileFile, MergesLaunchesWithEqualResources) {
   EXPECT_EQ(found[0].launches, 1);
   EXPECT_TRUE(std::isnan(found[0].active_fraction));
   EXPECT_EQ(found[1].launches, 4);
+  EXPECT_DOUBLE_EQ(found[1].duration, 6e-6);
   EXPECT_EQ(found[1].grid, 5000.0);
   EXPECT_DOUBLE_EQ(found[1].active_fraction, 0.125);
 }
@@ -125,7 +126,7 @@ TEST_F(ProfileFile, ReportsLinesThatAreNoProfile) {
       ": no kernel in the layout of ncu --csv --page raw; ncu reports: ==ERROR== ERR_NVGPUCTRPERM - The user "
       "does not have permission");
   EXPECT_EQ(refusal(good + "\"0\",\"void f(T1)\",\"9.0\",\"128\"\n"),
-            ":3: the line has 4 fields, the table 13 columns; is the file truncated?");
+            ":3: the line has 4 fields, the table 14 columns; is the file truncated?");
   EXPECT_EQ(refusal(good + row("\"128\",\"many\",\"0\",\"0\"", "1", "1")),
             ":3: \"many\" of column 'launch__registers_per_thread' is no number");
   EXPECT_EQ(
@@ -147,13 +148,14 @@ TEST_F(ProfileFile, RequiresFilesInAFolder) {
   EXPECT_EQ(read_profiles(_folder.path()).size(), 1U);
 }
 
-TEST(ProfilingCommand, NamesKernelsAndCase) {
-  const std::string text =
-      profiling_command("flow-step/cuda/64x64x64/periodic", "/bin/drogue-perf", "a b.csv", 7);
+TEST(ProfilingCommand, NamesKernelsLaunchesAndProgram) {
+  const std::string text = profiling_command(
+      {"/bin/drogue-gas", "a scene.toml"}, "a b.csv",
+      {.kernels = kernels_of_case("flow-step/cuda/64x64x64/periodic"), .skip = 20, .count = 7});
   EXPECT_TRUE(text.starts_with("ncu --csv --page raw --print-units base ")) << text;
-  for (const char* part : {" --kernel-name 'regex:drogue::(flow|linear)' ", " --launch-count 7 ",
-                           " --log-file 'a b.csv' ", ",launch__occupancy_limit_registers,",
-                           " /bin/drogue-perf run --filter '^flow-step/cuda/64x64x64/periodic$'"})
+  for (const char* part :
+       {" --kernel-name 'regex:drogue::(flow|linear)' ", " --launch-skip 20 --launch-count 7 ",
+        " --log-file 'a b.csv' ", ",launch__occupancy_limit_registers,", " /bin/drogue-gas 'a scene.toml'"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
@@ -161,7 +163,7 @@ TEST(ProfilingCommand, RejectsCasesOfHostsAndUnknownKinds) {
   for (const auto& [name, hint] : {std::pair{"gas-step/openmp/1024", "is no case on cuda"},
                                    std::pair{"gas-stepp/cuda/1024", "did you mean \"gas-step\"?"}})
     try {
-      profiling_command(name, "drogue-perf", "x.csv", 1);
+      kernels_of_case(name);
       ADD_FAILURE() << name;
     } catch (const Failure& failure) {
       EXPECT_EQ(failure.code(), ExitCode::usage);
