@@ -66,7 +66,7 @@ Table print_kernel_times(const std::string& profile, const nlohmann::json& prove
   std::printf(
       "Time of the profiled launches of %s: durations of single kernels, without the gaps between them\n\n"
       "%-44s %9s %12s %12s %8s\n",
-      profile.c_str(), "kernel", "launches", "us", "us a launch", "%");
+      profile.c_str(), "kernel", "launches", "us", "per launch", "%");
   const auto print = [&](const KernelTime& sum, const std::string& label) {
     std::printf("%-44s %9d %12.1f %12.2f %8.1f\n", label.c_str(), sum.launches, 1e6 * sum.seconds,
                 1e6 * sum.seconds / sum.launches, 100.0 * sum.seconds / total);
