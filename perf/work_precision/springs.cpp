@@ -12,7 +12,7 @@ namespace drogue::perf {
 
 namespace {
 
-constexpr study::Repeats springs_repeats{20, 0.2};
+constexpr study::Repeats springs_repeats{10, 0.2};
 
 struct SpringsProblem {
   const char* scene;

@@ -61,11 +61,11 @@ struct DiffusionSetup {
 
 /// Right-hand side of the equation for the change of one velocity component, m/s: the explicit terms,
 /// viscosity and pressure gradient at the beginning of the step, and the known changes on the sides. Adds the
-/// pressure gradient to the predicted velocity on outflows.
-template <class ExecutionSpace>
+/// pressure gradient to the predicted velocity on outflows. The component is known to the compiler, so that
+/// indices of the axes stay in registers.
+template <class ExecutionSpace, int component>
 struct DiffusionSourceFunctor {
   DiffusionSetup<ExecutionSpace> setup;
-  int component;
   int extent[3];  ///< unknowns per axis
   double* source;
 
@@ -150,10 +150,9 @@ struct DiffusionSourceFunctor {
 };
 
 /// Adds the change of a component to the velocity at the beginning of the step.
-template <class ExecutionSpace>
+template <class ExecutionSpace, int component>
 struct DiffusionUpdateFunctor {
   DiffusionSetup<ExecutionSpace> setup;
-  int component;
   int extent[3];
   const double* change;  ///< m/s
 
@@ -209,28 +208,33 @@ class ImplicitDiffusion {
   /// allocates; collective and blocking on several.
   void enqueue(const ExecutionSpace& space, const DiffusionSetup<ExecutionSpace>& setup, const Values& source,
                const Values& change) {
-    // The step size is read on the device, where it changes from step to step.
-    const double* dt = &setup.control.data()->trial.dt;
-    for (int c = 0; c < 3; ++c) {
-      const std::size_t which = _solver_of[static_cast<std::size_t>(c)];
-      const linear::CellBox& unknowns = _unknowns[static_cast<std::size_t>(c)];
-      const int extent[3] = {unknowns.cells[0], unknowns.cells[1], unknowns.cells[2]};
-      const Values from(source.data(), unknowns.size()), to(change.data(), unknowns.size());
-      launch_cells(
-          space, "drogue::flow::diffusion_source", extent,
-          DiffusionSourceFunctor<ExecutionSpace>{setup, c, {extent[0], extent[1], extent[2]}, from.data()});
-      std::visit(
-          [&](auto& solver) {
-            solver.enqueue_solve(from, to, {dt, 0.5 * setup.nu});
-          },
-          _solvers[which]);
-      launch_cells(
-          space, "drogue::flow::diffusion_update", extent,
-          DiffusionUpdateFunctor<ExecutionSpace>{setup, c, {extent[0], extent[1], extent[2]}, to.data()});
-    }
+    enqueue_component<0>(space, setup, source, change);
+    enqueue_component<1>(space, setup, source, change);
+    enqueue_component<2>(space, setup, source, change);
   }
 
  private:
+  template <int component>
+  void enqueue_component(const ExecutionSpace& space, const DiffusionSetup<ExecutionSpace>& setup,
+                         const Values& source, const Values& change) {
+    // The step size is read on the device, where it changes from step to step.
+    const double* dt = &setup.control.data()->trial.dt;
+    const linear::CellBox& unknowns = _unknowns[component];
+    const int extent[3] = {unknowns.cells[0], unknowns.cells[1], unknowns.cells[2]};
+    const Values from(source.data(), unknowns.size()), to(change.data(), unknowns.size());
+    launch_cells(space, "drogue::flow::diffusion_source", extent,
+                 DiffusionSourceFunctor<ExecutionSpace, component>{
+                     setup, {extent[0], extent[1], extent[2]}, from.data()});
+    std::visit(
+        [&](auto& solver) {
+          solver.enqueue_solve(from, to, {dt, 0.5 * setup.nu});
+        },
+        _solvers[_solver_of[component]]);
+    launch_cells(space, "drogue::flow::diffusion_update", extent,
+                 DiffusionUpdateFunctor<ExecutionSpace, component>{
+                     setup, {extent[0], extent[1], extent[2]}, to.data()});
+  }
+
   using Solver =
       std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
                    linear::PencilSolver<ExecutionSpace>>;
