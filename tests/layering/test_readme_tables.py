@@ -61,7 +61,7 @@ class Generator(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.evidence = Path(folder.name)
         (self.evidence / "alone").mkdir()
-        for name in ("gas-solution-h200", "springs-solution-h200", "springs-solution-epyc", "options-epyc", "flow-h200"):
+        for name in ("gas-solution-h100", "springs-solution-h200", "springs-solution-epyc", "options-epyc", "flow-h200"):
             shutil.copy(readme_tables.EVIDENCE / f"{name}.jsonl", self.evidence)
         shutil.copy(readme_tables.EVIDENCE / "alone/options-h200.jsonl", self.evidence / "alone")
 

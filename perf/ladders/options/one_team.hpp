@@ -88,7 +88,7 @@ class OneTeamRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight
   static constexpr RungText text{
       "one-team", "A team per option, a thread per node.",
       "As predicted, a host gains nothing. On a GPU one thread of 128 solves while the others "
-      "wait. On an H100 this takes 2188 us all the same, after 11276 us; the model has 227 us "
+      "wait. On an H100 this takes 2180 us all the same, after 11222 us; the model has 229 us "
       "for both, since it takes all threads as busy (docs/lessons/tables.md)."};
 
   static Work work(const OptionsProblem& problem) { return options_work(problem, 1, 40); }
@@ -112,7 +112,7 @@ class ScratchRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight
   static constexpr RungText text{
       "scratch", "Values and weights in scratch memory.",
       "On a host nothing changes: the first cache held the arrays of an option already. On an "
-      "H100 1544 us, after 2188 us, where the model has 149 us: one thread still solves while "
+      "H100 1535 us, after 2180 us, where the model has 149 us: one thread still solves while "
       "the others wait (docs/lessons/tables.md)."};
 
   static Work work(const OptionsProblem& problem) { return options_work(problem, 1, 16.0 / option_steps); }

@@ -38,7 +38,7 @@ class OneThreadRung : public OptionsRung<ExecutionSpace, Layout> {
       "one-thread", "One thread per option, its nodes side by side.",
       "On a host more than twice the prediction: a sum of 128 products is one chain of "
       "dependent additions, so that a core waits for each, and the compiler may not reorder it. "
-      "On an H100 43464 us where the model has 227 us: neighbouring threads read numbers that "
+      "On an H100 43207 us where the model has 229 us: neighbouring threads read numbers that "
       "lie an option apart, and one thread per option is too few to hide the latency of loads "
       "(docs/lessons/tables.md)."};
 
@@ -64,7 +64,7 @@ class InterleavedRung final : public OneThreadRung<ExecutionSpace, Kokkos::Layou
       "interleaved", "The options of a node side by side, for neighbouring threads.",
       "On a host this rung loses, since a thread fetches a line of memory per node and uses one "
       "number of it. On a GPU it is the layout that neighbouring threads need. On an H100 it "
-      "takes 11276 us, after 43464 us; the model has 227 us for both (docs/lessons/tables.md)."};
+      "takes 11222 us, after 43207 us; the model has 229 us for both (docs/lessons/tables.md)."};
 
   using OneThreadRung<ExecutionSpace, Kokkos::LayoutLeft>::OneThreadRung;
 };

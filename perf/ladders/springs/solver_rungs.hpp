@@ -70,8 +70,8 @@ class SpringGraphRung final : public FabricRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "graph", "The kernels of a step as one CUDA graph.",
-      "On an H100 the graph gains little: 14.1 us, after 14.9 us without it, where the model "
-      "has 22.7 us, after 38.3 us. The model counts a launch at the time of an empty one alone, "
+      "On an H100 the graph gains little: 14.0 us, after 15.4 us without it, where the model "
+      "has 24.1 us, after 43.5 us. The model counts a launch at the time of an empty one alone, "
       "and has no caches, which hold this mesh (docs/lessons/tables.md)."};
   static constexpr bool available = !device::is_host<ExecutionSpace>;
 
@@ -91,7 +91,7 @@ class PacketsRung final : public FabricRung<ExecutionSpace> {
   static constexpr RungText text{
       "packets", "One launch for all steps; patches exchange tagged messages.",
       "Left over is the latency of messages between patches, which the model omits "
-      "(docs/springs-notebook.md). On an H100 8.93 us where the model has 1.49 us "
+      "(docs/springs-notebook.md). On an H100 8.41 us where the model has 1.54 us "
       "(docs/lessons/tables.md)."};
   static constexpr bool available = !device::is_host<ExecutionSpace>;
 

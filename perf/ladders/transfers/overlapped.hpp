@@ -28,7 +28,7 @@ class OverlappedRung : public PinnedRung<ExecutionSpace> {
       "overlapped", "Eight chunks on two streams: copies beside kernels.",
       "On a host nothing overlaps: a chunk is copied, computed and copied back by the same "
       "core. The little that is gained comes from caches, which hold a chunk but not all "
-      "values. On an H100 823 us, after 1220 us, where the model has 1321 us and no gain: it "
+      "values. On an H100 814 us, after 1232 us, where the model has 1363 us and no gain: it "
       "adds copies up to copies down, which run at once (docs/lessons/tables.md)."};
 
   static Work work(const TransferProblem& problem) {
@@ -64,8 +64,8 @@ class CrumbsRung final : public OverlappedRung<ExecutionSpace, 512> {
   static constexpr RungText text{
       "crumbs", "512 chunks: the latency of copies.",
       "This rung loses on a host as well: hundreds of launches and small copies cost more than "
-      "the bytes. The model has their latency and predicts the loss. On an H100 6691 us, after "
-      "823 us, but less than pageable memory takes, 8945 us. The model has 9131 us: it waits "
+      "the bytes. The model has their latency and predicts the loss. On an H100 6669 us, after "
+      "814 us, but less than pageable memory takes, 7467 us. The model has 9131 us: it waits "
       "for the end of each copy, which this rung does not (docs/lessons/tables.md)."};
 
   using OverlappedRung<ExecutionSpace, 512>::OverlappedRung;
