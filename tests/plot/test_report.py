@@ -49,6 +49,20 @@ class Report(Folder):
                       "Transfers of a step, CUDA", "drogue-perf table transfers", "AMD EPYC", "Gas dynamics"):
             self.assertIn(words, page.words)
 
+    def test_cold_caches_are_named_and_enter_no_figure(self):
+        cold = records.step("cuda/8192", 1e-3, records.H200, 8192, run="2026-11-23T05:00:00Z", instrument={"caches": "cold"})
+        warm = Page(self.report(records.steps_of_h200()))
+        page = Page(self.report([*records.steps_of_h200(), cold]))
+        self.assertIn("gas-step/cuda/8192, cold caches", page.words)
+        self.assertIn("1 record with cold caches", page.words)
+        self.assertNotIn("left out", page.words)
+        sections = [name for name in warm.tables if name[0] != "Samples of every case"]
+        self.assertTrue(sections)
+        for name in sections:
+            self.assertEqual(warm.tables[name], page.tables[name])
+        nothing_else = Page(self.report([cold]))
+        self.assertIn("gas-step/cuda/8192, cold caches", nothing_else.words)
+
     def test_is_small_refers_to_nothing_and_can_be_read_aloud(self):
         text = self.report([*records.steps_of_h200(), *records.transfers(), *records.blocks()])
         self.assertLess(len(text), 5e6)
