@@ -125,7 +125,18 @@ class Report(Folder):
         self.assertEqual("gas::StepFunctor", profiled[1][0])
         self.assertIn("1 of 2 profiled kernels are predicted to the block", page.words)
         self.assertIn("The fused step of drogue-gas on sm_86", page.words)
-        self.assertIn("The kernels ran on a GPU of architecture sm_90", page.words)
+        self.assertIn("The kernels ran on a GPU of architecture sm_90; the processor", page.words)
+
+    def test_states_the_source_of_printed_numbers(self):
+        page = Page(self.report(records.occupancy()))
+        self.assertIn("[Shi]: Qiangqiang Shi, Modeling of Parachute Dynamics", page.words)
+
+    def test_names_the_device_of_profiled_kernels(self):
+        lines = records.occupancy()
+        for line in lines:
+            if "kernel" in line["facts"]:
+                line["facts"]["device"] = "NVIDIA H100 PCIe"
+        self.assertIn("The kernels ran on NVIDIA H100 PCIe (sm_90); the processor", Page(self.report(lines)).words)
 
     def test_profiles_with_a_contradiction_are_not_folded(self):
         *rest, passed, failed = records.occupancy()

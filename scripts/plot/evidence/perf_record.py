@@ -94,7 +94,7 @@ _OPTIONAL = {
     "machine": {"device": dict, "thesis": dict},
     "occupancy": {
         "threads_device": float, "thesis": dict, "slots": int, "least_blocks": int, "kernel": str, "limited_by": str,
-        "launches": int, "achieved": dict,
+        "launches": int, "achieved": dict, "device": str,
     },
     "scaling": {"ranks": int, "scaling": str},
     "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
