@@ -8,7 +8,7 @@ import json
 import pathlib
 import sys
 
-from readme_tables import device_name
+from device_name import device_name
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/lessons/tables.md"

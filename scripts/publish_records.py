@@ -19,6 +19,8 @@ import shutil
 import subprocess
 import sys
 
+from device_name import device_name
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 GENERATORS = ("readme_tables.py", "lesson_tables.py", "transfer_tables.py")
 
@@ -33,7 +35,7 @@ def published_name(name, backend, machine):
 def row(file, command, record):
     """Line of the table on a file, whose first record is `record`."""
     here = record["provenance"]
-    name = re.sub(r"\((R|TM)\)", "", here["gpu"] or here["cpu"]) or "unknown processor"
+    name = device_name(here, bool(here["gpu"]))
     article = "an" if name[0] in "AEIOUaeiou" else "a"
     if here["gpu"]:
         machine = f"one {name}, CUDA {here['driver']}"

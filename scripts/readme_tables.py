@@ -14,6 +14,8 @@ import statistics
 import sys
 import textwrap
 
+from device_name import device_name
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "README.md"
 EVIDENCE = ROOT / "docs/evidence"
@@ -62,11 +64,6 @@ class Records:
         if not on_gpu and self.used[0]["facts"]["backend"] == "serial":
             machine = f"One core of an {name}"
         return f"{machine}, {' and '.join(dates)} ({links}): `{command}`."
-
-
-def device_name(provenance, on_gpu):
-    """Name of the GPU or the processor of a record, without marks of trade."""
-    return re.sub(r"\((R|TM)\)", "", provenance["gpu" if on_gpu else "cpu"]) or "unknown processor"
 
 
 def time_of(record, unit):

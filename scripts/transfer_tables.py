@@ -11,7 +11,8 @@ import pathlib
 import statistics
 import sys
 
-from readme_tables import device_name, error_of, wrapped
+from device_name import device_name
+from readme_tables import error_of, wrapped
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/transfers.md"

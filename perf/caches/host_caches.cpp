@@ -63,4 +63,10 @@ std::map<std::int64_t, int> host_caches(int level, const std::filesystem::path& 
   return caches;
 }
 
+std::int64_t host_cache_bytes(int level, const std::filesystem::path& cpus) {
+  std::int64_t sum = 0;
+  for (const auto& [bytes, count] : host_caches(level, cpus)) sum += count * bytes;
+  return sum;
+}
+
 }  // namespace drogue::perf

@@ -12,4 +12,7 @@ namespace drogue::perf {
 std::map<std::int64_t, int> host_caches(int level,
                                         const std::filesystem::path& cpus = "/sys/devices/system/cpu");
 
+/// Bytes of all caches of a level together, 0 if unknown. Throws only std::bad_alloc.
+std::int64_t host_cache_bytes(int level, const std::filesystem::path& cpus = "/sys/devices/system/cpu");
+
 }  // namespace drogue::perf

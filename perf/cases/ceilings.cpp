@@ -2,6 +2,7 @@
 
 #include "perf/cases/cases.hpp"
 #include "perf/ceilings/ceilings.hpp"
+#include "perf/measure/median_of_works.hpp"
 
 namespace drogue::perf {
 
@@ -44,6 +45,11 @@ Case ceiling_case(device::Backend backend, const CeilingEntry& entry) {
           [=] {
             Facts facts{name, 0, "", (*kernel)->flops(), (*kernel)->bytes()};
             facts.instructions = (*kernel)->instructions();
+            if (device::needs_device(backend))
+              facts.device_seconds = median_of_works([=] {
+                (*kernel)->reset();
+                return (*kernel)->timed_run() / static_cast<double>((*kernel)->launches());
+              });
             return facts;
           }};
 }

@@ -1,4 +1,5 @@
 #include "perf/cases/cases.hpp"
+#include "perf/models/options_march.hpp"
 #include "perf/problems/puts.hpp"
 
 namespace drogue::perf {
@@ -9,7 +10,13 @@ Case batch_case(device::Backend backend, std::size_t count, int mesh, int steps)
   const std::string name(device::name(backend)), grid = std::to_string(mesh) + "x" + std::to_string(steps);
   Case batch = puts::batch("options/" + name + "/" + std::to_string(count) + "/" + grid, backend,
                            HostMemory::pinned, count, {.mesh = mesh, .steps = steps}, puts::tolerance(mesh));
-  batch.facts = [=] { return Facts{name, static_cast<std::int64_t>(count), grid}; };
+  batch.facts = [=] {
+    const auto puts = static_cast<std::int64_t>(count);
+    // Scratch memory of an option stays in caches.
+    const double bytes = sizeof(options::Contract) + sizeof(options::Price);
+    return Facts{name, puts, grid, static_cast<double>(puts * options_march_arithmetic(mesh, steps).flops()),
+                 static_cast<double>(count) * bytes};
+  };
   return batch;
 }
 

@@ -5,6 +5,8 @@
 
 #include "kernels/reference/linear/tridiagonal.hpp"
 #include "perf/cases/cases.hpp"
+#include "perf/measure/median_of_works.hpp"
+#include "perf/models/tridiagonal.hpp"
 #include "perf/tridiagonal/spd.hpp"
 #include "perf/tridiagonal/toeplitz.hpp"
 
@@ -118,7 +120,16 @@ Case tridiagonal_case(device::Backend backend, bool by_pttrf, int count, int nod
           [=] { return error_of(run->batch, run->solver->solution()); },
           tridiagonal_tolerance,
           [=] {
-            return Facts{name, count, variant};
+            const Arithmetic work = by_pttrf ? spd_arithmetic(nodes - 1) : toeplitz_arithmetic(nodes);
+            const std::int64_t bytes = by_pttrf ? spd_bytes(nodes - 1) : toeplitz_bytes(nodes);
+            Facts facts{name, count, variant, static_cast<double>(count * work.flops()),
+                        static_cast<double>(count * bytes)};
+            if (device::needs_device(backend))
+              facts.device_seconds = median_of_works([=] {
+                run->solver->reset();
+                return run->solver->timed_solve();
+              });
+            return facts;
           }};
 }
 

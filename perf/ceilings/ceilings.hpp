@@ -23,7 +23,7 @@ enum class Ceiling {
 [[nodiscard]] bool has_ceiling(device::Backend backend, Ceiling ceiling);
 
 /// Kernel with a known number of operations and a result in closed form. Requires an initialised runtime. No
-/// function throws.
+/// function throws, but std::runtime_error for a CUDA error.
 class CeilingKernel {
  public:
   virtual ~CeilingKernel() = default;
@@ -33,6 +33,10 @@ class CeilingKernel {
 
   /// Launches the kernel `launches()` times. Blocking.
   virtual void run() = 0;
+
+  /// Runs and returns the time on the device of all launches (`device_time`), s; 0 on a host, which does not
+  /// run. Blocking.
+  virtual double timed_run() = 0;
 
   /// Largest difference from the closed form, relative to one plus its value. Blocking.
   [[nodiscard]] virtual double error() = 0;

@@ -18,6 +18,7 @@
 #include "kernels/device/memory.hpp"
 #include "kernels/device/pack.hpp"
 #include "perf/ceilings/ceilings.hpp"
+#include "perf/clocks/device_time.hpp"
 
 namespace drogue::perf {
 
@@ -309,8 +310,11 @@ class CeilingKernelImpl final : public CeilingKernel {
     _instance.space().fence("drogue::perf::ceiling: filled");
   }
   void run() override {
-    Kokkos::parallel_for("drogue::perf::ceiling", range<CeilingRun>(_functor.items), _functor);
+    enqueue();
     _instance.space().fence("drogue::perf::ceiling: done");
+  }
+  double timed_run() override {
+    return device_time(_instance.space(), [this] { enqueue(); });
   }
   double error() override {
     double worst = 0.0;
@@ -323,6 +327,10 @@ class CeilingKernelImpl final : public CeilingKernel {
   [[nodiscard]] double instructions() const override { return _functor.instructions(); }
 
  private:
+  void enqueue() {
+    Kokkos::parallel_for("drogue::perf::ceiling", range<CeilingRun>(_functor.items), _functor);
+  }
+
   template <class Tag>
   auto range(std::int64_t end) const {
     return Kokkos::RangePolicy<ExecutionSpace, Tag>(_instance.space(), 0, end);
@@ -348,9 +356,9 @@ class LaunchKernel final : public CeilingKernel {
   explicit LaunchKernel(bool in_graph)
       : _instance(std::numeric_limits<int>::max()), _count("drogue::perf::ceiling_launches") {
     // The first launch of a kernel prepares it, which a capture may not.
-    enqueue();
+    launch_all();
     _instance.space().fence("drogue::perf::ceiling: prepared");
-    if (in_graph) _graph.emplace(_instance, [this](const ExecutionSpace&) { enqueue(); });
+    if (in_graph) _graph.emplace(_instance, [this](const ExecutionSpace&) { launch_all(); });
   }
 
   void reset() override {
@@ -358,11 +366,11 @@ class LaunchKernel final : public CeilingKernel {
     _instance.space().fence("drogue::perf::ceiling: reset");
   }
   void run() override {
-    if (_graph)
-      _graph->launch();
-    else
-      enqueue();
+    enqueue();
     _instance.space().fence("drogue::perf::ceiling: launched");
+  }
+  double timed_run() override {
+    return device_time(_instance.space(), [this] { enqueue(); });
   }
   double error() override {
     const auto count = Kokkos::create_mirror_view(_count);
@@ -376,6 +384,13 @@ class LaunchKernel final : public CeilingKernel {
 
  private:
   void enqueue() {
+    if (_graph)
+      _graph->launch();
+    else
+      launch_all();
+  }
+
+  void launch_all() {
     const int items = device::is_host<ExecutionSpace> ? _instance.space().concurrency() : 32;
     for (long k = 0; k < launches(); ++k)
       device::launch_each(_instance.space(), "drogue::perf::ceiling_launch", items,

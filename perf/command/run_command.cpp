@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <regex>
@@ -13,12 +15,15 @@
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
 #include "common/scene/nearest.hpp"
+#include "kernels/device/gpu_hardware.hpp"
+#include "perf/caches/host_caches.hpp"
 #include "perf/cases/cases.hpp"
 #include "perf/command/command.hpp"
 #include "perf/command/filter.hpp"
 #include "perf/compare/baseline.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/measure/repeats.hpp"
+#include "perf/memory/cache_sweep.hpp"
 #include "perf/memory/device_memory.hpp"
 #include "perf/profile/kernel_profile.hpp"
 
@@ -27,7 +32,7 @@ namespace {
 
 struct RunOptions {
   std::string filter, out, baselines;
-  bool quick = false;
+  bool quick = false, cold = false;
 };
 
 /// Omits unknown facts.
@@ -39,6 +44,7 @@ nlohmann::json to_json(const Facts& facts) {
   if (facts.instructions > 0.0) json["instructions"] = facts.instructions;
   if (facts.launches > 0) json["launches"] = facts.launches;
   if (!facts.driver.empty()) json["driver"] = facts.driver;
+  if (facts.device_seconds > 0.0) json["device_s"] = facts.device_seconds;
   if (facts.solution_error > 0.0) json["solution_error"] = facts.solution_error;
   return json;
 }
@@ -92,6 +98,21 @@ Failure no_case(const RunOptions& options, const std::regex& filter) {
   return {ExitCode::usage, what + "; see " + list};
 }
 
+/// Sweeps of the caches that the cases use. Throws Failure(usage) if their size is unknown.
+std::function<void(bool)> cache_sweeps(const std::vector<Case>& cases) {
+  std::map<bool, std::function<std::int64_t()>> sweeps;  // by whether they are on a device
+  for (const Case& c : cases) {
+    if (sweeps.contains(c.on_device)) continue;
+    const std::int64_t bytes =
+        c.on_device ? device::gpu_hardware().l2 : host_cache_bytes(2) + host_cache_bytes(3);
+    if (bytes == 0)
+      throw Failure(ExitCode::usage, std::string("the system does not state the caches of the ") +
+                                         (c.on_device ? "GPU" : "host") + ", which --cold has to empty");
+    sweeps[c.on_device] = create_cache_sweep(c.on_device, 2 * bytes);
+  }
+  return [=](bool on_device) { sweeps.at(on_device)(); };
+}
+
 ExitCode run_cases(RunOptions options, const std::regex& filter) {
   const std::vector<Case> cases = matching_cases(filter, options.quick);
   if (cases.empty()) throw no_case(options, filter);
@@ -105,14 +126,23 @@ ExitCode run_cases(RunOptions options, const std::regex& filter) {
     lines = std::move(baseline.kept);
   }
   const double overhead = timer_overhead();
-  std::printf("timer: %.3f us per work; a sample repeats works of less than %.0f ms\n", 1e6 * overhead,
-              1e3 * shortest_sample);
+  if (options.cold)
+    std::printf("timer: %.3f us per work; a sample is one work, with cold caches\n", 1e6 * overhead);
+  else
+    std::printf("timer: %.3f us per work; a sample repeats works of less than %.0f ms\n", 1e6 * overhead,
+                1e3 * shortest_sample);
   std::fflush(stdout);
   bool passed = true;
   const GpuClocks clocks(device_address());
-  for (const Record& record : measure(cases, warm_up_rounds, run_rounds, &clocks)) {
+  Instruments instruments{&clocks};
+  if (options.cold) instruments.empty_caches = cache_sweeps(cases);
+  for (const Record& record : measure(cases, warm_up_rounds, run_rounds, instruments)) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
-    lines.back()["instrument"] = {{"overhead", overhead}, {"works", record.repeats}, {"units", record.units}};
+    lines.back()["instrument"] = {{"overhead", overhead},
+                                  {"works", record.repeats},
+                                  {"units", record.units},
+                                  {"clock", "host"},
+                                  {"caches", options.cold ? "cold" : "warm"}};
     const ClockReading seen = record.clocks.empty() ? ClockReading{} : summarize(record.clocks);
     if (!record.clocks.empty()) lines.back()["clocks"] = to_json(seen);
     passed = passed && record.passed();
@@ -148,11 +178,13 @@ Command run_command(CLI::App& program) {
   app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
   app->add_option("--out", options->out, "File for the records, one JSON line a case");
   app->add_flag("--quick", options->quick, "Small cases");
+  app->add_flag("--cold", options->cold, "Empty the caches before each work");
   app->add_option(
          "--baseline", options->baselines,
          "Folder of baselines, in which the records replace those of this machine if all passed; with "
          "--filter, those of the measured cases alone")
-      ->excludes("--out");
+      ->excludes("--out")
+      ->excludes("--cold");
   return {app, [options](const std::vector<std::string>& kokkos) {
             const std::regex filter = filter_of(options->filter);
             run::require_writable(options->out);

@@ -100,6 +100,14 @@ nlohmann::json object_member(const nlohmann::json& json, const char* key, const 
   return *found;
 }
 
+/// Records without a statement were made with warm caches.
+bool has_cold_caches(const nlohmann::json& instrument, const std::string& name, const std::string& place) {
+  const nlohmann::json caches = instrument.value("caches", nlohmann::json("warm"));
+  if (caches != "cold" && caches != "warm")
+    throw invalid(place, "'caches' of " + name + " is neither \"cold\" nor \"warm\"");
+  return caches == "cold";
+}
+
 MeasuredCase parse_record(const std::string& line, const std::string& place) {
   MeasuredCase found;
   found.document = parse_line(line, place);
@@ -123,6 +131,7 @@ MeasuredCase parse_record(const std::string& line, const std::string& place) {
   found.provenance = object_member(json, "provenance", place);
   found.facts = object_member(json, "facts", place);
   found.clocks = object_member(json, "clocks", place);
+  found.cold_caches = has_cold_caches(object_member(json, "instrument", place), found.name, place);
   return found;
 }
 

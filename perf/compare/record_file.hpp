@@ -16,6 +16,7 @@ struct MeasuredCase {
   bool passed = false;
   nlohmann::json facts, provenance;  ///< objects, possibly empty
   nlohmann::json clocks;             ///< of the GPU, null without one
+  bool cold_caches = false;          ///< before each work
   nlohmann::json document;           ///< all of the line
   std::string place;                 ///< FILE:LINE
 

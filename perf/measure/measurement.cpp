@@ -21,12 +21,13 @@ struct TimedSample {
   std::map<std::string, double> parts;  ///< s
 };
 
-/// Resets and works `repeats` times. If the sample has parts, their sum is its time.
-TimedSample take(const Sample& sample, long repeats) {
+/// Resets, prepares the machine and works `repeats` times. If the sample has parts, their sum is its time.
+TimedSample take(const Sample& sample, long repeats, const std::function<void()>& prepare) {
   TimedSample taken;
   const Stopwatch whole;
   for (long repeat = 0; repeat < repeats; ++repeat) {
     sample.reset();
+    prepare();
     const Stopwatch work;
     taken.units += sample.work();
     const double wall = work.seconds();
@@ -45,12 +46,14 @@ TimedSample take(const Sample& sample, long repeats) {
 double timer_overhead() {
   const Sample empty{[] {}, [] { return 1L; }};
   std::vector<double> seconds;
-  for (int i = 0; i < 200; ++i) seconds.push_back(take(empty, 100).seconds / 100.0);
+  for (int i = 0; i < 200; ++i) seconds.push_back(take(empty, 100, [] {}).seconds / 100.0);
   return run::median(seconds);
 }
 
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds,
-                            const GpuClocks* clocks) {
+                            const Instruments& instruments) {
+  const GpuClocks* const clocks = instruments.clocks;
+  const bool cold = static_cast<bool>(instruments.empty_caches);
   std::vector<Record> records;
   std::vector<Sample> samples;
   for (const Case& c : cases) {
@@ -64,11 +67,13 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
   for (int round = -warm_up; round < rounds && !interrupted(); ++round) {
     if (round == 0 && warm_up > 0 && !warmth.has_reached(warm_up_seconds)) round = -1;
     for (std::size_t i = 0; i < cases.size() && !interrupted(); ++i) {
-      const TimedSample taken = take(samples[i], repeats[i]);
+      const TimedSample taken = take(samples[i], repeats[i], [&] {
+        if (cold) instruments.empty_caches(cases[i].on_device);
+      });
       if (round < 0) {
-        warmth.add(cases[i].on_device, taken.seconds);
+        warmth.add(cases[i].on_device, cold ? taken.wall : taken.seconds);
         const auto works = static_cast<double>(repeats[i]);
-        repeats[i] = repeats_of(taken.seconds / works, taken.wall / works);
+        if (!cold) repeats[i] = repeats_of(taken.seconds / works, taken.wall / works);
         continue;
       }
       if (clocks != nullptr && cases[i].on_device)

@@ -32,6 +32,9 @@ struct Facts {
   double instructions = 0.0;
   long launches = 0;  ///< kernels per unit of work that wait for one another; 0 within a persistent kernel
   std::string driver = {};  ///< that launches them (`stepping::driver_name`)
+  /// Time on a device per unit of work, s (`device_time`): median of some works after the samples. 0 without
+  /// a device, and for works that are more than kernels on one stream.
+  double device_seconds = 0.0;
 };
 
 /// Benchmark case.
@@ -74,14 +77,22 @@ inline constexpr int run_rounds = 30;
 /// Time that a sample of no work takes, s: median of 200 means.
 double timer_overhead();
 
+/// Instruments of a measurement beside the clock of the host.
+struct Instruments {
+  const GpuClocks* clocks = nullptr;  ///< read after each sample of a case on a device
+  /// Empties the caches of the device (true) or of the host before each work, outside of its time; each
+  /// sample is one work then. Without it caches are warm: as the work before and the initial state leave
+  /// them.
+  std::function<void(bool on_device)> empty_caches = {};
+};
+
 /// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
 /// Discards the first `warm_up` rounds, and more until cases on a device and those on a host have each worked
-/// for `warm_up_seconds`, unless `warm_up` is 0. The warm-up also determines how often a sample repeats its
-/// work, to last for `shortest_sample`; each work starts from the initial state. Reads `clocks`, if
-/// given, after each sample of a case on a device. Blocking; passes on exceptions of the cases. After a
-/// signal
-/// (`interrupted`) it ends with the samples that there are; throws Failure(interrupted) if a case has none.
+/// for `warm_up_seconds`, unless `warm_up` is 0; sweeps of caches count as work. The warm-up also determines
+/// how often a sample repeats its work, to last for `shortest_sample`; each work starts from the initial
+/// state. Blocking; passes on exceptions of the cases. After a signal (`interrupted`) it ends with the
+/// samples that there are; throws Failure(interrupted) if a case has none.
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds,
-                            const GpuClocks* clocks = nullptr);
+                            const Instruments& instruments = {});
 
 }  // namespace drogue::perf

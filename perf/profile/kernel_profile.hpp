@@ -12,6 +12,7 @@ namespace drogue::perf {
 struct KernelProfile {
   std::string kernel;       ///< label: name of the functor, "drogue::gas::StepFunctor"
   std::string place;        ///< FILE:LINE of the first launch
+  std::string device;       ///< name of the device; empty: unknown
   std::string capability;   ///< compute capability of the device, "9.0"
   int multiprocessors = 0;  ///< of the device; 0: unknown
   int threads = 0;          ///< per block

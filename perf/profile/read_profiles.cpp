@@ -96,6 +96,7 @@ KernelProfile profile_of(const Row& row) {
   KernelProfile k;
   k.kernel = kernel_label(row.text("Kernel Name"));
   k.place = row.place();
+  if (row.column("device__attribute_display_name")) k.device = row.text("device__attribute_display_name");
   k.capability = capability_of(row);
   k.threads = row.whole("launch__block_size");
   if (k.threads == 0) throw row.wrong("the block has no threads");
@@ -119,12 +120,12 @@ KernelProfile profile_of(const Row& row) {
   return k;
 }
 
-using Key = std::tuple<std::string, int, int, int, int, std::string>;
+using Key = std::tuple<std::string, int, int, int, int, std::string, std::string>;
 using Profiles = std::map<Key, KernelProfile>;
 
 void merge(Profiles& into, const KernelProfile& k) {
-  const auto [known, is_new] =
-      into.try_emplace({k.kernel, k.threads, k.registers, k.shared_bytes, k.carve_out, k.capability}, k);
+  const auto [known, is_new] = into.try_emplace(
+      {k.kernel, k.threads, k.registers, k.shared_bytes, k.carve_out, k.capability, k.device}, k);
   if (is_new) return;
   KernelProfile& sum = known->second;
   ++sum.launches;

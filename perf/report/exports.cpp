@@ -47,7 +47,7 @@ class Row {
 nlohmann::json test_case(const MeasuredCase& record) {
   nlohmann::json made = {
       {"name", record.name},
-      {"display_name", record.name},
+      {"display_name", record.name + (record.cold_caches ? " with cold caches" : "")},
       {"system", record.origin("cpu") + (record.origin("gpu").empty() ? "" : ", " + record.origin("gpu"))},
       {"partition", text_of(record.facts, "backend")},
       {"environ", record.origin("compiler")},
@@ -72,8 +72,7 @@ nlohmann::json test_case(const MeasuredCase& record) {
 std::string to_csv(const std::vector<MeasuredCase>& records) {
   std::string text =
       "case,unit,median,low,high,samples,least,largest,error,check,backend,cells,variant,cpu,gpu,threads,"
-      "flags,git,"
-      "date\n";
+      "flags,git,date,caches\n";
   for (const MeasuredCase& record : records) {
     Row row;
     row.add(record.name), row.add(record.unit);
@@ -92,6 +91,7 @@ std::string to_csv(const std::vector<MeasuredCase>& records) {
     row.add(record.passed ? "passed" : "failed");
     for (const char* fact : {"backend", "cells", "variant"}) row.add(text_of(record.facts, fact));
     for (const char* key : {"cpu", "gpu", "threads", "flags", "git", "date"}) row.add(record.origin(key));
+    row.add(record.cold_caches ? "cold" : "warm");
     text += row.text() + "\n";
   }
   return text;

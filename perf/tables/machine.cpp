@@ -70,8 +70,7 @@ std::string cache_text() {
 
 /// Sum over all caches of a level; null for unknown ones.
 nlohmann::json cache_bytes(int level) {
-  std::int64_t sum = 0;
-  for (const auto& [size, count] : host_caches(level)) sum += count * size;
+  const std::int64_t sum = host_cache_bytes(level);
   return sum > 0 ? nlohmann::json(sum) : nlohmann::json();
 }
 

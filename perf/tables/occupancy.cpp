@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -214,6 +215,7 @@ nlohmann::json profiled_facts(const KernelProfile& kernel, const ProfiledKernel&
                        {"blocks_by_threads", kernel.by_threads},
                        {"blocks_by_limit", kernel.by_limit},
                        {"blocks", k.achieved}};
+  if (!kernel.device.empty()) facts["device"] = kernel.device;
   if (kernel.carve_out > 0) facts["carve_out_bytes"] = kernel.carve_out;
   if (kernel.grid > 0.0) facts["grid"] = kernel.grid;
   if (!std::isnan(k.mean)) facts["achieved"]["mean_blocks"] = k.mean;
@@ -248,10 +250,18 @@ void print_missing(const std::vector<KernelProfile>& kernels) {
   if (!missing.empty()) std::printf("The profile has no kernel of %s.\n", missing.c_str());
 }
 
-/// "sm_90 with 132 multiprocessors".
-std::string device_of(const Architecture& on) {
-  return std::string(on.name) +
+/// "sm_90 with 132 multiprocessors", after the name of the device if it is known.
+std::string device_of(const Architecture& on, const std::string& name = "") {
+  return (name.empty() ? "" : name + ", ") + std::string(on.name) +
          (on.multiprocessors > 0 ? " with " + std::to_string(on.multiprocessors) + " multiprocessors" : "");
+}
+
+/// Names the devices on which the kernels were profiled.
+void print_devices(const std::vector<KernelProfile>& kernels) {
+  std::set<std::string> devices;
+  for (const KernelProfile& kernel : kernels)
+    devices.insert(device_of(architecture_of(kernel), kernel.device));
+  for (const std::string& device : devices) std::printf("Profiled on %s.\n", device.c_str());
 }
 
 /// States which kernels are of another device than `wanted`; they are predicted for their own.
@@ -261,7 +271,7 @@ void print_other_devices(const Architecture& wanted, const std::vector<KernelPro
     const Architecture on = architecture_of(kernel);
     const bool both_known = on.multiprocessors > 0 && wanted.multiprocessors > 0;
     if (on.name != wanted.name || (both_known && on.multiprocessors != wanted.multiprocessors))
-      ++others[device_of(on)];
+      ++others[device_of(on, kernel.device)];
   }
   for (const auto& [device, count] : others)
     std::printf(
@@ -297,6 +307,7 @@ void print_profile(Table& table, const Architecture& wanted, const std::string& 
     table.add(record, provenance, profiled_facts(kernel, k));
   }
   std::printf("\n%zu of %zu kernels are predicted to the block.\n", right, kernels.size());
+  print_devices(kernels);
   print_other_devices(wanted, kernels);
   print_missing(kernels);
   if (right != kernels.size())

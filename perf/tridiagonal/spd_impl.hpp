@@ -2,6 +2,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/device/instance.hpp"
+#include "perf/clocks/device_time.hpp"
 #include "perf/tridiagonal/solve_spd.hpp"
 #include "perf/tridiagonal/spd.hpp"
 
@@ -29,8 +30,12 @@ class SpdSolverImpl final : public BatchSolver {
   }
 
   void solve() override {
-    solve_spd(_instance.space(), _current[0], _current[1], _current[2]);
+    enqueue();
     _instance.space().fence("drogue::perf: SPD systems are solved");
+  }
+
+  double timed_solve() override {
+    return device_time(_instance.space(), [this] { enqueue(); });
   }
 
   [[nodiscard]] std::vector<double> solution() override {
@@ -45,6 +50,8 @@ class SpdSolverImpl final : public BatchSolver {
   }
 
  private:
+  void enqueue() { solve_spd(_instance.space(), _current[0], _current[1], _current[2]); }
+
   /// Copies `rows` (batch, any width) to the backend. Blocking.
   [[nodiscard]] View upload(const std::vector<double>& rows) const {
     const auto width = rows.size() / static_cast<std::size_t>(_batch);

@@ -49,6 +49,20 @@ class Report(Folder):
                       "Transfers of a step, CUDA", "drogue-perf table transfers", "AMD EPYC", "Gas dynamics"):
             self.assertIn(words, page.words)
 
+    def test_cold_caches_are_named_and_enter_no_figure(self):
+        cold = records.step("cuda/8192", 1e-3, records.H200, 8192, run="2026-11-23T05:00:00Z", instrument={"caches": "cold"})
+        warm = Page(self.report(records.steps_of_h200()))
+        page = Page(self.report([*records.steps_of_h200(), cold]))
+        self.assertIn("gas-step/cuda/8192, cold caches", page.words)
+        self.assertIn("1 record with cold caches", page.words)
+        self.assertNotIn("left out", page.words)
+        sections = [name for name in warm.tables if name[0] != "Samples of every case"]
+        self.assertTrue(sections)
+        for name in sections:
+            self.assertEqual(warm.tables[name], page.tables[name])
+        nothing_else = Page(self.report([cold]))
+        self.assertIn("gas-step/cuda/8192, cold caches", nothing_else.words)
+
     def test_is_small_refers_to_nothing_and_can_be_read_aloud(self):
         text = self.report([*records.steps_of_h200(), *records.transfers(), *records.blocks()])
         self.assertLess(len(text), 5e6)
@@ -111,7 +125,18 @@ class Report(Folder):
         self.assertEqual("gas::StepFunctor", profiled[1][0])
         self.assertIn("1 of 2 profiled kernels are predicted to the block", page.words)
         self.assertIn("The fused step of drogue-gas on sm_86", page.words)
-        self.assertIn("The kernels ran on a GPU of architecture sm_90", page.words)
+        self.assertIn("The kernels ran on a GPU of architecture sm_90; the processor", page.words)
+
+    def test_states_the_source_of_printed_numbers(self):
+        page = Page(self.report(records.occupancy()))
+        self.assertIn("[Shi]: Qiangqiang Shi, Modeling of Parachute Dynamics", page.words)
+
+    def test_names_the_device_of_profiled_kernels(self):
+        lines = records.occupancy()
+        for line in lines:
+            if "kernel" in line["facts"]:
+                line["facts"]["device"] = "NVIDIA H100 PCIe"
+        self.assertIn("The kernels ran on NVIDIA H100 PCIe (sm_90); the processor", Page(self.report(lines)).words)
 
     def test_profiles_with_a_contradiction_are_not_folded(self):
         *rest, passed, failed = records.occupancy()

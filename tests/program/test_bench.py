@@ -237,11 +237,12 @@ class Bench(unittest.TestCase):
         self.assertIn("another build", self.bench(1))
 
     def test_publishes_records_and_renews_documents(self):
-        """In a tree that holds the script alone; what it starts notes its words."""
+        """In a tree that holds the script and its module alone; what it starts notes its words."""
         tree = self.folder / "tree"
         for name in ("scripts", "docs/evidence"):
             (tree / name).mkdir(parents=True)
-        shutil.copy(SOURCE / "scripts/publish_records.py", tree / "scripts")
+        for name in ("publish_records.py", "device_name.py"):
+            shutil.copy(SOURCE / "scripts" / name, tree / "scripts")
         (tree / "docs/evidence/README.md").write_text("| file | written by | machine |\n|---|---|---|\n")
         generators = ["readme_tables.py", "lesson_tables.py", "transfer_tables.py"]
         for name in [tree / "scripts" / generator for generator in generators] + [self.bin / "drogue-plot"]:

@@ -54,6 +54,36 @@ class Record(perf_program.PerfTest):
         for record in (short, long):
             self.assertEqual(record["instrument"]["works"], record["instrument"]["units"])
             self.assertGreater(record["instrument"]["overhead"], 0.0)
+            self.assertEqual(("host", "warm"), (record["instrument"]["clock"], record["instrument"]["caches"]))
+            self.assertNotIn("device_s", record["facts"], "a host has no events")
+
+    def test_counted_work_is_recorded(self):
+        self.expect(0, "run", "--quick", "--filter", "^(tridiagonal/serial/64/|options/serial/)", "--out", "run.jsonl")
+        # Per system and per put: docs/options-notebook.md, "Counted work".
+        expected = {"tridiagonal/serial/64/pttrf/64": (64 * (8 * 63 - 7), 64 * 16 * (3 * 63 - 1)),
+                    "tridiagonal/serial/64/scan/64": (64 * (559 + 603), 64 * 8 * (2 * 64 + 4)),
+                    "options/serial/16/64x16": (16 * (16 * (4884 + 4895) + 8 * (1452 + 1459)), None)}
+        records = {record["case"]: record["facts"] for record in self.records("run.jsonl")}
+        self.assertEqual(set(expected), set(records))
+        for case, (flops, moved) in expected.items():
+            self.assertEqual(flops, records[case]["flops"], case)
+            if moved:
+                self.assertEqual(moved, records[case]["bytes"], case)
+
+    def test_cold_caches_are_recorded_and_compare_with_no_warm_ones(self):
+        if not any(pathlib.Path("/sys/devices/system/cpu").glob("cpu[0-9]*/cache/index[23]")):
+            self.skipTest("the system does not state its caches")
+        case = "^tridiagonal/serial/64/scan"
+        text = self.expect(0, "run", "--quick", "--cold", "--filter", case, "--out", "cold.jsonl").stdout
+        self.assertRegex(text, r"^timer: \d+\.\d{3} us per work; a sample is one work, with cold caches\n")
+        self.expect(0, "run", "--quick", "--filter", case, "--out", "warm.jsonl")
+        (cold,), (warm,) = self.records("cold.jsonl"), self.records("warm.jsonl")
+        self.assert_timed(cold, 30, "batch")
+        self.assertEqual(("cold", 1), (cold["instrument"]["caches"], cold["instrument"]["works"]))
+        self.assertEqual("warm", warm["instrument"]["caches"])
+        verdict = self.expect(0, "compare", "warm.jsonl", "cold.jsonl").stdout
+        self.assertRegex(verdict, r"NOT-COMPARABLE +other caches: warm, now cold\n")
+        self.assertIn("--cold", self.expect(2, "run", "--cold", "--baseline", ".").stderr)
 
     def test_gas_transfers_record_their_parts(self):
         text = self.expect(0, "table", "transfers", "--quick", "--backend", "serial", "--out", "rows.jsonl").stdout
@@ -262,6 +292,16 @@ class ProfiledOccupancy(perf_program.PerfTest):
             for key in ("kernel", "block", "registers", "shared_bytes", "carve_out_bytes", "grid", "achieved"):
                 self.assertEqual(expected[key], facts[key], (record["case"], key))
 
+    def test_names_the_device_of_the_profile(self):
+        text, records = self.rows(0, self.profile)
+        self.assertIn("\nProfiled on NVIDIA H100 80GB HBM3, sm_90 with 132 multiprocessors.\n", text)
+        self.assertEqual({"NVIDIA H100 80GB HBM3"}, {record["facts"]["device"] for record in records})
+        # A profile that was made without this metric.
+        nameless = self.profile.replace("device__attribute_display_name", "other")
+        text, records = self.rows(0, nameless)
+        self.assertIn("\nProfiled on sm_90 with 132 multiprocessors.\n", text)
+        self.assertTrue(all("device" not in record["facts"] for record in records))
+
     def test_reports_a_kernel_with_other_blocks(self):
         # The kernel of flow, whose registers leave room for four blocks, would hold five.
         wrong = self.profile.replace('"32","4","15","16","113"', '"32","5","15","16","113"')
@@ -275,12 +315,12 @@ class ProfiledOccupancy(perf_program.PerfTest):
     def test_states_that_a_profile_is_of_another_device(self):
         wrong = self.profile.replace('"32","4","15","16","113"', '"32","5","15","16","113"')
         text, records = self.rows(5, wrong, "--architecture", "sm_86")
-        self.assertIn(f"{len(records)} of {len(records)} kernels were profiled on another device than sm_86: on sm_90 with "
-                      "132 multiprocessors, for which they are predicted.", text)
+        self.assertIn(f"{len(records)} of {len(records)} kernels were profiled on another device than sm_86: on "
+                      "NVIDIA H100 80GB HBM3, sm_90 with 132 multiprocessors, for which they are predicted.", text)
         self.assertIn("blocks by registers 4 (ncu 5)", text)
         self.assertEqual({"sm_90"}, {record["facts"]["architecture"] for record in records})
-        smaller = self.profile.replace('"9","0","132"', '"9","0","114"')
-        self.assertIn("another device than sm_90 with 132 multiprocessors: on sm_90 with 114 multiprocessors",
+        smaller = self.profile.replace('"NVIDIA H100 80GB HBM3","132"', '"NVIDIA H100 PCIe","114"')
+        self.assertIn("another device than sm_90 with 132 multiprocessors: on NVIDIA H100 PCIe, sm_90 with 114 multiprocessors",
                       self.rows(0, smaller)[0])
         self.assertNotIn("another device", self.rows(0, self.profile)[0])
 

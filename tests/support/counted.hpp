@@ -4,14 +4,25 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <ostream>
 #include <set>
 #include <vector>
 
 #include "kernels/device/pack.hpp"
-#include "perf/models/gas_step.hpp"
+#include "perf/models/arithmetic.hpp"
 
 // A number type that records its operations, for the point functions of kernels/. Include this header before
 // them: they call `device::root` and other functions by qualified names, which only earlier overloads match.
+
+namespace drogue::perf {
+
+/// Shows counts that differ in a test.
+inline void PrintTo(const Arithmetic& a, std::ostream* out) {
+  *out << '{' << a.additions << ", " << a.multiplications << ", " << a.divisions << ", " << a.roots << ", "
+       << a.comparisons << '}';
+}
+
+}  // namespace drogue::perf
 
 namespace drogue::testing {
 
@@ -161,6 +172,15 @@ class Counted {
     return of(Operation::less_or_equal, a.value <= b.value ? 1.0 : 0.0, a, b);
   }
   friend Counted operator>(const Counted& a, const Counted& b) { return b < a; }
+  friend Counted operator>=(const Counted& a, const Counted& b) { return b <= a; }
+
+  /// Whether a condition holds; the branch that follows is not recorded.
+  explicit operator bool() const { return value != 0.0; }
+
+  Counted& operator+=(const Counted& other) { return *this = *this + other; }
+  Counted& operator-=(const Counted& other) { return *this = *this - other; }
+  Counted& operator*=(const Counted& other) { return *this = *this * other; }
+  Counted& operator/=(const Counted& other) { return *this = *this / other; }
 
   double value = 0.0;
 
@@ -198,6 +218,7 @@ inline Counted maximum(Counted a, Counted b) {
 inline Counted minimum(Counted a, Counted b) {
   return Counted::of(Operation::minimum, a.value < b.value ? a.value : b.value, a, b);
 }
+inline bool all(Counted condition) { return condition.value != 0.0; }
 inline Counted select(Counted condition, Counted yes, Counted no) {
   return Counted::of(Operation::select, condition.value != 0.0 ? yes.value : no.value, condition, yes, no);
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "perf/models/gas_step.hpp"
 #include "tests/support/counted.hpp"
 #include "tests/support/gas_state.hpp"
 

@@ -61,12 +61,13 @@ def steps_table(architecture: str, records: list[Record]) -> Table:
 
 
 def _devices(records: list[Record]) -> str:
-    """GPUs of profiled kernels in words. A profile states their architecture and size, not their name."""
+    """GPUs of profiled kernels in words. Older profiles do not state their name."""
     found = set()
     for record in records:
         facts = record.facts
         count = facts.get("threads_device", 0) // max(1, facts["threads_sm"])
-        found.add(f"a GPU of architecture {facts['architecture']}" + (f" with {count} multiprocessors" if count else ""))
+        kind = f"{facts['architecture']}" + (f" with {count} multiprocessors" if count else "")
+        found.add(f"{facts['device']} ({kind})" if "device" in facts else f"a GPU of architecture {kind}")
     return " and ".join(sorted(found))
 
 

@@ -109,6 +109,9 @@ def notes(evidence: Evidence) -> list[str]:
     if evidence.superseded:
         count = _counted(len(evidence.superseded), "record is", "records are")
         found.append(f"{count} left out, because a later one of the same case and machine exists.")
+    if evidence.cold:
+        count = _counted(len(evidence.cold), "record", "records")
+        found.append(f"{count} with cold caches: no figure compares them with others, whose caches are warm.")
     if evidence.unknown_kinds:
         count = _counted(sum(evidence.unknown_kinds.values()), "record is", "records are")
         found.append(

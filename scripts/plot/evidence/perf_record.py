@@ -94,7 +94,7 @@ _OPTIONAL = {
     "machine": {"device": dict, "thesis": dict},
     "occupancy": {
         "threads_device": float, "thesis": dict, "slots": int, "least_blocks": int, "kernel": str, "limited_by": str,
-        "launches": int, "achieved": dict,
+        "launches": int, "achieved": dict, "device": str,
     },
     "scaling": {"ranks": int, "scaling": str},
     "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
@@ -142,6 +142,7 @@ class Record:
     facts: dict
     provenance: dict
     samples: tuple[float, ...] = ()  # s per unit of work
+    cold_caches: bool = False  # before each work
 
     @property
     def kind(self) -> str:
@@ -271,4 +272,8 @@ def parse(line: str, place: str) -> Record:
     samples = document.get("samples", [])
     if not isinstance(samples, list) or not all(_is_time(sample) for sample in samples):
         raise Failure(INVALID, f"{place}: the samples of {case} are no times.")
-    return Record(case, unit, check, median, interval, error, facts, provenance, tuple(samples))
+    instrument = document.get("instrument", {})
+    caches = instrument.get("caches", "warm") if isinstance(instrument, dict) else None
+    if caches not in ("cold", "warm"):
+        raise Failure(INVALID, f"{place}: the caches of {case} are neither cold nor warm.")
+    return Record(case, unit, check, median, interval, error, facts, provenance, tuple(samples), caches == "cold")

@@ -20,6 +20,7 @@ class Evidence:
     unknown_kinds: Counter = field(default_factory=Counter)
     untimed: list[Record] = field(default_factory=list)  # of timed kinds, without samples
     superseded: list[Record] = field(default_factory=list)
+    cold: list[Record] = field(default_factory=list)  # with cold caches, to which no page compares others
     ceilings: list[Record] = field(default_factory=list)  # valid ones, which concern all mini-apps
     everything: list[Record] = field(default_factory=list)  # in the order of the files, also of unknown kinds
 
@@ -43,6 +44,7 @@ class Evidence:
             self.unknown_kinds,
             own(self.untimed),
             own(self.superseded),
+            own(self.cold),
             self.ceilings or [record for record in self.records if record.kind == "ceiling"],
         )
 
@@ -92,11 +94,13 @@ def read_records(folder: Path) -> Evidence | None:
                 continue
             record = parse(line, f"{file}:{number}")
             evidence.everything.append(record)
-            if record.kind in KINDS:
+            if record.cold_caches:
+                evidence.cold.append(record)
+            elif record.kind in KINDS:
                 known.append(record)
             else:
                 evidence.unknown_kinds[record.kind] += 1
-    if not known and not evidence.unknown_kinds:
+    if not evidence.everything:
         raise Failure(INVALID, f"{files[0]}: the file holds no records.")
     latest = _latest(known)
     kept = {id(record) for record in latest}

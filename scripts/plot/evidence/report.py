@@ -49,7 +49,7 @@ def _row(record: Record, drawn: bool) -> list[Cell | str]:
     timed = [] if record.check == "failed" else record.samples
     interval = record.interval or (min(timed), max(timed)) if timed else None
     return [
-        Cell(record.case, "case"),
+        Cell(f"{record.case}, cold caches" if record.cold_caches else record.case, "case"),
         html_page.format_seconds(median(timed)) if timed else Cell("none"),
         f"{html_page.format_seconds(interval[0])} .. {html_page.format_seconds(interval[1])}" if interval else "",
         record.unit.removeprefix("s "),

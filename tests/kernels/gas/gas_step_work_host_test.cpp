@@ -2,21 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <ostream>
 
 #include "tests/support/counted_step.hpp"
 
 // Checks the tables of perf/models/gas_step.hpp by counting the operations of the kernels. A changed number
 // means a changed cost per step.
-
-namespace drogue::perf {
-
-static void PrintTo(const Arithmetic& a, std::ostream* out) {
-  *out << '{' << a.additions << ", " << a.multiplications << ", " << a.divisions << ", " << a.roots << ", "
-       << a.comparisons << '}';
-}
-
-}  // namespace drogue::perf
 
 namespace drogue::gas {
 namespace {

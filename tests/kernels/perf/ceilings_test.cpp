@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "kernels/device/stopwatch.hpp"
 #include "perf/ceilings/ceilings.hpp"
 #include "tests/support/backend.hpp"
 
@@ -36,6 +37,22 @@ TEST_P(Ceilings, EqualsClosedForm) {
   EXPECT_EQ(kernel->bytes() > 0.0, !is_latency);
   EXPECT_EQ(kernel->launches() > 1, is_latency);
   EXPECT_EQ(kernel->instructions() > 0.0, GetParam() == Ceiling::issue);
+}
+
+TEST_P(Ceilings, RunsOnADeviceBetweenItsEvents) {
+  if (!has_ceiling(testing::tested_backend, GetParam())) return;
+  const auto kernel = create_ceiling(testing::tested_backend, GetParam());
+  kernel->reset();
+  const device::Stopwatch watch;
+  const double seconds = kernel->timed_run(), wall = watch.seconds();
+  if (device::needs_device(testing::tested_backend)) {
+    EXPECT_GT(seconds, 0.0);
+    EXPECT_LT(seconds, wall);
+    EXPECT_LE(kernel->error(), largest_error(GetParam()));
+  } else {
+    EXPECT_EQ(seconds, 0.0);
+    EXPECT_GT(kernel->error(), 0.1) << "no event times a host, so nothing runs";
+  }
 }
 
 TEST(CeilingList, HasTheCachesOfAHostOrTheLatenciesOfADevice) {

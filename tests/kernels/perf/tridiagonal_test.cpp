@@ -85,6 +85,20 @@ TEST(SpdSolver, EqualsEliminationWithPivoting) {
   }
 }
 
+TEST(BatchSolver, SolvesOnADeviceBetweenItsEvents) {
+  const ToeplitzBatch systems{64, {{1.0, 3.0, 1.0, 0.5}}, std::vector<double>(64, 1.0)};
+  const auto toeplitz = create_toeplitz_solver(backend, systems);
+  const auto spd = create_spd_solver(backend, random_systems(1, 64));
+  for (BatchSolver* const solver : {toeplitz.get(), spd.get()}) {
+    solver->reset();
+    const std::vector<double> before = solver->solution();
+    const double seconds = solver->timed_solve();
+    // No event times a host, so nothing is solved.
+    EXPECT_EQ(seconds > 0.0, device::needs_device(backend));
+    EXPECT_EQ(solver->solution() != before, device::needs_device(backend));
+  }
+}
+
 TEST(SpdSolver, RejectsArraysOfTheWrongSize) {
   SpdBatch all = random_systems(2, 4);
   all.off_diagonal.pop_back();

@@ -34,6 +34,11 @@ TEST(Comparison, OtherDevicesFlagsAndSizesAreNotComparable) {
   MeasuredCase larger = record_of("a");
   larger.facts["cells"] = 2048;
   EXPECT_EQ(compare_records({before}, {larger}).front().reason, "other cells: 1024, now 2048");
+  MeasuredCase cold = record_of("a");
+  cold.cold_caches = true;
+  EXPECT_EQ(compare_records({before}, {cold}).front().reason, "other caches: warm, now cold");
+  EXPECT_EQ(verdict_on(cold, before), Verdict::not_comparable);
+  EXPECT_EQ(verdict_on(cold, cold), Verdict::same);
   MeasuredCase other_commit = record_of("a");
   other_commit.provenance["git"] = "2";
   EXPECT_EQ(verdict_on(before, other_commit), Verdict::same);

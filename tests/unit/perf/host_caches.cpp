@@ -48,6 +48,8 @@ TEST_F(HostCaches, CoresOfTwoKindsHaveSizesOfTheirOwn) {
   add(10, "index2", "2", "Unified", "4096K", "10-13");
   add(11, "index2", "2", "Unified", "4096K", "10-13");
   EXPECT_EQ(host_caches(2, folder()), (Caches{{2 << 20, 1}, {4 << 20, 1}}));
+  EXPECT_EQ(host_cache_bytes(2, folder()), 6 << 20);
+  EXPECT_EQ(host_cache_bytes(3, folder()), 0);
 }
 
 TEST_F(HostCaches, LeaveOutCoresWithoutAFolder) {

@@ -77,6 +77,16 @@ TEST_F(RecordFile, RefusesSamplesThatAreNoTimes) {
   EXPECT_EQ(refusal(with("[1e-3,2e-3]", "7")), "3/x.jsonl:1: 'samples' of a/b/1 is no list");
 }
 
+TEST_F(RecordFile, ReadsTheStateOfCaches) {
+  const auto with_caches = [](const std::string& caches) {
+    return with(R"("error")", R"("instrument":{"caches":)" + caches + R"(},"error")");
+  };
+  EXPECT_FALSE(read(good_record).front().cold_caches);
+  EXPECT_FALSE(read(with_caches(R"("warm")")).front().cold_caches);
+  EXPECT_TRUE(read(with_caches(R"("cold")")).front().cold_caches);
+  EXPECT_EQ(refusal(with_caches("1")), "3/x.jsonl:1: 'caches' of a/b/1 is neither \"cold\" nor \"warm\"");
+}
+
 TEST_F(RecordFile, RefusesMissingAndWrongKeys) {
   EXPECT_EQ(refusal(with("\"samples\"", "\"sample\"")), "3/x.jsonl:1: the record has no 'samples'");
   EXPECT_EQ(refusal(with("\"a/b/1\"", "\"\"")), "3/x.jsonl:1: 'case' is no text");

@@ -1,0 +1,77 @@
+#include "perf/measure/measurement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+// Order and number of the works of samples. Durations are those of waits.
+
+namespace drogue::perf {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Case that writes its resets and works into `log`.
+Case logged_case(std::string& log, bool on_device, milliseconds duration = milliseconds(0)) {
+  Case made;
+  made.name = "a", made.on_device = on_device, made.unit_of_work = "step";
+  made.prepare = [&log, duration] {
+    return Sample{[&log] { log += "reset "; },
+                  [&log, duration] {
+                    log += "work ";
+                    std::this_thread::sleep_for(duration);
+                    return 1L;
+                  }};
+  };
+  made.error = [] { return 0.0; };
+  made.tolerance = 0.0;
+  return made;
+}
+
+long count(const std::string& log, const std::string& word) {
+  long found = 0;
+  for (std::size_t at = log.find(word); at != std::string::npos; at = log.find(word, at + 1)) ++found;
+  return found;
+}
+
+TEST(Measurement, EmptiesCachesBetweenInitialStateAndWork) {
+  std::string log;
+  Instruments instruments;
+  instruments.empty_caches = [&log](bool on_device) { log += on_device ? "device " : "host "; };
+  measure({logged_case(log, false), logged_case(log, true)}, 0, 2, instruments);
+  EXPECT_EQ(log, "reset host work reset device work reset host work reset device work ");
+}
+
+TEST(Measurement, EmptiesCachesOutsideOfTheTime) {
+  std::string log;
+  Instruments instruments;
+  instruments.empty_caches = [](bool) { std::this_thread::sleep_for(milliseconds(50)); };
+  const std::vector<Record> records = measure({logged_case(log, false)}, 0, 3, instruments);
+  for (const double seconds : records.front().samples) EXPECT_LT(seconds, 0.05);
+}
+
+TEST(Measurement, WarmSamplesRepeatShortWorks) {
+  std::string log;
+  const std::vector<Record> records = measure({logged_case(log, false, milliseconds(1))}, 1, 2);
+  EXPECT_GT(records.front().repeats, 1);
+  EXPECT_EQ(records.front().units, records.front().repeats);
+}
+
+TEST(Measurement, ColdSamplesAreSingleWorks) {
+  std::string log;
+  Instruments instruments;
+  instruments.empty_caches = [&log](bool) {
+    log += "sweep ";
+    std::this_thread::sleep_for(milliseconds(20));
+  };
+  const std::vector<Record> records = measure({logged_case(log, false, milliseconds(1))}, 1, 2, instruments);
+  EXPECT_EQ(records.front().repeats, 1);
+  EXPECT_EQ(records.front().units, 1);
+  EXPECT_EQ(count(log, "sweep"), count(log, "work"));
+  // Sweeps count as work, or a warm-up of short works would last for minutes.
+  EXPECT_LT(count(log, "work"), 100);
+}
+
+}  // namespace
+}  // namespace drogue::perf
