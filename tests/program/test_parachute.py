@@ -232,6 +232,20 @@ class Verification(parachute_program.FlowTest):
         self.check(0, f"{{dissipation_peak={{value={rate},tolerance=0.02,time=0.025,time_tolerance=1e-9}}}}", sets=sets)
         self.check(5, f"{{dissipation_peak={{value={rate},tolerance=0.02,time=0.2,time_tolerance=0.1}}}}", sets=sets)
 
+    def test_curves_of_decaying_vortices(self):
+        """The energy falls as exp(-4 nu t), also where no row of the history is."""
+        def curve(name, decay, times, tolerance):
+            points = [[t, (1 if "energy" in name else 0.04) * 0.25 * (2 * math.pi)**2 * math.exp(-decay * t)] for t in times]
+            return f"{name}=[{{points={points},tolerance={tolerance}}}]"
+
+        sets = ["output.history_every=2"]
+        values = self.check(0, "{" + curve("kinetic_energy_curve", 0.04, (0, 0.03, 0.33, 0.5), 1e-3) + "," +
+                            curve("dissipation_curve", 0.04, (0, 0.03, 0.33, 0.5), 0.02) + "}", sets=sets)
+        self.assertEqual({"kinetic_energy_curve_0", "dissipation_curve_0"}, set(values))
+        late = self.check(5, "{" + curve("dissipation_curve", 0.14, (0.03, 0.45), 0.02) + "}", sets=sets)
+        self.assertAlmostEqual(math.exp(-0.04 * 0.45) - math.exp(-0.14 * 0.45), late["dissipation_curve_0"], delta=0.02)
+        self.check(5, "{" + curve("kinetic_energy_curve", 0.14, (0.03, 0.45), 0.02) + "}", sets=sets)
+
     def test_momentum_is_conserved_and_forces_change_it(self):
         self.assertLess(self.check(0, "{momentum=1e-13,energy_growth=0,speed_growth=0}")["momentum"], 1e-13)
         growth = self.check(5, "{energy_growth=0}", sets=["flow.body_force=[0, 0, 1]"])

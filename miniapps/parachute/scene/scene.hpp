@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -126,6 +127,19 @@ struct DissipationPeak {
   std::optional<double> time, time_tolerance;
 };
 
+/// Times, s, and values of a quantity then.
+struct Curve {
+  std::vector<std::array<double, 2>> points;
+  double tolerance = 0.0;  ///< relative to the largest value
+
+  /// Largest magnitude of the values. Does not throw.
+  [[nodiscard]] double scale() const {
+    double largest = 0.0;
+    for (const auto& [time, value] : points) largest = std::max(largest, std::abs(value));
+    return largest;
+  }
+};
+
 struct Verify {
   std::optional<ExactSolution> exact;
   std::map<std::string, double> tolerances;                     ///< by name: l1_velocity ... linf_pressure
@@ -133,6 +147,7 @@ struct Verify {
   std::optional<double> momentum, energy_growth, speed_growth;  ///< relative
   std::optional<Target> kinetic_energy;                         ///< at the end, J
   std::optional<DissipationPeak> dissipation_peak;
+  std::vector<Curve> kinetic_energy_curves, dissipation_curves;  ///< J, W
   std::vector<FlowRate> flow_rates;
   std::vector<BodyForce> forces;
   std::vector<CanopyMean> drags;            ///< drag coefficients with the nominal area

@@ -41,6 +41,21 @@ void check_momentum(const Table& root, const FlowScene& scene) {
                "verify.momentum: the forces of a [[body]] or a [[canopy]] change the momentum of the fluid");
 }
 
+void check_curves(const Table& root, const FlowScene& scene, const std::string& key,
+                  const std::vector<Curve>& curves) {
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::string path = "verify." + key + "[" + std::to_string(i) + "]", points = path + ".points";
+    require_rows(root, scene, path);
+    if (!(curves[i].scale() > 0.0))
+      contradict(root, points, points + ": a value must not be 0: the tolerance is relative to the largest");
+    for (const auto& [time, value] : curves[i].points)
+      if (!(time >= 0.0 && time <= scene.end_time))
+        contradict(root, points,
+                   points + ": the time " + scene::real_text(time) +
+                       " s is not between 0 and run.end_time = " + scene::real_text(scene.end_time) + " s");
+  }
+}
+
 void check_flow_rates(const Table& root, const FlowScene& scene) {
   for (std::size_t i = 0; i < scene.verify.flow_rates.size(); ++i) {
     const FlowRate& rate = scene.verify.flow_rates[i];
@@ -235,6 +250,8 @@ void check_verify(const Table& root, const FlowScene& scene) {
   if (verify.kinetic_energy && verify.kinetic_energy->value == 0.0)
     contradict(root, "verify.kinetic_energy.value",
                "verify.kinetic_energy.value must not be 0: the tolerance is relative");
+  check_curves(root, scene, "kinetic_energy_curve", verify.kinetic_energy_curves);
+  check_curves(root, scene, "dissipation_curve", verify.dissipation_curves);
   check_flow_rates(root, scene);
   check_forces(root, scene);
   check_oscillations(root, scene);

@@ -88,6 +88,17 @@ void declare_profile(Table& table, Profile& profile) {
   table.optional_table("maximum", profile.maximum, declare_extremum, "The largest velocity");
 }
 
+void declare_curve(Table& table, Curve& curve, const std::string& unit, const std::string& quantity) {
+  table.value("points", points_codec(curve.points), "Times, s, and the expected " + quantity)
+      .unit(unit)
+      .required();
+  table
+      .value("tolerance", scene::real_codec(curve.tolerance),
+             "Largest deviation from one of them that passes, relative to the largest of them")
+      .at_least(0.0)
+      .required();
+}
+
 void declare_canopy_mean(Table& table, CanopyMean& mean, const std::string& unit) {
   table.value("canopy", scene::integer_codec(mean.canopy), "Number of the [[canopy]], from 0").range(0, 1e6);
   table.value("from", scene::real_codec(mean.from), "Begin of the interval")
@@ -220,6 +231,16 @@ void declare_verify(Table& table, FlowScene& scene) {
       },
       "The largest rate at which the kinetic energy falls between two rows of the history");
   table.tables(
+      "kinetic_energy_curve", verify.kinetic_energy_curves,
+      [](Table& curve, Curve& value) { declare_curve(curve, value, "J", "kinetic energies"); },
+      "Kinetic energies at times, by cubic interpolation between the rows of the history");
+  table.tables(
+      "dissipation_curve", verify.dissipation_curves,
+      [](Table& curve, Curve& value) {
+        declare_curve(curve, value, "W", "rates at which the kinetic energy falls");
+      },
+      "Rates at which the kinetic energy falls, by the derivative of that interpolation");
+  table.tables(
       "flow_rate", verify.flow_rates,
       [deviation](Table& rate, FlowRate& value) {
         rate.value("side", scene::choice_codec(value.side, side_choices), "Side of the domain").required();
@@ -254,9 +275,10 @@ void declare_verify(Table& table, FlowScene& scene) {
                "Frequencies and amplitudes of places of sheets");
   declare_canopy_checks(table, verify);
   table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
-  for (const char* of_fluid : {"exact", "divergence", "momentum", "energy_growth", "speed_growth",
-                               "kinetic_energy", "dissipation_peak", "flow_rate", "force", "mean_force",
-                               "frequency", "drag", "terminal_speed", "force_balance", "profile"})
+  for (const char* of_fluid :
+       {"exact", "divergence", "momentum", "energy_growth", "speed_growth", "kinetic_energy",
+        "dissipation_peak", "kinetic_energy_curve", "dissipation_curve", "flow_rate", "force", "mean_force",
+        "frequency", "drag", "terminal_speed", "force_balance", "profile"})
     table.at(of_fluid).when(with_fluid(scene), fluid_condition, "");
   table
       .value("energy_drift", scene::real_codec(verify.energy_drift),

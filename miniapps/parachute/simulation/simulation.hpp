@@ -56,6 +56,7 @@ class Simulation final : public framework::Simulation {
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
   void check_forces(run::ResultDocument& result);
+  void check_curves(const run::RunDirectory* directory, run::ResultDocument& result) const;
   void check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const;
   [[nodiscard]] static std::string force_column(int body, int axis) {
     return "body_" + std::to_string(body) + "_force_" + axis_names[static_cast<std::size_t>(axis)];

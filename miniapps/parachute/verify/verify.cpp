@@ -8,6 +8,7 @@
 #include "miniapps/parachute/verify/canopy_checks.hpp"
 #include "miniapps/parachute/verify/force_history.hpp"
 #include "miniapps/parachute/verify/profile.hpp"
+#include "miniapps/parachute/verify/row_interpolation.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
 
 namespace drogue::parachute_app {
@@ -164,6 +165,25 @@ void Simulation::check_force_history(const run::RunDirectory* directory, run::Re
   });
 }
 
+void Simulation::check_curves(const run::RunDirectory* directory, run::ResultDocument& result) const {
+  const Verify& wanted = _scene.verify;
+  if (wanted.kinetic_energy_curves.empty() && wanted.dissipation_curves.empty()) return;
+  const run::History history = run::read_history(directory->file("history.csv"));
+  const std::vector<double>&time = history.at("time"), &energy = history.at("kinetic_energy");
+  const auto check = [&](const std::string& name, const std::vector<Curve>& curves, const auto& measure) {
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      double largest = 0.0;
+      for (const auto& [at, value] : curves[i].points)
+        largest = run::maximum_or_nan(largest, std::abs(measure(interpolate_rows(time, energy, at)) - value));
+      result.add_check(name + "_" + std::to_string(i), largest / curves[i].scale(), curves[i].tolerance);
+    }
+  };
+  check("kinetic_energy_curve", wanted.kinetic_energy_curves,
+        [](const InterpolatedRow& row) { return row.value; });
+  check("dissipation_curve", wanted.dissipation_curves,
+        [](const InterpolatedRow& row) { return -row.derivative; });
+}
+
 void Simulation::check_profiles(run::ResultDocument& result) {
   for (std::size_t i = 0; i < _scene.verify.profiles.size(); ++i) {
     const Profile& profile = _scene.verify.profiles[i];
@@ -201,6 +221,7 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
   if (needs_totals) check_totals(result);
   check_forces(result);
   check_canopies(wanted, _record, result);
+  check_curves(directory, result);
   check_force_history(directory, result);
   check_oscillations(wanted, directory, result);
   check_profiles(result);
