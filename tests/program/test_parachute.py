@@ -667,6 +667,27 @@ class Canopies(parachute_program.FlowTest):
                 bad = [*good[:which], value, *good[which + 1:]]
                 self.expect(5, scene, *QUIET, "--overwrite", sets=[sets[0].format(*bad)])
 
+    def test_leak_is_that_of_the_porosity(self):
+        """Through open, porous and impermeable cloth, averaged over the inflated canopy."""
+        scene, leaks = self.write(CANOPY), []
+        for law in ('{law="forchheimer",alpha=30,beta=10}', '{law="forchheimer"}', '{law="none"}'):
+            self.start(scene, *QUIET, "--overwrite", sets=[f"canopy[0].porosity={law}", "output.history_every=1",
+                                                           "verify={leak=[{from=0.1,to=0.2,tolerance=1}]}"])
+            reported, rows = self.result("out"), self.history("out")
+
+            def mean(column):
+                window = [k for k, time in enumerate(rows["time"]) if 0.1 <= time <= 0.2]
+                areas = sum(0.5 * (rows["time"][k] - rows["time"][k - 1]) * (rows[column][k] + rows[column][k - 1])
+                            for k in window[1:])
+                return areas / (rows["time"][window[-1]] - rows["time"][window[0]])
+
+            leaks.append(mean("canopy_0_leak") / (8 * mean("canopy_0_projected_area")))
+            self.assertAlmostEqual(abs(leaks[-1]), reported["canopies"]["leak_0"], delta=1e-9)
+            self.assertEqual(["leak_0", True], [reported["checks"][0][key] for key in ("name", "passed")])
+        self.assertGreater(leaks[0], 2 * leaks[1], leaks)
+        self.assertGreater(leaks[1], 5 * abs(leaks[2]), leaks)
+        self.expect(5, scene, *QUIET, "--overwrite", sets=["verify={leak=[{from=0.1,to=0.2,tolerance=1e-3}]}"])
+
     def test_explicit_coupling_diverges_with_real_cloth(self):
         scene, method = self.write(CANOPY), 'coupling.method="explicit"'
         refused = self.expect(3, scene, *QUIET, sets=[method]).stderr

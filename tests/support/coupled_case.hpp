@@ -81,6 +81,25 @@ struct CoupledCase {
   }
 };
 
+/// Strip along y across the whole box, under the tension of a strain of one tenth. Its ends and the vertices
+/// of every period of `wave` cells are pinned; all others move along x alone.
+inline CoupledCase taut_strip(int nx, int ny, double spacing, double dt, int wave) {
+  CoupledCase c(nx, ny, spacing, dt);
+  const double middle = 0.5 * nx * spacing + 0.013;
+  c.add_strip(middle, 0.0, middle, ny * spacing, 2 * ny);
+  fabric::Parameters& cloth = c.p.fabric;
+  cloth.material.model = fabric::Model::biquadratic;
+  cloth.material.membrane_modulus = 2000.0;
+  for (std::size_t i = 0; i < cloth.mesh.rest.size(); ++i) {
+    const bool is_node = static_cast<int>(i / 2) % wave == 0;
+    cloth.pinned[i] = is_node ? 7 : 6;
+    cloth.mesh.rest[i][1] /= 1.1;
+  }
+  c.set_mass(0.0373 * 1.1);
+  c.p.substeps = static_cast<int>(std::ceil(dt * 1e3 / spacing));
+  return c;
+}
+
 /// A case on the backend of the test program.
 struct CoupledRun {
   explicit CoupledRun(const CoupledCase& of) : vertices(of.x.size()), solver(of.solver(tested_backend)) {}

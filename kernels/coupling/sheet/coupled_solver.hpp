@@ -34,8 +34,8 @@ struct SaveClothFunctor {
   flow::ControlView<ExecutionSpace> control;
   SavedStep<ExecutionSpace> saved_step;
   fabric::State<ExecutionSpace> cloth;
-  Vectors acceleration, force, places;
-  Vectors saved_positions, saved_velocities, saved_acceleration, saved_force, saved_places;
+  Vectors acceleration, defect, force, places;
+  Vectors saved_positions, saved_velocities, saved_acceleration, saved_defect, saved_force, saved_places;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     if (control().trial.stop != flow::Stop::running && control().now.step == saved_step()) return;
@@ -45,6 +45,7 @@ struct SaveClothFunctor {
     save(cloth.positions, saved_positions);
     save(cloth.velocities, saved_velocities);
     save(acceleration, saved_acceleration);
+    if (defect.extent(0) > 0) save(defect, saved_defect);
     save(force, saved_force);
     save(places, saved_places);
   }
@@ -121,6 +122,7 @@ class CoupledSolver {
         _saved_positions("drogue::coupling::saved_positions", rows()),
         _saved_velocities("drogue::coupling::saved_velocities", rows()),
         _saved_acceleration("drogue::coupling::saved_acceleration", rows()),
+        _saved_defect("drogue::coupling::saved_defect", _sheet.defect().extent(0)),
         _saved_force("drogue::coupling::saved_force", rows()),
         _saved_places("drogue::coupling::saved_places", rows()),
         _total_force(flow::coupling_grid(_flow.grid())),
@@ -157,6 +159,12 @@ class CoupledSolver {
         _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
     _group.sum(force);
     return force;
+  }
+  /// Velocity of the air at the present positions of all vertices, (vertices, 3), m/s, valid until the next
+  /// step. On one rank asynchronous. Throws as `ImmersedSheet::air_velocity`.
+  [[nodiscard]] const Vectors& air_velocity() const {
+    return _sheet.air_velocity(_space, _fabric.state(),
+                               flow::face_views<ExecutionSpace>(_flow.grid(), _flow.velocity()));
   }
 
  private:
@@ -201,7 +209,8 @@ class CoupledSolver {
   BlockProgress _block;
   typename CheckClothFunctor<ExecutionSpace>::ReasonView _reason;
   SavedStep<ExecutionSpace> _saved_step;
-  Vectors _saved_positions, _saved_velocities, _saved_acceleration, _saved_force, _saved_places;
+  Vectors _saved_positions, _saved_velocities, _saved_acceleration, _saved_defect, _saved_force,
+      _saved_places;
   TotalForce<ExecutionSpace> _total_force;
   MovingFrame<ExecutionSpace> _frame;
   LineCuts _cuts;
@@ -373,8 +382,9 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
   device::launch_each(
       _space, "drogue::coupling::save_cloth", _fabric.vertices(),
       SaveClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.state(), _sheet.acceleration(),
-                                       _sheet.force(), _sheet.transfer().positions, _saved_positions,
-                                       _saved_velocities, _saved_acceleration, _saved_force, _saved_places});
+                                       _sheet.defect(), _sheet.force(), _sheet.transfer().positions,
+                                       _saved_positions, _saved_velocities, _saved_acceleration,
+                                       _saved_defect, _saved_force, _saved_places});
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
   _sheet.spread_forces(_space, _fabric.state(), density, dt);
@@ -415,6 +425,8 @@ void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& no
   reader.read(_space, _saved_velocities, velocities);
   _fabric.upload(positions, velocities);
   Kokkos::deep_copy(_space, _sheet.acceleration(), _saved_acceleration);
+  Kokkos::deep_copy(_space, _sheet.defect(), _saved_defect);
+  _sheet.update_acceleration(_space);
   const auto density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
   clear_spread(_space, _sheet.transfer(), density);
   Kokkos::deep_copy(_space, _sheet.force(), _saved_force);

@@ -47,21 +47,45 @@ struct SheetForceFunctor {
   }
 };
 
-/// Updates the acceleration of the air without the force of the sheet.
+/// Filtered accelerations at the vertices, (vertices, 3), m/s^2.
+template <class ExecutionSpace>
+struct FilteredAcceleration {
+  using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
+
+  Vectors mean;    ///< of the air without the force of the sheet
+  Vectors defect;  ///< `SheetParameters::defect_filter`; empty without it: `sum` is then `mean`
+  Vectors sum;     ///< of both: `LocalAir::acceleration`
+
+  /// Adds the parts at vertex i.
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    spatial::store_vector(sum, i, spatial::load_vector(mean, i) + spatial::load_vector(defect, i));
+  }
+};
+
+/// Updates the acceleration of the air without the force of the sheet, and the defect.
 template <class ExecutionSpace>
 struct EndSheetStepFunctor {
   LocalAir<ExecutionSpace> air;
+  FilteredAcceleration<ExecutionSpace> filtered;
   typename LocalAir<ExecutionSpace>::Vectors after;  ///< velocity at the end of the step, m/s
   typename LocalAir<ExecutionSpace>::Vectors
       interpolated_force;  ///< interpolated force of the sheet per volume, N/m^3
-  double inverse_dt, inverse_density, filter;
+  double inverse_dt, inverse_density, filter, defect_filter;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     using spatial::load_vector;
-    const spatial::Point present = inverse_dt * (load_vector(after, i) - load_vector(air.before, i)) -
-                                   inverse_density * load_vector(interpolated_force, i),
-                         mean = load_vector(air.acceleration, i);
-    spatial::store_vector(air.acceleration, i, mean + filter * (present - mean));
+    const spatial::Point by_sheet = inverse_density * load_vector(interpolated_force, i),
+                         present =
+                             inverse_dt * (load_vector(after, i) - load_vector(air.before, i)) - by_sheet,
+                         mean = load_vector(filtered.mean, i);
+    spatial::store_vector(filtered.mean, i, mean + filter * (present - mean));
+    if (filtered.defect.extent(0) == 0) return;
+    const spatial::Point impulse = air.is_no_slip(i) ? load_vector(air.no_slip_impulse, i)
+                                                     : air.impulse(i) * load_vector(air.normal, i),
+                         of_copy = inverse_dt * product(load_vector(air.compliance, i), impulse),
+                         defect = load_vector(filtered.defect, i);
+    spatial::store_vector(filtered.defect, i, defect + defect_filter * (by_sheet - of_copy - defect));
+    filtered(i);
   }
 };
 
@@ -109,10 +133,15 @@ class ImmersedSheet {
              Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::porosity",
                                                                              rows()),
              Vectors()},
+        _filtered{_air.acceleration, Vectors(), _air.acceleration},
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
         _interpolated_force(vectors("drogue::coupling::interpolated_force")) {
     if (parameters.method == CouplingMethod::explicit_) _air.last_force = _force;
+    if (parameters.defect_filter > 0.0) {
+      _filtered.mean = vectors("drogue::coupling::mean_acceleration");
+      _filtered.defect = vectors("drogue::coupling::defect");
+    }
     copy_inverse_masses(space, cloth);
     copy_laws(space);
     if (parameters.method == CouplingMethod::sharp) _sharp.emplace(_transfer, _surface, _air.law, density);
@@ -122,9 +151,12 @@ class ImmersedSheet {
   [[nodiscard]] AirRelaxation<ExecutionSpace> relaxation() const { return {_air}; }
   /// Force of each vertex on the air in the last step of the flow, (vertices, 3), N. Does not throw.
   [[nodiscard]] const Vectors& force() const { return _force; }
-  /// Filtered acceleration of the air at each vertex, (vertices, 3), m/s^2; with the state of cloth and flow
-  /// it continues a run. Does not throw.
-  [[nodiscard]] const Vectors& acceleration() const { return _air.acceleration; }
+  /// Filtered acceleration of the air at each vertex, (vertices, 3), m/s^2; with the state of cloth and flow,
+  /// and `defect`, it continues a run. Does not throw.
+  [[nodiscard]] const Vectors& acceleration() const { return _filtered.mean; }
+  /// Filtered defect at each vertex, (vertices, 3), m/s^2; empty without `SheetParameters::defect_filter`.
+  /// Does not throw.
+  [[nodiscard]] const Vectors& defect() const { return _filtered.defect; }
   /// The sheet as an internal boundary; none unless the method is `CouplingMethod::sharp`. Does not throw.
   [[nodiscard]] const std::optional<SharpSheet<ExecutionSpace>>& sharp() const { return _sharp; }
   /// Weights of both directions. Does not throw.
@@ -133,10 +165,17 @@ class ImmersedSheet {
   /// Sets the force and the acceleration of the air to zero, as before the first step. Asynchronous. Does not
   /// throw.
   void forget_steps(const ExecutionSpace& space) const {
-    Kokkos::deep_copy(space, _air.acceleration, 0.0);
+    for (const Vectors& part : {_filtered.mean, _filtered.defect, _filtered.sum})
+      Kokkos::deep_copy(space, part, 0.0);
     Kokkos::deep_copy(space, _force, 0.0);
     if (_sharp)
       for (const auto& faces : _sharp->acceleration().component) Kokkos::deep_copy(space, faces, 0.0);
+  }
+
+  /// Enqueues what a change of `acceleration` or `defect` makes necessary. Throws only after a failed kernel.
+  void update_acceleration(const ExecutionSpace& space) const {
+    if (_filtered.defect.extent(0) > 0)
+      device::launch_each(space, "drogue::coupling::add_defect", _transfer.points, _filtered);
   }
 
   /// Enqueues the geometry of the sheet in the middle of a step of dt, s, and the air at its vertices.
@@ -179,9 +218,24 @@ class ImmersedSheet {
     interpolate(space, _transfer, velocity, _after);
     interpolate(space, _transfer, density, _interpolated_force);
     _rank_sum(space, {_after, _interpolated_force});
-    device::launch_each(space, "drogue::coupling::end_sheet_step", _transfer.points,
-                        EndSheetStepFunctor<ExecutionSpace>{_air, _after, _interpolated_force, 1.0 / dt,
-                                                            1.0 / _density, filter});
+    device::launch_each(
+        space, "drogue::coupling::end_sheet_step", _transfer.points,
+        EndSheetStepFunctor<ExecutionSpace>{_air, _filtered, _after, _interpolated_force, 1.0 / dt,
+                                            1.0 / _density, filter, _parameters.defect_filter});
+  }
+
+  /// Enqueues the velocity of the flow, m/s, interpolated to the present positions of all vertices, and
+  /// returns it, (vertices, 3), valid until the next step. `velocity`: as in `begin_step`. The frozen
+  /// positions stay. On several ranks collective; blocks there. Throws as `begin_step`.
+  template <class View>
+  [[nodiscard]] const Vectors& air_velocity(const ExecutionSpace& space,
+                                            const fabric::State<ExecutionSpace>& cloth,
+                                            const FaceViews<View>& velocity) const {
+    GridTransfer<ExecutionSpace> present = _transfer;
+    present.positions = cloth.positions;
+    interpolate(space, present, velocity, _after);
+    _rank_sum(space, {_after});
+    return _after;
   }
 
  private:
@@ -194,8 +248,11 @@ class ImmersedSheet {
         throw std::invalid_argument("immersed sheet: alpha and beta must be finite and not negative");
     if (!(density > 0.0) || !is_valid(density))
       throw std::invalid_argument("immersed sheet: the density must be positive");
-    if (!(p.filter >= 0.0 && p.filter <= 1.0))
-      throw std::invalid_argument("immersed sheet: the weight of the filter must be 0 to 1");
+    for (const double weight : {p.filter, p.defect_filter})
+      if (!(weight >= 0.0 && weight <= 1.0))
+        throw std::invalid_argument("immersed sheet: the weights of the filters must be 0 to 1");
+    if (p.defect_filter > 0.0 && p.method == CouplingMethod::sharp)
+      throw std::invalid_argument("immersed sheet: a sharp sheet has no defect to filter");
   }
 
   static bool has_no_slip(const SheetParameters& p) {
@@ -241,6 +298,7 @@ class ImmersedSheet {
   GridTransfer<ExecutionSpace> _transfer;
   RankSum<ExecutionSpace> _rank_sum;
   LocalAir<ExecutionSpace> _air;
+  FilteredAcceleration<ExecutionSpace> _filtered;
   Vectors _force, _after, _interpolated_force;
   std::optional<SharpSheet<ExecutionSpace>> _sharp;
 };

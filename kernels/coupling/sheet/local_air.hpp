@@ -18,7 +18,7 @@ struct LocalAir {
   Vectors normal;        ///< of unit length
   Vectors compliance;    ///< change of the local velocity per impulse per area, m^2/kg: `spread_row_sums`
   Vectors before;        ///< velocity at the beginning of the step of the flow, m/s
-  Vectors acceleration;  ///< of the air without the force of the sheet, m/s^2
+  Vectors acceleration;  ///< of the copies of the air beside the force of the sheet, m/s^2
   Vectors inverse_mass;  ///< of the cloth along each axis, 1/kg; zero along pinned axes
 
   // Changed by each step of the cloth.

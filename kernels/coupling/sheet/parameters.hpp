@@ -37,6 +37,10 @@ struct SheetParameters {
   /// cannot grow, but the sheet leaks in proportion to dt; nearly impermeable sheets need 0.2 or less if dt
   /// exceeds the period of their oscillations over 2 pi.
   double filter = 0.5;
+  /// Weight of the present step in the running mean of the defect: of what spreading and interpolation give
+  /// the air at a vertex, less the row sum times its impulse. 0: without it, so that curved and folded sheets
+  /// leak in proportion to dt. Not for sharp sheets, which have none.
+  double defect_filter = 0.0;
   CouplingMethod method = CouplingMethod::spread;
 };
 

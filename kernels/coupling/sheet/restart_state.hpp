@@ -13,6 +13,7 @@ struct RestartState {
   std::vector<fabric::Vector> positions, velocities;  ///< of the vertices, m and m/s
   std::vector<fabric::Vector> air_acceleration;       ///< filtered, at the vertices, m/s^2
   std::vector<fabric::Vector> forces;                 ///< on the air, N: a state with explicit coupling alone
+  std::vector<fabric::Vector> defect;                 ///< filtered, m/s^2; empty unless it is a state
   std::vector<double> face_acceleration;              ///< m/s^2; empty without a sharp sheet
   BlockProgress block;
   FrameMotion frame;

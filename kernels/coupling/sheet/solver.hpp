@@ -89,6 +89,14 @@ class Solver : public flow::Solver {
   /// a span of the wrong length.
   virtual void upload_air_acceleration(std::span<const fabric::Vector> values) = 0;
 
+  /// Filtered defect at the vertices, m/s^2, a part of the state with `SheetParameters::defect_filter`; else
+  /// empty. Throws only std::bad_alloc and after a failed kernel.
+  [[nodiscard]] virtual std::vector<fabric::Vector> download_defect() = 0;
+
+  /// Restores the filtered defect, m/s^2, after `restore`. Throws std::invalid_argument for a span of the
+  /// wrong length.
+  virtual void upload_defect(std::span<const fabric::Vector> values) = 0;
+
   /// Filtered acceleration of the air at all faces, m/s^2, a part of the state with a sharp sheet; else
   /// empty. Throws only std::bad_alloc and after a failed kernel.
   [[nodiscard]] virtual std::vector<double> download_face_acceleration() = 0;
@@ -113,6 +121,10 @@ class Solver : public flow::Solver {
   /// Total of the force densities that act on the air in the last step of the flow, N: the sum of `forces` to
   /// round-off. Throws only after a failed kernel.
   [[nodiscard]] virtual std::array<double, 3> total_force_on_air() = 0;
+
+  /// Velocity of the air, m/s, interpolated to the present positions of all vertices. Throws
+  /// std::invalid_argument for a span of the wrong length.
+  virtual void air_velocity(std::span<fabric::Vector> at_vertices) = 0;
 
   /// Elastic forces on the vertices at the present positions, N, without those of the air and gravity. Throws
   /// std::invalid_argument for a span of the wrong length.
@@ -140,8 +152,9 @@ class Solver : public flow::Solver {
 /// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters out of
 /// range, and std::bad_alloc if memory runs out.
 ///
-/// On a group of several ranks `total_force_on_air` and `set_frame` are collective, as are the functions of
-/// the flow; `create_solver` throws std::invalid_argument also if the ranks cannot share the grid.
+/// On a group of several ranks `total_force_on_air`, `air_velocity` and `set_frame` are collective, as are
+/// the functions of the flow; `create_solver` throws std::invalid_argument also if the ranks cannot share the
+/// grid.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
                                                     const linear::RankGroup& group = {});
 

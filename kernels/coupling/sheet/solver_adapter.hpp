@@ -47,6 +47,9 @@ class SolverAdapter final : public Solver {
     write(on_air, _solver.sheet().force());
   }
   std::array<double, 3> total_force_on_air() override { return _solver.total_force_on_air(); }
+  void air_velocity(std::span<fabric::Vector> at_vertices) override {
+    read(_solver.air_velocity(), at_vertices);
+  }
   void elastic_forces(std::span<fabric::Vector> on_vertices) override {
     _solver.fabric().forces(on_vertices);
   }
@@ -58,6 +61,19 @@ class SolverAdapter final : public Solver {
   }
   void upload_air_acceleration(std::span<const fabric::Vector> values) override {
     write(values, _solver.sheet().acceleration());
+    _solver.sheet().update_acceleration(_instance.space());
+  }
+  std::vector<fabric::Vector> download_defect() override {
+    std::vector<fabric::Vector> values(_solver.sheet().defect().extent(0));
+    if (!values.empty()) read(_solver.sheet().defect(), values);
+    return values;
+  }
+  void upload_defect(std::span<const fabric::Vector> values) override {
+    if (values.size() != _solver.sheet().defect().extent(0))
+      throw std::invalid_argument("coupled solver: there must be one defect per vertex if it is filtered");
+    if (values.empty()) return;
+    write(values, _solver.sheet().defect());
+    _solver.sheet().update_acceleration(_instance.space());
   }
   std::vector<double> download_face_acceleration() override {
     std::vector<double> values(faces());

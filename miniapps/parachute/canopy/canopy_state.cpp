@@ -41,6 +41,20 @@ Vector mean_over_mass(const CanopyRows& rows, const std::vector<double>& masses,
   return sum;
 }
 
+/// Doubled area vector of a triangle, m^2.
+Vector doubled_area_vector(const std::array<int, 3>& triangle, std::span<const Vector> positions) {
+  const auto at = [&](std::size_t corner) -> const Vector& {
+    return positions[static_cast<std::size_t>(triangle[corner])];
+  };
+  const Vector &a = at(0), &b = at(1), &c = at(2);
+  Vector area{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+    area[k] = (b[l] - a[l]) * (c[m] - a[m]) - (b[m] - a[m]) * (c[l] - a[l]);
+  }
+  return area;
+}
+
 /// `CanopyMeasures::inversion`.
 double inversion_of(const CanopyRows& rows, const fabric::Parameters& sheets,
                     const std::vector<Vector>& positions) {
@@ -48,13 +62,9 @@ double inversion_of(const CanopyRows& rows, const fabric::Parameters& sheets,
   const auto at = [&](int i) -> const Vector& { return positions[static_cast<std::size_t>(i)]; };
   std::vector<Vector> normals(rows.cloth_end - rows.begin, Vector{});
   for (std::size_t t = rows.triangles_begin; t < rows.triangles_end; ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-      const double area =
-          (at(b)[l] - at(a)[l]) * (at(c)[m] - at(a)[m]) - (at(b)[m] - at(a)[m]) * (at(c)[l] - at(a)[l]);
-      for (const int i : {a, b, c}) normals[static_cast<std::size_t>(i) - rows.begin][k] += area;
-    }
+    const Vector area = doubled_area_vector(mesh.triangles[t], positions);
+    for (const int i : mesh.triangles[t])
+      for (std::size_t k = 0; k < 3; ++k) normals[static_cast<std::size_t>(i) - rows.begin][k] += area[k];
   }
   const Vector cloth = mean_over_mass(rows, sheets.mass, positions);
   std::size_t inverted = 0;
@@ -133,6 +143,19 @@ double projected_area(std::span<const Vector> positions, std::span<const std::ar
   return raster.area();
 }
 
+double leak_through(std::span<const std::array<int, 3>> triangles, const SheetState& state) {
+  double leak = 0.0;
+  for (const auto& triangle : triangles) {
+    const Vector area = doubled_area_vector(triangle, state.positions);
+    for (const int corner : triangle) {
+      const auto i = static_cast<std::size_t>(corner);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        leak += area[axis] / 6.0 * (state.air[i][axis] - state.velocities[i][axis]);
+    }
+  }
+  return leak;
+}
+
 CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets, const SheetState& state,
                        bool released) {
   const fabric::Mesh& mesh = sheets.mesh;
@@ -151,6 +174,7 @@ CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
   const std::span triangles =
       std::span(mesh.triangles).subspan(rows.triangles_begin, rows.triangles_end - rows.triangles_begin);
   result.projected_area = projected_area(state.positions, triangles);
+  if (!state.air.empty()) result.leak = leak_through(triangles, state);
   for (const auto& triangle : triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto a = static_cast<std::size_t>(triangle[k]),

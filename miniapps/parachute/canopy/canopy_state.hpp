@@ -12,6 +12,7 @@ struct SheetState {
   std::vector<fabric::Vector> velocities;  ///< m/s
   std::vector<fabric::Vector> on_air;      ///< forces on the air in the last step, N
   std::vector<fabric::Vector> elastic;     ///< elastic forces, N
+  std::vector<fabric::Vector> air;         ///< velocities of the air at the positions, m/s; empty without air
 };
 
 /// Measures of a canopy.
@@ -21,6 +22,7 @@ struct CanopyMeasures {
   fabric::Vector payload{};     ///< m; of the centre of mass of a sheet without payload
   fabric::Vector velocity{};    ///< of the payload, or of that centre, m/s
   double projected_area = 0.0;  ///< on a plane normal to z, m^2
+  double leak = 0.0;            ///< `leak_through`, m^3/s; 0 without air
   double largest_strain = 0.0;  ///< of an edge of the cloth; 0 if all are slack
   /// Share of the lines at whose vertex of the skirt the side of the cloth that was constructed outside faces
   /// inwards, to a quarter of the way from the centre of mass of the cloth to the point where the lines meet:
@@ -32,6 +34,11 @@ struct CanopyMeasures {
 /// squares whose side is 1/256 of the larger extent. Throws only std::bad_alloc.
 [[nodiscard]] double projected_area(std::span<const fabric::Vector> positions,
                                     std::span<const std::array<int, 3>> triangles);
+
+/// Volume flow of the air through triangles, relative to them, m^3/s: the integral of its relative velocity,
+/// linear within each triangle, along their normals. From the inside of a canopy as constructed it is
+/// positive. Does not throw.
+[[nodiscard]] double leak_through(std::span<const std::array<int, 3>> triangles, const SheetState& state);
 
 /// Measures of a canopy in the mesh of all sheets. `released`: its payload has been released. Throws only
 /// std::bad_alloc.

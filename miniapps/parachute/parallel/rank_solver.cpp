@@ -252,6 +252,11 @@ void SharedSolver::upload_air_acceleration(std::span<const fabric::Vector> value
   _own->run([&] { _own->coupled().upload_air_acceleration(values); });
 }
 
+void SharedSolver::upload_defect(std::span<const fabric::Vector> values) {
+  request_with(Request::upload_defect, {values});
+  _own->run([&] { _own->coupled().upload_defect(values); });
+}
+
 void SharedSolver::upload_forces(std::span<const fabric::Vector> on_air) {
   request_with(Request::upload_forces, {on_air});
   _own->run([&] { _own->coupled().upload_forces(on_air); });
@@ -270,6 +275,11 @@ void SharedSolver::set_frame(const coupling::FrameMotion& frame) {
 std::array<double, 3> SharedSolver::total_force_on_air() {
   request(Request::total_force_on_air);
   return _own->run([&] { return _own->coupled().total_force_on_air(); });
+}
+
+void SharedSolver::air_velocity(std::span<fabric::Vector> at_vertices) {
+  request(Request::air_velocity, at_vertices.size());
+  _own->run([&] { _own->coupled().air_velocity(at_vertices); });
 }
 
 }  // namespace drogue::parachute_app

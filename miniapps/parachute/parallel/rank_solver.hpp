@@ -30,10 +30,12 @@ enum class Request : int {
   write,                    ///< field, offset, file: all ranks write a field
   upload_cloth,             ///< positions and velocities of all vertices
   upload_air_acceleration,  ///< values of all vertices
+  upload_defect,            ///< values of all vertices, or none
   upload_forces,            ///< values of all vertices
   set_block,                ///< block
   set_frame,                ///< motion
   total_force_on_air,
+  air_velocity,
 };
 
 /// The solver on one of several ranks, with the transfer of arrays between rank 0 and the others. Each rank
@@ -125,10 +127,12 @@ class SharedSolver final : public coupling::Solver {
   void upload_cloth(std::span<const fabric::Vector> positions,
                     std::span<const fabric::Vector> velocities) override;
   void upload_air_acceleration(std::span<const fabric::Vector> values) override;
+  void upload_defect(std::span<const fabric::Vector> values) override;
   void upload_forces(std::span<const fabric::Vector> on_air) override;
   void set_block(const coupling::BlockProgress& block) override;
   void set_frame(const coupling::FrameMotion& frame) override;
   [[nodiscard]] std::array<double, 3> total_force_on_air() override;
+  void air_velocity(std::span<fabric::Vector> at_vertices) override;
   // Rank 0 has the whole cloth.
   void download_cloth(std::span<fabric::Vector> positions, std::span<fabric::Vector> velocities) override {
     _own->coupled().download_cloth(positions, velocities);
@@ -136,6 +140,9 @@ class SharedSolver final : public coupling::Solver {
   void forces(std::span<fabric::Vector> on_air) override { _own->coupled().forces(on_air); }
   void download_air_acceleration(std::span<fabric::Vector> values) override {
     _own->coupled().download_air_acceleration(values);
+  }
+  [[nodiscard]] std::vector<fabric::Vector> download_defect() override {
+    return _own->coupled().download_defect();
   }
   // Empty: sharp sheets work on one rank.
   [[nodiscard]] std::vector<double> download_face_acceleration() override {

@@ -48,10 +48,12 @@ class Worker {
         return _solver->run([&] { step(request, message); });
       case Request::upload_cloth:
       case Request::upload_air_acceleration:
+      case Request::upload_defect:
       case Request::upload_forces:
       case Request::set_block:
       case Request::set_frame:
       case Request::total_force_on_air:
+      case Request::air_velocity:
         return _solver->run([&] { couple(request, message); });
     }
   }
@@ -89,12 +91,17 @@ class Worker {
       solver.upload_cloth(positions, message.get_all<fabric::Vector>());
     } else if (request == Request::upload_air_acceleration) {
       solver.upload_air_acceleration(message.get_all<fabric::Vector>());
+    } else if (request == Request::upload_defect) {
+      solver.upload_defect(message.get_all<fabric::Vector>());
     } else if (request == Request::upload_forces) {
       solver.upload_forces(message.get_all<fabric::Vector>());
     } else if (request == Request::set_block) {
       solver.set_block(message.get<coupling::BlockProgress>());
     } else if (request == Request::set_frame) {
       solver.set_frame(message.get<coupling::FrameMotion>());
+    } else if (request == Request::air_velocity) {
+      std::vector<fabric::Vector> same_on_all_ranks(message.get<std::size_t>());
+      solver.air_velocity(same_on_all_ranks);
     } else {
       static_cast<void>(solver.total_force_on_air());
     }

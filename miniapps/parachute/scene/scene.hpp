@@ -97,6 +97,14 @@ struct CanopyMean {
   Target target;
 };
 
+/// Largest magnitude that passes of the mean leak of a canopy over an interval of time, relative to the means
+/// of speed and projected area.
+struct CanopyLeak {
+  int canopy = 0;
+  double from = 0.0, to = 0.0;  ///< s
+  double tolerance = 0.0;
+};
+
 /// Bounds of the largest force of the lines on the payload of a canopy, N, and of its time, s.
 struct CanopyPeak {
   int canopy = 0;
@@ -153,6 +161,7 @@ struct Verify {
   std::vector<CanopyMean> drags;            ///< drag coefficients with the nominal area
   std::vector<CanopyMean> terminal_speeds;  ///< of the fluid relative to the payload, m/s
   std::vector<CanopyMean> projected_areas;  ///< m^2
+  std::vector<CanopyLeak> leaks;
   std::vector<CanopyPeak> peak_forces;
   std::optional<double> force_balance;   ///< relative
   std::optional<double> intersections;   ///< number

@@ -149,23 +149,28 @@ void check_canopy_number(const Table& root, const FlowScene& scene, const std::s
                    std::to_string(scene.canopies.size()) + ", and the first one is 0");
 }
 
+/// Checks canopy and interval of a `CanopyMean` or a `CanopyLeak`.
+template <class Interval>
+void check_canopy_interval(const Table& root, const FlowScene& scene, const std::string& path,
+                           const Interval& mean) {
+  check_canopy_number(root, scene, path, mean.canopy);
+  if (!(mean.from < mean.to && mean.to <= scene.end_time))
+    contradict(root, path + ".to",
+               path + ".to = " + scene::real_text(mean.to) +
+                   " s must lie between from and run.end_time = " + scene::real_text(scene.end_time) + " s");
+  for (const std::string& component : scene.velocity)
+    if (!SpaceTimeFunction(component).constant())
+      contradict(root, path, path + " needs a fluid.velocity that does not vary");
+  require_rows(root, scene, path);
+}
+
 void check_canopy_means(const Table& root, const FlowScene& scene, const std::string& key,
                         const std::vector<CanopyMean>& means) {
   for (std::size_t i = 0; i < means.size(); ++i) {
-    const CanopyMean& mean = means[i];
     const std::string path = "verify." + key + "[" + std::to_string(i) + "]";
-    check_canopy_number(root, scene, path, mean.canopy);
-    if (!(mean.from < mean.to && mean.to <= scene.end_time))
-      contradict(root, path + ".to",
-                 path + ".to = " + scene::real_text(mean.to) +
-                     " s must lie between from and run.end_time = " + scene::real_text(scene.end_time) +
-                     " s");
-    if (mean.target.value == 0.0)
+    if (means[i].target.value == 0.0)
       contradict(root, path + ".value", path + ".value must not be 0: the tolerance is relative");
-    for (const std::string& component : scene.velocity)
-      if (!SpaceTimeFunction(component).constant())
-        contradict(root, path, path + " needs a fluid.velocity that does not vary");
-    require_rows(root, scene, path);
+    check_canopy_interval(root, scene, path, means[i]);
   }
 }
 
@@ -188,6 +193,8 @@ void check_canopy_checks(const Table& root, const FlowScene& scene) {
   check_canopy_means(root, scene, "drag", verify.drags);
   check_canopy_means(root, scene, "terminal_speed", verify.terminal_speeds);
   check_canopy_means(root, scene, "projected_area", verify.projected_areas);
+  for (std::size_t i = 0; i < verify.leaks.size(); ++i)
+    check_canopy_interval(root, scene, "verify.leak[" + std::to_string(i) + "]", verify.leaks[i]);
   if (verify.intersections) {
     if (!scene.contact)
       contradict(root, "verify.intersections", "verify.intersections needs coupling.contact = true");

@@ -99,13 +99,19 @@ void declare_curve(Table& table, Curve& curve, const std::string& unit, const st
       .required();
 }
 
-void declare_canopy_mean(Table& table, CanopyMean& mean, const std::string& unit) {
+/// Canopy and interval of a `CanopyMean` or a `CanopyLeak`.
+template <class Interval>
+void declare_interval(Table& table, Interval& mean) {
   table.value("canopy", scene::integer_codec(mean.canopy), "Number of the [[canopy]], from 0").range(0, 1e6);
   table.value("from", scene::real_codec(mean.from), "Begin of the interval")
       .unit("s")
       .at_least(0.0)
       .required();
   table.value("to", scene::real_codec(mean.to), "End of the interval").unit("s").above(0.0).required();
+}
+
+void declare_canopy_mean(Table& table, CanopyMean& mean, const std::string& unit) {
+  declare_interval(table, mean);
   declare_target(table, mean.target, unit, "Largest relative deviation that passes");
 }
 
@@ -131,6 +137,15 @@ void declare_canopy_checks(Table& table, Verify& verify) {
       "projected_area", verify.projected_areas,
       [](Table& area, CanopyMean& value) { declare_canopy_mean(area, value, "m^2"); },
       "Mean areas of the shadows of canopies along z");
+  table.tables(
+      "leak", verify.leaks,
+      [](Table& leak, CanopyLeak& value) {
+        declare_interval(leak, value);
+        leak.value("tolerance", scene::real_codec(value.tolerance), "Largest ratio that passes")
+            .at_least(0.0)
+            .required();
+      },
+      "Mean flow through canopies over the mean speed far upstream and the mean projected area");
   table.tables("peak_force", verify.peak_forces, declare_peak_force,
                "Largest forces of the lines on payloads in the rows of the history");
   table
@@ -278,7 +293,7 @@ void declare_verify(Table& table, FlowScene& scene) {
   for (const char* of_fluid :
        {"exact", "divergence", "momentum", "energy_growth", "speed_growth", "kinetic_energy",
         "dissipation_peak", "kinetic_energy_curve", "dissipation_curve", "flow_rate", "force", "mean_force",
-        "frequency", "drag", "terminal_speed", "force_balance", "profile"})
+        "frequency", "drag", "terminal_speed", "leak", "force_balance", "profile"})
     table.at(of_fluid).when(with_fluid(scene), fluid_condition, "");
   table
       .value("energy_drift", scene::real_codec(verify.energy_drift),

@@ -65,6 +65,7 @@ void append_measure_columns(const FlowScene& scene, std::vector<run::Column>& co
     add_vector("payload", "m");
     add_vector("payload_velocity", "m/s");
     columns.push_back({name + "projected_area", "m^2"});
+    if (scene.has_fluid()) columns.push_back({name + "leak", "m^3/s"});
     columns.push_back({name + "largest_strain", ""});
     columns.push_back({name + "inversion", ""});
   }
@@ -87,7 +88,9 @@ std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets
     }
     if (scene.has_fluid()) append(one.force);
     for (const Vector& vector : {one.line_force, one.payload, one.velocity}) append(vector);
-    row.values.insert(row.values.end(), {one.projected_area, one.largest_strain, one.inversion});
+    row.values.push_back(one.projected_area);
+    if (scene.has_fluid()) row.values.push_back(one.leak);
+    row.values.insert(row.values.end(), {one.largest_strain, one.inversion});
   }
   return canopies;
 }

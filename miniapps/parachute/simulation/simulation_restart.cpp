@@ -36,6 +36,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
     writer.write(name, 0, {values.front().data(), 3 * vertices});
   };
   write("air_acceleration", state.air_acceleration);
+  if (!state.defect.empty()) write("defect", state.defect);
   if (_scene.is_explicit()) write("sheet_force", state.forces);
   write("sheet_position", state.positions);
   write("sheet_velocity", state.velocities);
@@ -68,6 +69,7 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   read("sheet_position", state.positions);
   read("sheet_velocity", state.velocities);
   read("air_acceleration", state.air_acceleration);
+  if (!state.defect.empty()) read("defect", state.defect);
   if (_scene.is_explicit()) read("sheet_force", state.forces);
   if (!state.face_acceleration.empty()) reader.read("face_acceleration", 0, state.face_acceleration);
   _record.read(reader);

@@ -88,7 +88,9 @@ void Simulation::append_canopy_columns(std::vector<run::Column>& columns) const 
 
 void Simulation::append_canopy_values(framework::HistoryRow& row) {
   if (_scene.canopies.empty()) return;
-  const SheetState state = sheet_state();
+  SheetState state = sheet_state();
+  state.air.resize(state.positions.size());
+  _coupled->air_velocity(state.air);
   const coupling::FrameMotion frame = _coupled->frame();
   const Vector origin = frame.position(row.time);
   const std::vector<CanopyMeasures> canopies =

@@ -29,6 +29,13 @@ void check_canopies(const Verify& wanted, const CanopyRecord& record, run::Resul
     check_mean("projected_area_" + std::to_string(i),
                record.mean_area(static_cast<std::size_t>(area.canopy), area.from, area.to), area.target);
   }
+  for (std::size_t i = 0; i < wanted.leaks.size(); ++i) {
+    const CanopyLeak& leak = wanted.leaks[i];
+    const std::string name = "leak_" + std::to_string(i);
+    const double value = record.relative_leak(static_cast<std::size_t>(leak.canopy), leak.from, leak.to);
+    result.metrics.set("canopies", name, value);
+    result.add_check(name, value, leak.tolerance);
+  }
   // A value passes between two bounds if its distance from their mean is at most half of theirs.
   const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {
     result.metrics.set("canopies", name, value);

@@ -36,7 +36,8 @@ void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies,
     }
     const double speed = length_of(u), pressure = 0.5 * _scene.parameters.density * speed * speed;
     const double drag = along == 0.0 ? 0.0 : along / (speed * pressure * _scene.canopies[i].nominal_area());
-    _values.insert(_values.end(), {drag, speed, length_of(canopy.line_force), canopy.projected_area});
+    _values.insert(_values.end(),
+                   {drag, speed, length_of(canopy.line_force), canopy.projected_area, canopy.leak});
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "common/run/restart/restart_file.hpp"
@@ -42,6 +43,12 @@ class CanopyRecord {
     return mean(first_column + 3 + per_canopy * canopy, from, to);
   }
 
+  /// Magnitude of the mean leak over the mean speed and the mean projected area, likewise.
+  [[nodiscard]] double relative_leak(std::size_t canopy, double from, double to) const {
+    return std::abs(mean(first_column + 4 + per_canopy * canopy, from, to)) /
+           (mean_speed(canopy, from, to) * mean_area(canopy, from, to));
+  }
+
   /// Largest force of the lines on a payload. Does not throw.
   [[nodiscard]] Peak peak(std::size_t canopy) const;
 
@@ -58,7 +65,7 @@ class CanopyRecord {
   void read(const run::RestartReader& reader);
 
  private:
-  static constexpr std::size_t first_column = 3, per_canopy = 4;  ///< columns
+  static constexpr std::size_t first_column = 3, per_canopy = 5;  ///< columns
 
   [[nodiscard]] double largest(std::size_t column) const;
   [[nodiscard]] std::size_t rows() const { return _values.size() / _columns; }
@@ -70,8 +77,8 @@ class CanopyRecord {
   const FlowScene& _scene;
   fabric::Vector _stream{};  ///< velocity of the fluid far upstream, m/s
   std::size_t _columns;
-  /// Row by row: time, balance, intersections; then drag coefficient, speed, line force and projected area of
-  /// each canopy.
+  /// Row by row: time, balance, intersections; then drag coefficient, speed, line force, projected area
+  /// and leak of each canopy.
   std::vector<double> _values;
 };
 

@@ -37,6 +37,7 @@ struct State : RestartState {
   std::vector<std::vector<double>> flow;
   std::array<double, 3> total_force{};
   flow::Progress progress;
+  std::vector<Vector> air = {};  ///< velocities of the air at the vertices, m/s
 };
 
 /// A case on the ranks of a group, with whole arrays of the flow.
@@ -75,6 +76,8 @@ class SharedRun {
   [[nodiscard]] State state() {
     State s{
         download_restart_state(*_solver, _vertices), {}, _solver->total_force_on_air(), _solver->progress()};
+    s.air.resize(_vertices);
+    _solver->air_velocity(s.air);
     for (const StateField field : flow::state_fields(_p)) {
       const linear::CellBox part = flow::part_of(_p, _ranks, field);
       std::vector<double> own(part.size());
@@ -149,6 +152,7 @@ void set_stream(Case& c) {
 std::vector<Case> cases() {
   std::vector<Case> all;
   all.push_back(sheet_in("periodic", {8, 9, 10}));
+  all.back().p.sheet.defect_filter = 0.1;
   Case& channel = all.emplace_back(sheet_in("channel", {12, 9, 8}));
   set_stream(channel);
   for (const std::size_t side : {2U, 3U, 4U}) channel.p.flow.boundary[side].kind = BoundaryKind::slip;
@@ -197,7 +201,9 @@ void expect_near(const State& a, const State& b, const std::string& what) {
   compare(a.positions, b.positions, "positions");
   compare(a.velocities, b.velocities, "velocities");
   compare(a.air_acceleration, b.air_acceleration, "acceleration");
+  compare(a.defect, b.defect, "defect");
   compare(a.forces, b.forces, "forces");
+  compare(a.air, b.air, "velocities of the air");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(a.total_force[axis], b.total_force[axis], tolerance) << what;
     EXPECT_NEAR(a.frame.velocity[axis], b.frame.velocity[axis], tolerance) << what;
@@ -209,7 +215,9 @@ void expect_equal(const State& a, const State& b, const std::string& what) {
   EXPECT_EQ(a.positions, b.positions) << what;
   EXPECT_EQ(a.velocities, b.velocities) << what;
   EXPECT_EQ(a.air_acceleration, b.air_acceleration) << what;
+  EXPECT_EQ(a.defect, b.defect) << what;
   EXPECT_EQ(a.forces, b.forces) << what;
+  EXPECT_EQ(a.air, b.air) << what;
   EXPECT_EQ(a.total_force, b.total_force) << what;
   EXPECT_EQ(a.progress.time, b.progress.time) << what;
 }

@@ -10,6 +10,7 @@
 
 #include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "kernels/reference/coupling/grid_transfer.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/expression_program.hpp"
@@ -86,7 +87,8 @@ double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
 
 double distance(const State& a, const State& b) {
   double largest = std::max({distance(a.positions, b.positions), distance(a.velocities, b.velocities),
-                             1e-3 * distance(a.air_acceleration, b.air_acceleration)});
+                             1e-3 * distance(a.air_acceleration, b.air_acceleration),
+                             1e-3 * distance(a.defect, b.defect)});
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < a.flow[k].size(); ++i)
       largest = std::max(largest, std::abs(a.flow[k][i] - b.flow[k][i]));
@@ -113,6 +115,29 @@ TEST(CoupledSolver, ContinuesBitForBit) {
     ASSERT_TRUE(second.advance(19));
     EXPECT_EQ(distance(state_of(c, *second.solver), state_of(c, *whole.solver)), 0.0);
   }
+}
+
+TEST(CoupledSolver, ContinuesBitForBitWithTheFilteredDefect) {
+  CoupledCase c = flying_strip();
+  c.p.sheet.defect_filter = 0.1;
+  CoupledRun whole(c), first(c);
+  ASSERT_TRUE(whole.advance(40));
+  ASSERT_TRUE(first.advance(21));
+  State middle = state_of(c, *first.solver);
+  double largest = 0.0;
+  for (const Vector& defect : middle.defect) largest = std::max(largest, std::abs(defect[0]));
+  EXPECT_GT(largest, 0.1);
+  CoupledRun second(c), without(c);
+  restore(c, middle, *second.solver);
+  EXPECT_EQ(distance(state_of(c, *second.solver), middle), 0.0);
+  ASSERT_TRUE(second.advance(19));
+  const State end = state_of(c, *whole.solver);
+  EXPECT_EQ(distance(state_of(c, *second.solver), end), 0.0);
+  // It is a part of the state.
+  middle.defect.assign(c.x.size(), Vector{});
+  restore(c, middle, *without.solver);
+  ASSERT_TRUE(without.advance(19));
+  EXPECT_GT(distance(state_of(c, *without.solver), end), 1e-6);
 }
 
 TEST(CoupledSolver, ContinuesBitForBitWithABodyInMotion) {
@@ -326,6 +351,34 @@ TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
   EXPECT_THROW(run.solver->elastic_forces(few), std::invalid_argument);
 }
 
+TEST(CoupledSolver, ReportsTheVelocityOfTheAirAtTheVertices) {
+  const CoupledCase c = flying_strip();
+  CoupledRun run(c), other(c);
+  ASSERT_TRUE(run.advance(10));
+  std::vector<Vector> x(c.x.size()), v(c.x.size()), air(c.x.size());
+  run.solver->download_cloth(x, v);
+  run.solver->air_velocity(air);
+  StaggeredGrid grid;
+  reference::FaceField velocity;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grid.cells[axis] = c.p.flow.cells[axis];
+    grid.spacing[axis] = h;
+    grid.periodic[axis] = axis == 2;
+    const flow::StateField field = flow::state_fields(c.p.flow)[axis];
+    velocity[axis].resize(flow::state_size(c.p.flow, field));
+    run.solver->download(field, velocity[axis]);
+  }
+  const std::vector<Vector> expected = reference::interpolate(grid, c.p.sheet.kernel, velocity, x);
+  double largest = 0.0;
+  for (const Vector& of_vertex : expected) largest = std::max(largest, std::abs(of_vertex[0]));
+  EXPECT_GT(largest, 0.1);
+  EXPECT_LE(distance(air, expected), 1e-13 * largest);
+  // It changes no step.
+  ASSERT_TRUE(other.advance(10));
+  for (CoupledRun* each : {&run, &other}) ASSERT_TRUE(each->advance(10));
+  EXPECT_EQ(distance(state_of(c, *run.solver), state_of(c, *other.solver)), 0.0);
+}
+
 TEST(CoupledSolver, StepSizeFollowsTheSpeedOfTheAir) {
   CoupledCase c = flying_strip();
   c.p.flow.max_dt = 1.0;
@@ -362,6 +415,10 @@ void expect_failure(const CoupledCase& c, FailureReason reason) {
   }
   const State expected = state_of(c, *again.solver);
   EXPECT_EQ(distance(expected, last), 0.0);
+  std::vector<Vector> air(c.x.size()), expected_air(c.x.size());
+  run.solver->air_velocity(air);
+  again.solver->air_velocity(expected_air);
+  EXPECT_EQ(distance(air, expected_air), 0.0);
   EXPECT_EQ(distance(expected.forces, last.forces), 0.0);
   EXPECT_EQ(expected.total_force, last.total_force);
 }
@@ -369,6 +426,8 @@ void expect_failure(const CoupledCase& c, FailureReason reason) {
 TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
   CoupledCase c = flying_strip();
   c.p.sheet.law = {1e-3, 0.0, false};
+  expect_failure(c, FailureReason::left_domain);
+  c.p.sheet.defect_filter = 0.1;
   expect_failure(c, FailureReason::left_domain);
   // A new start forgets it.
   CoupledRun run(c);
@@ -497,6 +556,7 @@ TEST(CoupledSolver, RejectsInvalidParameters) {
   rejects([](Parameters& p) { p.sheet.law_of_vertex.resize(3); });
   rejects([](Parameters& p) { p.sheet.law_of_vertex.resize(p.fabric.mass.size(), {1.0, -1.0, false}); });
   rejects([](Parameters& p) { p.sheet.filter = 1.5; });
+  rejects([](Parameters& p) { p.sheet.defect_filter = -0.5; });
   rejects([](Parameters& p) { p.fabric.mass.clear(); });
   rejects([](Parameters& p) { p.flow.density = 0.0; });
   rejects([](Parameters& p) { p.cuts = {{1.0, {0}}}; });
@@ -509,9 +569,12 @@ TEST(CoupledSolver, RejectsArraysOfTheWrongLength) {
   CoupledRun run(c);
   std::vector<Vector> few(c.x.size() - 1);
   EXPECT_THROW(run.solver->forces(few), std::invalid_argument);
+  EXPECT_THROW(run.solver->air_velocity(few), std::invalid_argument);
   EXPECT_THROW(run.solver->download_air_acceleration(few), std::invalid_argument);
   EXPECT_THROW(run.solver->upload_air_acceleration(few), std::invalid_argument);
   EXPECT_THROW(run.solver->upload_forces(few), std::invalid_argument);
+  EXPECT_THROW(run.solver->upload_defect(c.x), std::invalid_argument) << "it is not filtered";
+  EXPECT_TRUE(run.solver->download_defect().empty());
   EXPECT_THROW(run.solver->upload_cloth(few, few), std::invalid_argument);
 }
 

@@ -64,6 +64,34 @@ TEST(CanopyState, ProjectedAreaIsThatOfTheShadow) {
   EXPECT_EQ(projected_area(points, {}), 0.0);
 }
 
+TEST(CanopyState, LeakIsTheFlowRelativeToTheCloth) {
+  // Air at 2 x + 3 z m/s along z through the triangle of the origin, (1, 0, 0) and (0, 1, 0), which moves.
+  SheetState state;
+  state.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  state.velocities.assign(4, {5.0, 6.0, 0.25});
+  for (const Vector& x : state.positions) state.air.push_back({-7.0, 8.0, 2.0 * x[0] + 3.0 * x[2]});
+  // The integral of 2 x over the triangle is 1/3.
+  const std::array<int, 3> base = {0, 1, 2}, turned = {0, 2, 1};
+  EXPECT_NEAR(leak_through({&base, 1}, state), 1.0 / 3.0 - 0.125, 1e-15);
+  EXPECT_NEAR(leak_through({&turned, 1}, state), 0.125 - 1.0 / 3.0, 1e-15);
+  // Out of a tetrahedron: its volume times the divergence of the air.
+  const std::vector<std::array<int, 3>> closed = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  EXPECT_NEAR(leak_through(closed, state), 3.0 / 6.0, 1e-14);
+}
+
+TEST(CanopyState, LeakIsPositiveFromTheSideOfTheLines) {
+  Canopy canopy;
+  canopy.edge_length = 0.5;
+  const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+  SheetState state = state_of(sheets);
+  EXPECT_LT(state.positions[sheets.canopies[0].payload.value()][2], -1.0) << "the lines are below";
+  EXPECT_EQ(measure(sheets.canopies[0], sheets.fabric, state, false).leak, 0.0) << "without air";
+  state.air.assign(state.positions.size(), {0.0, 0.0, 2.0});
+  for (Vector& velocity : state.velocities) velocity = {0.0, 0.0, -1.0};
+  const CanopyMeasures one = measure(sheets.canopies[0], sheets.fabric, state, false);
+  EXPECT_NEAR(one.leak / (3.0 * one.projected_area), 1.0, 0.01);
+}
+
 TEST(CanopyState, MeasuresBelongToTheirCanopy) {
   Canopy first, second;
   first.edge_length = second.edge_length = 0.5;
@@ -162,6 +190,21 @@ TEST(CanopyRecord, MeansAreThoseOfAnInterval) {
   EXPECT_EQ(record.intersections(), 3.0);
   // Areas of a tenth of the line force: 7, 6 and 1 m^2.
   EXPECT_NEAR(record.mean_area(0, 0.5, 5.0), (2.0 * 6.5 + 1.0 * 3.5) / 3.0, 1e-14);
+}
+
+TEST(CanopyRecord, LeakIsThatOfAnIntervalRelativeToTheStream) {
+  const FlowScene scene = scene_with_canopy();
+  CanopyRecord record(scene);
+  // Air that leaks inwards and outwards, with U = 5 m/s and an area of 4 m^2.
+  const double times[] = {0.0, 1.0, 3.0, 4.0}, leaks[] = {1e6, -3.0, 1.0, -1.0};
+  for (std::size_t row = 0; row < 4; ++row) {
+    CanopyMeasures measures = measures_of(0.0, -2.0, 40.0);
+    measures.leak = leaks[row];
+    record.add(times[row], {measures}, 0.0, 0.0);
+  }
+  EXPECT_NEAR(record.relative_leak(0, 0.5, 5.0), 2.0 / 3.0 / (5.0 * 4.0), 1e-15);
+  EXPECT_NEAR(record.relative_leak(0, 1.0, 3.0), 1.0 / (5.0 * 4.0), 1e-15);
+  EXPECT_TRUE(std::isnan(record.relative_leak(0, 3.5, 5.0))) << "one row is no interval";
 }
 
 TEST(CanopyRecord, NonFiniteBalanceIsNotHidden) {

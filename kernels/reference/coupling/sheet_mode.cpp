@@ -1,0 +1,74 @@
+#include "kernels/reference/coupling/sheet_mode.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace drogue::reference {
+
+SheetMode coupled_step(const SheetMode& state, const SheetModeParameters& p, bool is_first) {
+  const double tau = p.dt / p.substeps, inverse_mass = 1.0 / p.mass + p.compliance;
+  SheetMode next = state;
+  double beside = state.air, impulse = 0.0;
+  for (int substep = 0; substep < p.substeps; ++substep) {
+    next.velocity -= tau * p.stiffness / p.mass * next.displacement;
+    beside += tau * (state.acceleration + state.defect);
+    const double relative = next.velocity - beside;
+    const double given = std::isinf(p.alpha)
+                             ? relative / inverse_mass
+                             : tau * p.alpha * relative / (1.0 + tau * p.alpha * inverse_mass);
+    next.velocity -= given / p.mass;
+    beside += p.compliance * given;
+    impulse += given;
+    next.displacement += tau * next.velocity;
+  }
+  next.air = state.air + p.response * impulse;
+  const double without_sheet = (p.response - p.spread) * impulse / p.dt,
+               weight = is_first && p.filter > 0.0 ? 1.0 : p.filter;
+  next.acceleration = (1.0 - weight) * state.acceleration + weight * without_sheet;
+  next.defect = 0.0;
+  if (p.defect_filter > 0.0)
+    next.defect =
+        state.defect + p.defect_filter * ((p.spread - p.compliance) * impulse / p.dt - state.defect);
+  return next;
+}
+
+SheetModeMatrix amplification(const SheetModeParameters& p) {
+  SheetModeMatrix matrix{};
+  for (std::size_t column = 0; column < 5; ++column) {
+    const auto unit = [column](std::size_t k) { return k == column ? 1.0 : 0.0; };
+    const SheetMode image =
+        coupled_step({p.dt * unit(0), unit(1), unit(2), unit(3) / p.dt, unit(4) / p.dt}, p);
+    matrix[0][column] = image.displacement / p.dt;
+    matrix[1][column] = image.velocity;
+    matrix[2][column] = image.air;
+    matrix[3][column] = image.acceleration * p.dt;
+    matrix[4][column] = image.defect * p.dt;
+  }
+  return matrix;
+}
+
+double spectral_radius(SheetModeMatrix matrix) {
+  constexpr int squarings = 30;
+  // The power of the matrix is `matrix` times the exponential of `logarithm`.
+  double logarithm = 0.0;
+  for (int k = 0; k <= squarings; ++k) {
+    double largest = 0.0;
+    for (const auto& row : matrix)
+      for (const double entry : row) largest = std::max(largest, std::abs(entry));
+    if (largest == 0.0) return 0.0;
+    logarithm += std::log(largest);
+    for (auto& row : matrix)
+      for (double& entry : row) entry /= largest;
+    if (k == squarings) break;
+    SheetModeMatrix square{};
+    for (std::size_t i = 0; i < 5; ++i)
+      for (std::size_t j = 0; j < 5; ++j)
+        for (std::size_t l = 0; l < 5; ++l) square[i][j] += matrix[i][l] * matrix[l][j];
+    matrix = square;
+    logarithm *= 2.0;
+  }
+  return std::exp(std::ldexp(logarithm, -squarings));
+}
+
+}  // namespace drogue::reference

@@ -1,0 +1,334 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "kernels/mesh/round_surfaces.hpp"
+#include "kernels/reference/coupling/grid_transfer.hpp"
+#include "tests/support/coupled_case.hpp"
+
+// Two-dimensional cases of the prototype of the scheme: balloons under tension, plates and parachutes in a
+// stream, and the leak that the filtered acceleration removes.
+
+namespace drogue::coupling {
+namespace {
+
+using drogue::testing::CoupledCase;
+using drogue::testing::CoupledRun;
+using fabric::Vector;
+using flow::BoundaryKind;
+using flow::StateField;
+
+TEST(FixedSheet, LeaksInProportionToTheStepWithoutTheFilteredAcceleration) {
+  // The impulse of a step, dp dt, slows the copies of the air down by its product with the row sum before the
+  // law holds.
+  constexpr double h = 0.2, dp = 30.0;
+  double leak[2];
+  for (int level = 0; level < 2; ++level) {
+    CoupledCase c(16, 8, h, 0.01 / (1 << level));
+    c.p.flow.pressure_drop = {dp, 0.0, 0.0};
+    c.add_strip(1.66, 0.0, 1.66, 1.6, 16);
+    c.p.sheet.filter = 0.0;
+    c.p.substeps = 1;
+    StaggeredGrid grid;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      grid.cells[axis] = c.p.flow.cells[axis];
+      grid.spacing[axis] = h;
+      grid.periodic[axis] = true;
+    }
+    std::vector<double> areas;
+    for (const double mass : c.p.fabric.mass) areas.push_back(mass / 0.0373);
+    const double row_sum =
+        reference::spread_row_sums(grid, c.p.sheet.kernel, c.x, areas, c.p.flow.density)[16][0];
+    CoupledRun run(c);
+    ASSERT_TRUE(run.advance(400 << level));
+    const double law = CoupledCase::law_velocity(dp);
+    leak[level] = run.solver->totals().momentum[0] / (c.p.flow.density * c.volume()) - law;
+    EXPECT_NEAR(leak[level], dp * c.p.flow.fixed_dt * row_sum, 1e-3 * leak[level]);
+    EXPECT_GT(leak[level], law) << "more than the law";
+  }
+  EXPECT_NEAR(leak[0] / leak[1], 2.0, 1e-3);
+}
+
+/// Impermeable circle of cloth of 1.6 m under tension in a periodic box of air at rest, which its pressure
+/// balances: cells of 0.2 m, vertices 0.1 m apart.
+struct Balloon {
+  static constexpr double h = 0.2, radius = 1.6, centre = 4.81;
+  static constexpr int columns = 100, cells = 48;
+
+  /// With a displacement of `amplitude` cos 2 phi, m.
+  Balloon(double dt, double amplitude) : c(cells, cells, h, dt) {
+    fabric::Parameters& cloth = c.p.fabric;
+    cloth.mesh = mesh::tube(radius, h, columns, 1);
+    c.x = cloth.mesh.rest;
+    for (std::size_t i = 0; i < c.x.size(); ++i) {
+      const double phi = std::atan2(c.x[i][1], c.x[i][0]),
+                   scale = 1.0 + amplitude / radius * std::cos(2.0 * phi);
+      c.x[i] = {centre + scale * c.x[i][0], centre + scale * c.x[i][1], c.x[i][2] + 0.5 * h};
+      for (std::size_t axis = 0; axis < 2; ++axis) cloth.mesh.rest[i][axis] /= strain;
+    }
+    c.v.assign(c.x.size(), Vector{});
+    cloth.material.membrane_modulus = 1750.0;
+    cloth.pinned.assign(c.x.size(), 4);
+    c.set_mass(0.0373 * strain);
+    c.p.sheet.law.impermeable = true;
+  }
+
+  /// Pressure that balances the tension, Pa, from the elastic forces.
+  static double pressure(CoupledRun& run) {
+    std::vector<Vector> x(run.vertices), v(run.vertices), forces(run.vertices);
+    run.solver->download_cloth(x, v);
+    run.solver->elastic_forces(forces);
+    double inwards = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        inwards -= forces[i][axis] * (x[i][axis] - centre) / radius;
+    return inwards / (2.0 * std::numbers::pi * radius * h);
+  }
+
+  /// Area of the polygon of the vertices, m^2.
+  static double enclosed(CoupledRun& run) {
+    std::vector<Vector> x(run.vertices), v(run.vertices);
+    run.solver->download_cloth(x, v);
+    double doubled = 0.0;
+    for (std::size_t k = 0; k < columns; ++k) {
+      const Vector &a = x[k], &b = x[(k + 1) % columns];
+      doubled += a[0] * b[1] - a[1] * b[0];
+    }
+    return 0.5 * doubled;
+  }
+
+  static constexpr double strain = 1.1;  ///< length over that at rest
+  CoupledCase c;
+};
+
+TEST(Balloon, KeepsItsPressureAndLeaksInProportionToTheStep) {
+  double leak[2];
+  for (int level = 0; level < 2; ++level) {
+    const double dt = 0.01 / (1 << level);
+    const Balloon balloon(dt, 0.0);
+    CoupledRun run(balloon.c);
+    ASSERT_TRUE(run.advance(60 << level));
+    const double before = Balloon::enclosed(run);
+    ASSERT_TRUE(run.advance(40 << level));
+    const double lost = before - Balloon::enclosed(run), expected = Balloon::pressure(run);
+    leak[level] = lost / (2.0 * std::numbers::pi * Balloon::radius * 0.4);
+    EXPECT_NEAR(expected, 125.0, 15.0);
+    std::vector<double> pressure(Balloon::cells * Balloon::cells);
+    run.solver->sample(flow::CellField::pressure, pressure);
+    const double jump = pressure[pressure.size() / 2 + Balloon::cells / 2] - pressure[0];
+    EXPECT_NEAR(jump / expected, 1.0, 0.03 / (1 << level)) << dt;
+  }
+  EXPECT_GT(leak[1], 0.0);
+  EXPECT_LT(leak[1], 6e-3);
+  // The leak is of first order in dt, once the sheet has come to rest.
+  EXPECT_GT(leak[0] / leak[1], 1.4);
+  EXPECT_LT(leak[0] / leak[1], 2.4);
+}
+
+TEST(Balloon, DoesNotLeakWithTheFilteredDefect) {
+  Balloon balloon(0.005, 0.0);
+  balloon.c.p.sheet.defect_filter = 0.1;
+  CoupledRun run(balloon.c);
+  ASSERT_TRUE(run.advance(80));
+  const double before = Balloon::enclosed(run);
+  ASSERT_TRUE(run.advance(80));
+  const double leak = (before - Balloon::enclosed(run)) / (2.0 * std::numbers::pi * Balloon::radius * 0.4);
+  EXPECT_LT(std::abs(leak), 4e-4);
+}
+
+/// Frequency of mode 2 of a balloon over that with the added mass of potential flow, less 1.
+double frequency_deviation(double dt) {
+  const Balloon balloon(dt, 0.01 * Balloon::radius);
+  CoupledRun run(balloon.c);
+  // The sudden load lets the sheet slip, and oscillate against the lagging acceleration, for some steps.
+  const int first = static_cast<int>(std::lround(0.05 / dt));
+  EXPECT_TRUE(run.advance(first));
+  // Tangential waves are so fast that the tension is that of the length: stiffness 3 T / R^2, added mass rho
+  // R.
+  const double tension = Balloon::pressure(run) * Balloon::radius,
+               exact = std::sqrt(3.0 * tension / (Balloon::radius * Balloon::radius) /
+                                 (balloon.c.p.flow.density * Balloon::radius + 0.0373));
+  double crossing[2] = {}, before = 1.0;
+  for (int found = 0, step = first + 1; found < 2 && step * dt < 1.0; ++step) {
+    EXPECT_TRUE(run.advance(1));
+    std::vector<Vector> x(run.vertices), v(run.vertices);
+    run.solver->download_cloth(x, v);
+    double now = 0.0;
+    for (const Vector& place : x) {
+      const double a = place[0] - Balloon::centre, b = place[1] - Balloon::centre;
+      now += (a * a - b * b) / std::hypot(a, b);
+    }
+    const bool is_apart = found == 0 || step * dt > crossing[0] + 0.1;
+    if (now * before < 0.0 && is_apart) crossing[found++] = (step - now / (now - before)) * dt;
+    before = now;
+  }
+  return std::numbers::pi / (crossing[1] - crossing[0]) / exact - 1.0;
+}
+
+TEST(Balloon, OscillatesWithTheAddedMassOfTheAir) {
+  // The delta function adds mass, also to a mode of 25 cells per wave.
+  for (const double dt : {0.005, 0.0025}) {
+    const double deviation = frequency_deviation(dt);
+    EXPECT_GT(deviation, -0.18) << dt;
+    EXPECT_LT(deviation, -0.08) << dt;
+  }
+}
+
+/// Stream along x between slip sides, from the start on.
+void set_stream(CoupledCase& c, double speed) {
+  flow::Parameters& p = c.p.flow;
+  p.boundary[0] = {BoundaryKind::inflow, {speed, 0.0, 0.0}, {}};
+  p.boundary[1].kind = BoundaryKind::outflow;
+  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::slip;
+}
+
+CoupledRun started(const CoupledCase& c, double speed) {
+  CoupledRun run(c);
+  const std::array<int, 3> n = extents(c.p.flow, StateField::velocity_x);
+  run.solver->upload(
+      StateField::velocity_x,
+      std::vector<double>(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]), speed));
+  run.solver->start();
+  return run;
+}
+
+/// Mean drag coefficient of an impermeable plate of 2.4 m across a stream of 10 m/s, 0.3 to 0.9 s after it
+/// has started at once.
+double drag_of_plate(double h) {
+  constexpr double width = 2.4, speed = 10.0, length = 14.4, height = 14.4;
+  CoupledCase c(static_cast<int>(std::lround(length / h)), static_cast<int>(std::lround(height / h)), h, 0.0);
+  set_stream(c, speed);
+  c.p.flow.cfl = 0.25;
+  c.p.flow.max_dt = 0.02 * h;
+  c.add_strip(4.0, 0.5 * (height - width), 4.0, 0.5 * (height + width),
+              static_cast<int>(std::lround(2.0 * width / h)));
+  c.p.sheet.law.impermeable = true;
+  c.p.substeps = 1;
+  CoupledRun run = started(c, speed);
+  EXPECT_EQ(run.solver->advance(0.3, -1, {}), flow::Stop::target);
+  double sum = 0.0;
+  constexpr int samples = 30;
+  for (int k = 1; k <= samples; ++k) {
+    EXPECT_EQ(run.solver->advance(0.3 + 0.6 * k / samples, -1, {}), flow::Stop::target);
+    sum -= run.force()[0];
+  }
+  return sum / samples / (0.5 * c.p.flow.density * speed * speed * width * c.width());
+}
+
+TEST(Plate, HasADragOfFirstOrderInTheSpacing) {
+  const std::array<double, 3> drag = {drag_of_plate(0.4), drag_of_plate(0.2), drag_of_plate(0.1)};
+  EXPECT_NEAR((drag[0] - drag[1]) / (drag[1] - drag[2]), 2.0, 0.4)
+      << drag[0] << ' ' << drag[1] << ' ' << drag[2];
+  // The delta function widens the plate of twelve cells.
+  const double extrapolated = 2.0 * drag[2] - drag[1];
+  EXPECT_GT(drag[1] / extrapolated, 1.2);
+  EXPECT_LT(drag[1] / extrapolated, 1.4);
+}
+
+/// Parachute of two dimensions in a stream along x: an arc of cloth of 6 m, held by two pairs of lines at a
+/// fixed payload. Cells of 0.2 m.
+CoupledCase parachute(double speed, double areal, bool impermeable) {
+  constexpr double h = 0.2, radius = 2.2, half_angle = 3.0 / radius, middle = 6.0;
+  constexpr int segments = 60;
+  CoupledCase c(80, 60, h, 0.0);
+  set_stream(c, speed);
+  c.p.flow.cfl = 0.25;
+  c.p.flow.max_dt = 0.01;
+  c.add_strip(0.0, 0.0, 0.0, 1.0, segments);
+  fabric::Parameters& cloth = c.p.fabric;
+  for (std::size_t i = 0; i < cloth.mesh.rest.size(); ++i) {
+    const double phi = half_angle * (2.0 * cloth.mesh.rest[i][1] - 1.0);
+    cloth.mesh.rest[i] = {6.5 + radius * std::cos(phi), middle + radius * std::sin(phi),
+                          cloth.mesh.rest[i][2]};
+  }
+  c.set_mass(areal);
+  cloth.material.membrane_modulus = 2e4;
+  cloth.material.tension_only = true;
+  cloth.pinned.assign(cloth.mesh.rest.size(), 4);
+  for (const std::size_t end : {0, 2 * segments})
+    for (const std::size_t row : {0, 1}) {
+      const Vector place = {2.0, middle, cloth.mesh.rest[end + row][2]};
+      cloth.mesh.lines.push_back({static_cast<int>(end + row), static_cast<int>(cloth.mesh.rest.size())});
+      cloth.mesh.line_stiffness.push_back(2000.0);
+      cloth.mesh.rest.push_back(place);
+      cloth.mass.push_back(1.0);
+      cloth.pinned.push_back(7);
+    }
+  c.x = cloth.mesh.rest;
+  c.v.assign(c.x.size(), Vector{});
+  c.p.sheet.law.impermeable = impermeable;
+  return c;
+}
+
+/// Means over the second half of a run.
+struct Inflation {
+  double drag = 0.0;   ///< N/m
+  double noise = 0.0;  ///< of the force of a vertex, from the mean of its neighbours, relative to all
+  double open = 0.0;   ///< width of the mouth, m
+};
+
+Inflation inflate(double speed, double areal, bool impermeable, double defect_filter = 0.0) {
+  CoupledCase c = parachute(speed, areal, impermeable);
+  c.p.sheet.defect_filter = defect_filter;
+  CoupledRun run = started(c, speed);
+  constexpr int steps = 300;
+  Inflation mean;
+  EXPECT_TRUE(run.advance(steps));
+  for (int step = 0; step < steps; ++step) {
+    if (!run.advance(1)) {
+      ADD_FAILURE() << "step " << steps + step;
+      return mean;
+    }
+    std::vector<Vector> forces(run.vertices), x(run.vertices), v(run.vertices);
+    run.solver->forces(forces);
+    run.solver->download_cloth(x, v);
+    double square = 0.0, sum = 0.0;
+    std::vector<double> strength;
+    for (std::size_t i = 2; i < 120; i += 2)
+      strength.push_back(std::hypot(forces[i][0] + forces[i + 1][0], forces[i][1] + forces[i + 1][1]));
+    for (std::size_t k = 1; k + 1 < strength.size(); ++k) {
+      square += std::pow(strength[k] - 0.5 * (strength[k - 1] + strength[k + 1]), 2);
+      sum += strength[k];
+    }
+    const auto count = static_cast<double>(strength.size() - 2);
+    mean.noise += std::sqrt(square / count) / (sum / count) / steps;
+    mean.drag -= run.force()[0] / c.width() / steps;
+    mean.open += std::abs(x[120][1] - x[0][1]) / steps;
+  }
+  return mean;
+}
+
+TEST(Chute, HasTheDragOfItsLawWhateverTheMassOfItsCloth) {
+  const Inflation usual = inflate(10.0, 0.0373, false);
+  EXPECT_NEAR(usual.drag, 780.0, 80.0);
+  EXPECT_LT(usual.noise, 0.1);
+  for (const double areal : {0.00373, 0.373}) {
+    const Inflation found = inflate(10.0, areal, false);
+    EXPECT_NEAR(found.drag / usual.drag, 1.0, 0.1) << areal;
+    EXPECT_LT(found.noise, 0.1) << areal;
+  }
+  // Forces at six times the speed, with a stronger stretch and a smaller share of the linear term.
+  const Inflation fast = inflate(60.0, 0.0373, false);
+  EXPECT_NEAR(fast.drag / (36.0 * usual.drag), 1.0, 0.15);
+  EXPECT_LT(fast.noise, 0.1);
+  EXPECT_NEAR(inflate(10.0, 0.0373, false, 0.1).drag / usual.drag, 1.0, 0.1);
+}
+
+TEST(Chute, InflatesIfImpermeable) {
+  const double porous = inflate(10.0, 0.0373, false).drag;
+  for (const double defect_filter : {0.0, 0.1}) {
+    const Inflation found = inflate(10.0, 0.0373, true, defect_filter);
+    EXPECT_GT(found.drag, 1.2 * porous) << defect_filter;
+    EXPECT_LT(found.drag, 2.0 * porous) << defect_filter;
+    EXPECT_LT(found.noise, 2.0) << defect_filter;
+  }
+  const Inflation fast = inflate(60.0, 0.0373, true);
+  EXPECT_GT(fast.drag, 1.2 * 36.0 * porous);
+  EXPECT_LT(fast.noise, 2.0);
+}
+
+}  // namespace
+}  // namespace drogue::coupling
