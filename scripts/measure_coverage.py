@@ -7,7 +7,7 @@
 
 For a new fit of the constants in kernels/options/pide/error_estimate.hpp. The prices are those of finite differences, to each
 of the tolerances or on a given grid. References: for European options Fourier's integral (`--method cos`), which shares no part
-of the method; for American options finite differences on 2048 intervals with 1024 steps, or as `--reference` says. A row is
+of the method; for American options finite differences on 2048 intervals with 1024 steps, or on the grid of `--reference`. A row is
 undecided, and not counted, if one of both has no price, or the reference states an error above a tenth of the stated error to
 be tested. The table has, per model, style and tolerance: rows counted; the part that is covered; the quotient of stated and
 true error below which a tenth and half of the rows are; undecided rows. The median quotient is the overestimate. Rows of pure
@@ -96,7 +96,7 @@ def coverage(found, known):
 
 
 def measure(program, arguments, model, style):
-    """Coverage of random contracts of one model and style, per tolerance. The same seed gives the same contracts."""
+    """Yields the coverage of random contracts of one model and style, per tolerance. The same seed gives the same contracts."""
     draw = random.Random(f"{arguments.seed} {model} {style}")
     contracts = [random_contract(draw, model, style) for _ in range(arguments.rows)]
     pure = [k for k, contract in enumerate(contracts) if contract["variance"] == 0.0]
@@ -105,7 +105,6 @@ def measure(program, arguments, model, style):
     if style == "american" and arguments.reference:
         reference = ["--mesh", str(arguments.reference[0]), "--steps", str(arguments.reference[1])]
     backend = ["--backend", arguments.backend]
-    results = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         batch = folder / "batch.csv"
@@ -117,10 +116,9 @@ def measure(program, arguments, model, style):
         for tolerance in [None] if grid else arguments.tolerance:
             found = prices(program, batch, folder, [*(grid or ["--tolerance", str(tolerance)]), *backend])
             kind = {"style": style, "tolerance": tolerance}
-            results.append({"model": model} | kind | coverage(found, known))
+            yield {"model": model} | kind | coverage(found, known)
             if pure:
-                results.append({"model": PURE} | kind | coverage([found[k] for k in pure], [known[k] for k in pure]))
-    return results
+                yield {"model": PURE} | kind | coverage([found[k] for k in pure], [known[k] for k in pure])
 
 
 def line(result):
