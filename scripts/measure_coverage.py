@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """Measures how often the stated error of drogue-options covers the true one, on random contracts of every model.
 
-    scripts/measure_coverage.py [--program build/host/bin/drogue-options] [--rows 100] [--tolerance 1e-4] [--mesh M --steps N]
-                                [--models gh,kou] [--styles european] [--seed 1] [--backend auto] [--out FILE]
+    scripts/measure_coverage.py [--program build/host/bin/drogue-options] [--rows 100] [--tolerance 1e-4,1e-5]
+                                [--mesh M --steps N] [--models gh,kou] [--styles european] [--reference M N] [--seed 1]
+                                [--backend auto] [--out FILE]
 
-For a new fit of the constants in kernels/options/pide/error_estimate.hpp. The prices are those of finite differences, to the
-tolerance or on a given grid. References: for European options Fourier's integral (`--method cos`), which shares no part of the
-method; for American options finite differences on 2048 intervals with 1024 steps. A row is undecided, and not counted, if one of both has
-no price, or the reference states an error above a tenth of the stated error to be tested. The table has, per model and style:
-rows counted; the part that is covered; the quotient of stated and true error below which a tenth and half of the rows are;
-undecided rows. The median quotient is the overestimate.
+For a new fit of the constants in kernels/options/pide/error_estimate.hpp. The prices are those of finite differences, to each
+of the tolerances or on a given grid. References: for European options Fourier's integral (`--method cos`), which shares no part
+of the method; for American options finite differences on 2048 intervals with 1024 steps, or on the grid of `--reference`. A row is
+undecided, and not counted, if one of both has no price, or the reference states an error above a tenth of the stated error to
+be tested. The table has, per model, style and tolerance: rows counted; the part that is covered; the quotient of stated and
+true error below which a tenth and half of the rows are; undecided rows. The median quotient is the overestimate. Rows of pure
+jumps are also counted by themselves.
 """
 
 import argparse
@@ -24,6 +26,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+PURE = "gh, pure jumps"
 MODELS = ("gh", "black-scholes", "merton", "kou")
 STYLES = ("european", "american")
 REFERENCE = {"european": ["--method", "cos", "--tolerance", "1e-10"], "american": ["--mesh", "2048", "--steps", "1024"]}
@@ -93,26 +96,36 @@ def coverage(found, known):
 
 
 def measure(program, arguments, model, style):
-    """Coverage of random contracts of one model and style. The same seed gives the same contracts."""
+    """Yields the coverage of random contracts of one model and style, per tolerance. The same seed gives the same contracts."""
     draw = random.Random(f"{arguments.seed} {model} {style}")
+    contracts = [random_contract(draw, model, style) for _ in range(arguments.rows)]
+    pure = [k for k, contract in enumerate(contracts) if contract["variance"] == 0.0]
+    grid = ["--mesh", str(arguments.mesh), "--steps", str(arguments.steps)] if arguments.mesh else []
+    reference = REFERENCE[style]
+    if style == "american" and arguments.reference:
+        reference = ["--mesh", str(arguments.reference[0]), "--steps", str(arguments.reference[1])]
+    backend = ["--backend", arguments.backend]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         batch = folder / "batch.csv"
         with batch.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, COLUMNS)
             writer.writeheader()
-            writer.writerows({"id": i} | random_contract(draw, model, style) for i in range(arguments.rows))
-        grid = ["--mesh", str(arguments.mesh), "--steps", str(arguments.steps)] if arguments.mesh else []
-        backend = ["--backend", arguments.backend]
-        found = prices(program, batch, folder, [*(grid or ["--tolerance", str(arguments.tolerance)]), *backend])
-        known = prices(program, batch, folder, [*REFERENCE[style], *backend])
-    return {"model": model, "style": style} | coverage(found, known)
+            writer.writerows({"id": i} | contract for i, contract in enumerate(contracts))
+        known = prices(program, batch, folder, [*reference, *backend])
+        for tolerance in [None] if grid else arguments.tolerance:
+            found = prices(program, batch, folder, [*(grid or ["--tolerance", str(tolerance)]), *backend])
+            kind = {"style": style, "tolerance": tolerance}
+            yield {"model": model} | kind | coverage(found, known)
+            if pure:
+                yield {"model": PURE} | kind | coverage([found[k] for k in pure], [known[k] for k in pure])
 
 
 def line(result):
     """One row of the table."""
     numbers = ["-" if result[key] is None else f"{result[key]:.3g}" for key in ("covered", "tenth", "median")]
-    return f"{result['model']:14} {result['style']:9} {result['rows']:6} {numbers[0]:>8} {numbers[1]:>8} {numbers[2]:>8} {result['undecided']:10}"
+    tolerance = "-" if result["tolerance"] is None else f"{result['tolerance']:g}"
+    return f"{result['model']:14} {result['style']:9} {tolerance:>9} {result['rows']:6} {numbers[0]:>8} {numbers[1]:>8} {numbers[2]:>8} {result['undecided']:10}"
 
 
 def chosen(names, valid):
@@ -127,23 +140,26 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=ROOT / "build/host/bin/drogue-options")
     parser.add_argument("--rows", type=int, default=100, help="contracts per model and style")
-    parser.add_argument("--tolerance", type=float, default=1e-4, help="of the prices under test, as a fraction of the strike")
+    parser.add_argument("--tolerance", type=lambda text: [float(word) for word in text.split(",")], default=[1e-4],
+                        help="of the prices under test, as a fraction of the strike")
     parser.add_argument("--mesh", type=int, help="intervals of the prices under test; with --steps, instead of a tolerance")
     parser.add_argument("--steps", type=int)
     parser.add_argument("--models", type=lambda names: chosen(names, MODELS), default=MODELS)
     parser.add_argument("--styles", type=lambda names: chosen(names, STYLES), default=STYLES)
+    parser.add_argument("--reference", type=int, nargs=2, metavar=("MESH", "STEPS"), help="grid of the American references")
     parser.add_argument("--seed", type=int, default=1, help="of the random contracts")
     parser.add_argument("--backend", default="auto")
     parser.add_argument("--out", type=Path, help="JSON file for the table and the arguments")
     arguments = parser.parse_args()
     if (arguments.mesh is None) != (arguments.steps is None):
         parser.error("--mesh and --steps belong together")
-    print(f"{'model':14} {'style':9} {'rows':>6} {'covered':>8} {'tenth':>8} {'median':>8} {'undecided':>10}")
+    print(f"{'model':14} {'style':9} {'tolerance':>9} {'rows':>6} {'covered':>8} {'tenth':>8} {'median':>8} {'undecided':>10}")
     results = []
     for style in arguments.styles:
         for model in arguments.models:
-            results.append(measure(arguments.program, arguments, model, style))
-            print(line(results[-1]), flush=True)
+            for result in measure(arguments.program, arguments, model, style):
+                results.append(result)
+                print(line(result), flush=True)
     if arguments.out:
         record = {"arguments": vars(arguments) | {"program": str(arguments.program), "out": str(arguments.out)}, "table": results}
         arguments.out.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")

@@ -56,19 +56,28 @@ class Coverage(gas_program.GasTest):
 
     def test_prints_table_per_model_and_style(self):
         done, table = self.measure("--styles", "european", "--mesh", "128", "--steps", "32")
-        self.assertEqual(list(measure_coverage.MODELS), [entry["model"] for entry in table])
+        self.assertEqual(["gh", measure_coverage.PURE, *measure_coverage.MODELS[1:]], [entry["model"] for entry in table])
         self.assertEqual(1 + len(table), len(done.stdout.splitlines()))
+        pure = table.pop(1)
+        self.assertTrue(0 < pure["rows"] + pure["undecided"] < 8)
         for entry in table:
             self.assertEqual(8, entry["rows"] + entry["undecided"])
             self.assertGreaterEqual(entry["covered"], 0.5, entry)
             self.assertGreater(entry["median"], 1.0, entry)
-        self.assertEqual(table, self.measure("--styles", "european", "--mesh", "128", "--steps", "32")[1])
+        self.assertEqual([table[0], pure, *table[1:]],
+                         self.measure("--styles", "european", "--mesh", "128", "--steps", "32")[1])
         self.assertNotEqual(table, self.measure("--styles", "european", "--mesh", "128", "--steps", "32", "--seed", "2")[1])
 
     def test_compares_american_options_with_finer_grid(self):
-        (entry,) = self.measure("--styles", "american", "--models", "black-scholes", "--rows", "3")[1]
-        self.assertEqual((3, 0), (entry["rows"], entry["undecided"]))
-        self.assertGreater(entry["median"], 1.0)
+        words = ("--styles", "american", "--models", "black-scholes", "--rows", "3", "--tolerance", "1e-3,1e-4")
+        table = self.measure(*words)[1]
+        self.assertEqual([1e-3, 1e-4], [entry["tolerance"] for entry in table])
+        for entry in table:
+            self.assertEqual((3, 0), (entry["rows"], entry["undecided"]))
+            self.assertGreater(entry["median"], 1.0)
+        # A reference that is as coarse as the prices decides nothing.
+        coarse = self.measure(*words, "--reference", "64", "16")[1]
+        self.assertEqual(3, coarse[1]["undecided"], coarse)
 
     def test_finds_errors_that_are_stated_too_small(self):
         program = self.folder / "understating"
