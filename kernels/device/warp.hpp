@@ -11,17 +11,6 @@ inline constexpr int warp_lanes = 32;
 /// Barrier and memory fence of a warp.
 KOKKOS_INLINE_FUNCTION void warp_sync() { KOKKOS_IF_ON_DEVICE((__syncwarp();)) }
 
-/// Barrier and memory fence of `warps` warps of a team, the same ones at every call. A team has one such
-/// group.
-template <int warps>
-KOKKOS_INLINE_FUNCTION void sync_warps() {
-  if constexpr (warps == 1) {
-    warp_sync();
-  } else {
-    KOKKOS_IF_ON_DEVICE((asm volatile("barrier.sync.aligned 1, %0;" ::"n"(warps * warp_lanes) : "memory");))
-  }
-}
-
 /// Value of the lane `lane_offset` below in each group of `width` lanes; the lowest lanes keep their own.
 template <int width = warp_lanes>
 KOKKOS_INLINE_FUNCTION double shuffle_up(double value, int lane_offset) {

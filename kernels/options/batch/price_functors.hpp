@@ -22,27 +22,27 @@ struct PriceFunctor {
   }
 };
 
-/// Kernel for small batches, which would leave most of a GPU idle: a team of several warps per option. All
-/// warps prepare the data in separate memory. The last one then marches on the coarser grid, the
-/// `finer_warps` other ones on the finer grid.
-template <class ExecutionSpace, int fixed, JumpClass jump_class, int finer_warps>
-struct SmallBatchPriceFunctor {
+/// Kernel for small batches, which would leave most of a GPU idle: a team of two warps per option. Both warps
+/// prepare the data in separate memory. One warp then marches on the finer grid, the other one on the coarser
+/// grid.
+template <class ExecutionSpace, int fixed, JumpClass jump_class>
+struct TwoWarpPriceFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
 
   Batch batch;  ///< with two grids per price
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const typename Batch::Member& team) const {
     const std::size_t bytes = SolveMemory<double, fixed>::bytes(batch.mesh);
-    auto* const place = static_cast<std::byte*>(device::in_shared_memory(
-        team.team_scratch(batch.level).get_shmem_aligned((finer_warps + 1) * bytes, 64)));
-    const int rank = static_cast<int>(team.team_rank()), option = team.league_rank(), warp = rank / max_lanes;
-    const bool finer = warp < finer_warps;
-    const SolveMemory<double, fixed> memory(place + warp * bytes, batch.mesh),
-        coarser_memory(place + finer_warps * bytes, batch.mesh);
+    auto* const place = static_cast<std::byte*>(
+        device::in_shared_memory(team.team_scratch(batch.level).get_shmem_aligned(2 * bytes, 64)));
+    const int rank = static_cast<int>(team.team_rank()), option = team.league_rank();
+    const bool finer = rank < max_lanes;
+    const SolveMemory<double, fixed> memory(place + (finer ? 0 : bytes), batch.mesh),
+        coarser_memory(place + bytes, batch.mesh);
     const WarpThreadGroup<lanes_of(fixed), true> group(rank);
     const PreparedPack<double> prepared = batch.template prepare<jump_class>(group, memory, option);
     if (finer) {
-      batch.solve_fine(MarchingWarp<finer_warps>(rank, bytes), prepared, memory);
+      batch.solve_fine(group, prepared, memory);
     } else {
       const ErrorEstimate<double> estimate =
           estimate_solve_error(prepared.put, prepared.measure, prepared.jumps, prepared.grid, batch.steps);
@@ -52,7 +52,7 @@ struct SmallBatchPriceFunctor {
       });
     }
     team.team_barrier();
-    if (warp == 0)
+    if (finer)
       batch.write_prices(group, prepared, *coarser_memory.estimate(), memory,
                          coarser_memory.row(0, fixed / 2), coarser_memory, option);
   }
@@ -72,17 +72,11 @@ void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) 
       });
     };
     if (batch.record.time == nullptr) {
-      // Two warps per option if half a warp per option would leave half of the GPU's schedulers idle, three
-      // if each of them has a scheduler to itself.
-      const int few = space.concurrency() / (16 * max_lanes);
-      if (batch.mesh == 128 && !batch.single_grid && batch.count <= few)
+      // Two warps per option if half a warp per option would leave half of the GPU's schedulers idle.
+      if (batch.mesh == 128 && !batch.single_grid && batch.count <= space.concurrency() / (16 * max_lanes))
         return dispatch_jump_class(batch.model, [&]<JumpClass jump_class> {
-          if (4 * batch.count <= few)
-            launch_batch<128, 3>(space, "drogue::options::price by three warps",
-                                 SmallBatchPriceFunctor<ExecutionSpace, 128, jump_class, 2>{batch});
-          else
-            launch_batch<128, 2>(space, "drogue::options::price by two warps",
-                                 SmallBatchPriceFunctor<ExecutionSpace, 128, jump_class, 1>{batch});
+          launch_batch<128, 2>(space, "drogue::options::price by two warps",
+                               TwoWarpPriceFunctor<ExecutionSpace, 128, jump_class>{batch});
         });
       if (batch.mesh == 64) return launch.template operator()<64>();
       if (batch.mesh == 128) return launch.template operator()<128>();

@@ -78,21 +78,20 @@ struct RegisterRows {
   double* multiplier;   ///< Lagrange multiplier of split exercise
 };
 
-/// Sum over jumps at a lane's nodes, by `RegisterConvolution`, which uses all threads of a `single` option,
-/// or by `RegisterFourier`.
-template <int block, int lanes, bool transformed, bool single>
+/// Sum over jumps at a lane's nodes, by `RegisterConvolution`, `RegisterFourier` or `SharedFourier`.
+template <int block, int lanes, bool transformed>
 class JumpSum {
  public:
   /// Weights `w`, per year, in the order of a WeightLayout; `rows`: shared memory of the march.
-  KOKKOS_INLINE_FUNCTION JumpSum(const WarpThreadGroup<lanes, single>& group, const double* w,
-                                 const JumpSpectrum<double>& /*spectrum*/, const RegisterRows& rows)
-      : _lane(group.lane), _rows(rows), _convolution(group.thread, w, rows.value, rows.out, rows.other) {}
+  KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* w, const JumpSpectrum<double>& /*spectrum*/,
+                                 const RegisterRows& rows)
+      : _lane(lane), _rows(rows), _convolution(lane, w, rows.value, rows.out, rows.other) {}
 
   template <class ThreadGroup>
   KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const ThreadGroup& group,
                                                      const LaneNodes<block>& value) const {
     group.each_lane([&] { value.store(_lane, _rows.value); });
-    group.each([this](int /*thread*/) { _convolution(); });
+    group.each_lane(_convolution);
     LaneNodes<block> sum = LaneNodes<block>::load_swizzled(_lane, _rows.out);
     const LaneNodes<block> rest = LaneNodes<block>::load_swizzled(_lane, _rows.other);
     for (int m = 0; m < block; ++m) sum.node[m] += rest.node[m];
@@ -102,16 +101,23 @@ class JumpSum {
  private:
   int _lane;
   RegisterRows _rows;
-  static constexpr int per_lane = single ? max_lanes / lanes : 1;  ///< threads
-  RegisterConvolution<block / per_lane, lanes * per_lane> _convolution;
+  RegisterConvolution<block, lanes> _convolution;
 };
-template <int lanes>
-class JumpSum<8, lanes, true, false> : public RegisterFourier<lanes> {
+template <>  // for `halved`; 32 lanes of four nodes without transforms use the primary template
+class JumpSum<4, max_lanes, true> : public SharedFourier {
  public:
   /// Spectrum of the weights, per year; `rows`: shared memory of the march.
-  KOKKOS_INLINE_FUNCTION JumpSum(const WarpThreadGroup<lanes>& group, const double* /*w*/,
-                                 const JumpSpectrum<double>& spectrum, const RegisterRows& rows)
-      : RegisterFourier<lanes>(group.lane, spectrum, rows.value,
+  KOKKOS_INLINE_FUNCTION JumpSum(int thread, const double* /*w*/, const JumpSpectrum<double>& spectrum,
+                                 const RegisterRows& rows)
+      : SharedFourier(thread, spectrum, rows.value, reinterpret_cast<ComplexNumber<double>*>(rows.out)) {}
+};
+template <int lanes>
+class JumpSum<8, lanes, true> : public RegisterFourier<lanes> {
+ public:
+  /// Spectrum of the weights, per year; `rows`: shared memory of the march.
+  KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* /*w*/, const JumpSpectrum<double>& spectrum,
+                                 const RegisterRows& rows)
+      : RegisterFourier<lanes>(lane, spectrum, rows.value,
                                reinterpret_cast<ComplexNumber<double>*>(rows.out)) {}
 };
 
@@ -123,18 +129,20 @@ KOKKOS_INLINE_FUNCTION void swizzle(const ThreadGroup& group, double* nodes) {
   if (group.is_writer()) own.store_swizzled(group.lane, nodes);
 }
 
-/// Marches from expiry to maturity; leaves `jumps.exit_mass` and `exit_price` `swizzled`. `sum_over_jumps`: a
-/// JumpSum, or a SharedFourier with `halved`. `strike_value`: payoff at the strike as a fraction of it.
-/// Returns the last exercised node below the strike, -1 if there is none.
-template <int block, bool halved, int lanes, bool single, class Sum>
+/// Marches from expiry to maturity; leaves `jumps.exit_mass` and `exit_price` `swizzled`. `strike_value`:
+/// payoff at the strike as a fraction of it. Returns the last exercised node below the strike, -1 if there is
+/// none.
+template <int block, bool halved = false, int lanes, bool single>
 KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpThreadGroup<lanes, single>& group,
                                               const PutPack<double>& put, const Jumps<double>& jumps,
-                                              const Grid<double>& grid, const Sum& sum_over_jumps,
+                                              const Grid<double>& grid, const JumpSpectrum<double>& spectrum,
                                               const Scheme<double>& scheme, const StepTable<double>& table,
                                               const RegisterRows& rows, double strike_value) {
   using Own = LaneNodes<block>;
   const int lane = group.lane, strike = static_cast<int>(grid.strike);
   const double h = grid.h, reaction = -jumps.rate - put.rate;
+  const JumpSum<block, lanes, halved || is_transformed(lanes * block, lanes)> sum_over_jumps(lane, jumps.w,
+                                                                                             spectrum, rows);
   Own value, before{}, explicit_before{}, floor;
   DiscountFactors<double> discount{1.0, 1.0};
   if (group.is_writer()) before.store(lane, rows.multiplier);

@@ -244,25 +244,15 @@ KOKKOS_INLINE_FUNCTION MarchResult<R> march_nodes(const ThreadGroup& group, cons
     spectrum = spectrum_of(group, mesh, roots, jumps.w, memory.spectrum(mesh));
   if constexpr (fixed > 0) {
     const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.scratch};
-    const auto march = [&]<int block, bool halved>(const auto& threads, const auto& sum) -> MarchResult<R> {
+    const auto march = [&]<int block, bool halved>(const auto& threads) -> MarchResult<R> {
       return {rows.value, rows.other,
-              march_in_registers<block, halved>(threads, put, jumps, grid, sum, scheme, table, rows,
+              march_in_registers<block, halved>(threads, put, jumps, grid, spectrum, scheme, table, rows,
                                                 strike_value)};
     };
-    if constexpr (ThreadGroup::is_single && fixed == 8 * ThreadGroup::lanes) {
-      auto* const z = reinterpret_cast<ComplexNumber<R>*>(rows.out);
-      constexpr int last = ThreadGroup::warps - 1;
-      // No warp writes to the weights during a march or after it.
-      const SharedFourier<ThreadGroup::warps> sum(group, spectrum, rows.value, group.of_warp(last, memory.w),
-                                                  group.of_warp(0, z), group.of_warp(last, z));
-      group.sync_march();  // all warps have read their spectra, which are where the sums are computed
-      return march.template operator()<fixed / max_lanes, true>(WarpThreadGroup<>(group.thread), sum);
-    } else {
-      constexpr int lanes = ThreadGroup::lanes, block = fixed / lanes;
-      const JumpSum<block, lanes, is_transformed(fixed, lanes), ThreadGroup::is_single> sum(group, jumps.w,
-                                                                                            spectrum, rows);
-      return march.template operator()<block, false>(group, sum);
-    }
+    if constexpr (ThreadGroup::is_single && fixed == 8 * ThreadGroup::lanes)
+      return march.template operator()<fixed / max_lanes, true>(WarpThreadGroup<>(group.thread));
+    else
+      return march.template operator()<fixed / ThreadGroup::lanes, false>(group);
   } else {
     const March<R> march =
         march_in_memory(group, put, jumps, grid, spectrum, scheme, table, memory, strike_value, record);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include "kernels/device/pack.hpp"
 #include "kernels/device/warp.hpp"
 
@@ -94,29 +92,6 @@ struct WarpThreadGroup {
   KOKKOS_INLINE_FUNCTION bool all(bool condition) const {
     return lanes == max_lanes ? condition : device::warp_all(condition);
   }
-};
-
-/// A warp with one option, 16 lanes, and one of `count` warps that march on its grid of 128 nodes together.
-/// Each of them repeats the arithmetic of the others in memory of its own; they share the sums over jumps.
-template <int count>
-struct MarchingWarp : WarpThreadGroup<max_lanes / 2, true> {
-  static constexpr int warps = count;
-
-  int index;            ///< among these warps
-  std::ptrdiff_t step;  ///< bytes from the memory of a warp to that of the next one
-
-  KOKKOS_INLINE_FUNCTION MarchingWarp(int rank, std::size_t bytes)
-      : WarpThreadGroup<max_lanes / 2, true>(rank),
-        index(rank / max_lanes),
-        step(static_cast<std::ptrdiff_t>(bytes)) {}
-
-  /// Address in the memory of the warp `other` that corresponds to `own` in the memory of this one.
-  template <class T>
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION T* of_warp(int other, T* own) const {
-    return reinterpret_cast<T*>(reinterpret_cast<std::byte*>(own) + (other - index) * step);
-  }
-  /// Barrier of the warps that march together.
-  KOKKOS_INLINE_FUNCTION void sync_march() const { device::sync_warps<warps>(); }
 };
 
 /// Sums of the arrays f(lane) of all lanes, element by element.

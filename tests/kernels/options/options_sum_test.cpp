@@ -19,10 +19,10 @@ using Numbers = DeviceNumbers<Space>;
 using R = Number<Space>;
 constexpr int members = device::Access<R>::lanes;
 
-enum class Storage { in_memory, in_registers, shared_by_warp, shared_by_two_warps };
+enum class Storage { in_memory, in_registers, shared };
 
 /// Two groups of 16 lanes share a warp and sum in separate memory; the result of the first one is checked.
-/// With `shared_by_warp` all threads of a warp share octets, with `shared_by_two_warps` those of two.
+/// With `Storage::shared` all threads of a warp share octets.
 struct SumFunctor {
   int mesh, lanes;
   Storage storage;
@@ -33,8 +33,7 @@ struct SumFunctor {
       sum_on(SerialThreadGroup<R>{lanes}, 0);
     } else {
       const auto rank = static_cast<int>(team.team_rank());
-      if (storage == Storage::shared_by_warp) return sum_on(MarchingWarp<1>{rank, 0}, 0);
-      if (storage == Storage::shared_by_two_warps) return sum_on(MarchingWarp<2>{rank, 0}, rank / max_lanes);
+      if (storage == Storage::shared) return sum_on(WarpThreadGroup<max_lanes / 2, true>{rank}, 0);
       if (lanes == max_lanes) return sum_on(WarpThreadGroup<>{rank}, 0);
       sum_on(WarpThreadGroup<max_lanes / 2>{rank % lanes}, rank / lanes);
     }
@@ -51,17 +50,11 @@ struct SumFunctor {
     const JumpSpectrum<R> made = spectrum_of(group, mesh, FourierRoots::from_table(roots.data()), w, place);
     if constexpr (!device::is_host<Space>) {
       if constexpr (ThreadGroup::is_single) {
-        constexpr int last = ThreadGroup::warps - 1;
-        auto* const all = reinterpret_cast<double*>(sums.data());
-        auto* const first_z = reinterpret_cast<ComplexNumber<double>*>(work.data());
-        // A warp has its spectrum in registers, so that its memory can hold the values.
-        const SharedFourier<ThreadGroup::warps> sum_over_jumps(group, made, reinterpret_cast<double*>(place),
-                                                               all, first_z, first_z + last * padded(mesh));
-        group.sync_march();
-        const auto sum = sum_over_jumps(WarpThreadGroup<>(group.thread), LaneNodes<4>::load(group.thread, v));
-        group.sync_march();  // every warp has loaded the sums
-        if (group.index == last) sum.store(group.thread, all);
-        return;
+        const WarpThreadGroup<> threads(group.thread);
+        const auto own = LaneNodes<4>::load(group.thread, v);
+        const auto sum = SharedFourier(group.thread, made, to, z)(threads, own);
+        threads.sync();  // the two halves of a lane have swizzled places in common
+        return sum.store(group.thread, to);
       } else if (storage == Storage::in_registers) {
         const auto own = LaneNodes<8>::load(group.lane, v);
         return RegisterFourier<ThreadGroup::lanes>(group.lane, made, to, z)(group, own).store(group.lane, to);
@@ -103,9 +96,8 @@ void expect_plain_sums(int mesh, int lanes, Storage storage) {
                            on_backend<Space>(fourier_roots()),
                            Numbers("spectrum", room),
                            Numbers("work", room)};
-  const int threads =
-      device::is_host<Space> ? 1 : (storage == Storage::shared_by_two_warps ? 2 : 1) * max_lanes;
-  Kokkos::parallel_for("sum_test", Kokkos::TeamPolicy<Space>(1, threads), functor);
+  Kokkos::parallel_for("sum_test", Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : max_lanes),
+                       functor);
   const auto found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, sums);
   for (int k = 0; k < members; ++k) {
     double worst = 0.0;
@@ -129,8 +121,7 @@ TEST(OptionsSum, TransformsMatchDirectSums) {
   if (device::is_host<Space>) return;
   expect_plain_sums(256, max_lanes, Storage::in_registers);
   expect_plain_sums(128, lanes_of(128), Storage::in_registers);
-  expect_plain_sums(128, lanes_of(128), Storage::shared_by_warp);
-  expect_plain_sums(128, lanes_of(128), Storage::shared_by_two_warps);
+  expect_plain_sums(128, lanes_of(128), Storage::shared);
 }
 
 }  // namespace
