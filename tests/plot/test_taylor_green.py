@@ -60,7 +60,7 @@ class TaylorGreen(unittest.TestCase):
             verify = tomllib.loads((SCENES / f"{name}.toml").read_text(encoding="utf-8"))["verify"]
             for key, column in (("kinetic_energy_curve", 0), ("dissipation_curve", 1)):
                 points = [point for curve in verify[key] for point in curve["points"]]
-                self.assertEqual(list(range(1, 9)), [time for time, _ in points], (name, key))
+                self.assertEqual(list(range(1, 10)), [time for time, _ in points], (name, key))
                 for time, value in points:
                     self.assertAlmostEqual(1, value / table[time][column], delta=5e-5, msg=f"{name} {key} {time}")
 

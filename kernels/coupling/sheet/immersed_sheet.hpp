@@ -165,8 +165,9 @@ class ImmersedSheet {
   /// Sets the force and the acceleration of the air to zero, as before the first step. Asynchronous. Does not
   /// throw.
   void forget_steps(const ExecutionSpace& space) const {
-    for (const Vectors& part : {_filtered.mean, _filtered.defect, _filtered.sum})
-      Kokkos::deep_copy(space, part, 0.0);
+    Kokkos::deep_copy(space, _filtered.mean, 0.0);
+    Kokkos::deep_copy(space, _filtered.defect, 0.0);
+    Kokkos::deep_copy(space, _filtered.sum, 0.0);
     Kokkos::deep_copy(space, _force, 0.0);
     if (_sharp)
       for (const auto& faces : _sharp->acceleration().component) Kokkos::deep_copy(space, faces, 0.0);
