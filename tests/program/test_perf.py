@@ -690,7 +690,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "transfers", "--architecture", "sm_90"],
                              "the table transfers does not use --architecture; it is for the table occupancy"),
                             (["table", "machine", "--app", "gas"],
-                             "it is for the tables occupancy, kernels, block-size, transfers, scaling, abstraction, pressure, memory"),
+                             "it is for the tables occupancy, block-size, transfers, scaling, abstraction, pressure, memory"),
                             (["table", "occupancy", "--backend", "serial"],
                              "it is for the tables machine, block-size, transfers, scaling, abstraction, pressure, memory"),
                             (["table", "scaling", "--over", "nodes"], "nodes"),
