@@ -23,12 +23,20 @@ struct Control {
   std::uint64_t first_failure;  ///< least cell whose predicted velocity is not finite, or `no_failure`
   int pressure_failed;          ///< 1 after an iterative pressure solver did not converge
   int failed_side;              ///< 1 + a side whose prescribed velocity is not finite; 0: none
+  int is_unbalanced;            ///< 1 if `net_inflow` is more than round-off
+  double net_inflow;            ///< m^3/s, of velocities that change in time where no side is an outflow
+  double inflow_magnitude;      ///< m^3/s, sum of the magnitudes of the parts of `net_inflow`
 
   /// True if the step must leave the state as it is. Does not throw.
   [[nodiscard]] KOKKOS_FUNCTION bool has_failed() const {
-    return first_failure != no_failure || pressure_failed != 0 || failed_side != 0;
+    return first_failure != no_failure || pressure_failed != 0 || failed_side != 0 || is_unbalanced != 0;
   }
 };
+
+/// 1 if a net inflow, m^3/s, is more than the round-off of parts with this sum of magnitudes, else 0.
+KOKKOS_INLINE_FUNCTION int is_unbalanced(double net_inflow, double magnitude) {
+  return Kokkos::fabs(net_inflow) > 1e-10 * magnitude ? 1 : 0;
+}
 
 /// Constants that determine dt.
 struct StepConstants {

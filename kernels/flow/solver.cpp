@@ -60,6 +60,8 @@ const char* failure_text(FailureReason reason) {
       return "no time step is admissible";
     case FailureReason::pressure_solver:
       return "the pressure solver did not converge";
+    case FailureReason::net_inflow:
+      return "the prescribed velocities have a net inflow, but no side is an outflow";
   }
   return "";
 }

@@ -178,6 +178,13 @@ class Failures(parachute_program.FlowTest):
             self.assertRegex(message, r"did not converge at the initial projection, t = 0 s; .*flow.pressure_tolerance above 1e-300\n$")
             self.assertNotIn("nan", message)
 
+    def test_net_inflow_between_the_checked_times_is_a_failure(self):
+        sets = ['fluid.velocity=["abs(t-0.0325)<0.0025 ? 1 : 0", 0, 0]', 'grid.boundary.x=["inflow", "wall"]',
+                "run.end_time=0.1", "run.max_dt=0.001", "output={}"]
+        message = self.expect(4, self.write(GUST), *QUIET, sets=sets).stderr
+        self.assertRegex(message, r"net inflow, but no side is an outflow at step \d+, t = 0\.0\d+ s, .*: \S+ m\^3/s; .*\"outflow\" side\n$")
+        self.assertLess(self.result("out")["time"], 0.031)
+
     def test_inflow_that_becomes_undefined_is_a_failure(self):
         message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["sqrt(0.2-t)+1", 0, 0]']).stderr
         self.assertRegex(message, r"the prescribed velocity is not finite on the side x_low at step \d+, t = ")
