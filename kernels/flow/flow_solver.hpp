@@ -428,7 +428,7 @@ template <class ExecutionSpace>
 StepFailure FlowSolver<ExecutionSpace>::failure() {
   const Control control = read_control();
   StepFailure failure{
-      {FailureReason::time_step, -1, control.now.step + 1, control.now.time, control.trial.dt}, 0.0};
+      {FailureReason::time_step, -1, control.now.step + 1, control.now.time, control.trial.dt}, 0.0, 0.0};
   if (control.failed_side != 0) {
     failure.reason = FailureReason::side_velocity;
     failure.index = control.failed_side - 1;
@@ -440,6 +440,7 @@ StepFailure FlowSolver<ExecutionSpace>::failure() {
     failure.index = static_cast<std::int64_t>(control.first_failure);
   } else if (control.pressure_failed != 0) {
     failure.reason = FailureReason::pressure_solver;
+    failure.pressure_residual = control.pressure_residual;
   } else if (!std::isfinite(Kokkos::bit_cast<double>(control.next_rate))) {
     failure.reason = FailureReason::not_finite;
   }
@@ -780,7 +781,7 @@ void FlowSolver<ExecutionSpace>::enqueue_pressure(const ExecutionSpace& space,
   launch_divergence(space, setup);
   if (!_pressure_equation->enqueue_solve(_divergence, unknown()))
     device::launch_each(space, "drogue::flow::pressure_failure", 1,
-                        PressureFailureFunctor<ExecutionSpace>{_control});
+                        PressureFailureFunctor<ExecutionSpace>{_control, last_pressure_solve()->residual});
 }
 
 template <class ExecutionSpace>

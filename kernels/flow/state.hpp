@@ -23,7 +23,8 @@ enum class FailureReason : int {
 
 /// First failed step of a run.
 struct StepFailure : stepping::StepFailure<FailureReason> {
-  double net_inflow = 0.0;  ///< m^3/s
+  double net_inflow = 0.0;         ///< m^3/s
+  double pressure_residual = 0.0;  ///< as `PressureSolve::residual`, of the solve that did not converge
 };
 
 /// Progress of a run. A restart that restores it and all `state_fields` continues bit for bit.
