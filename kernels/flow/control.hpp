@@ -49,6 +49,9 @@ struct StepConstants {
   std::int64_t max_steps;
 };
 
+/// Part of the limit of explicit diffusion that a variable dt may reach.
+inline constexpr double diffusive_reserve = 0.9;
+
 /// Largest dt of the next step that is stable, s; NaN if the velocity is not finite. Implicit diffusion damps
 /// the waves that the explicit advection amplifies while rate^2 dt is at most twice `damping_rate`.
 KOKKOS_INLINE_FUNCTION double stable_dt(const Progress& now, const StepConstants& k) {
@@ -66,7 +69,7 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
   if (!(rate >= 0.0)) return rate;  // NaN
   // Advection and diffusion share the stability region: the sum of their rates limits dt. A tenth is kept in
   // reserve for the dissipation of upwind-biased fluxes.
-  const double dt = 1.0 / (rate / k.cfl + 1.0 / (0.9 * k.diffusive_dt));
+  const double dt = 1.0 / (rate / k.cfl + 1.0 / (diffusive_reserve * k.diffusive_dt));
   return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
 }
 

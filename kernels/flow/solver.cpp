@@ -6,6 +6,8 @@
 
 #include "kernels/device/allocate.hpp"
 #include "kernels/device/block_size.hpp"
+#include "kernels/flow/diffusive_step.hpp"
+#include "kernels/flow/step_constants.hpp"
 
 namespace drogue::flow {
 
@@ -48,6 +50,10 @@ std::array<int, 3> extents(const Parameters& p, StateField field) {
   const std::size_t axis = static_cast<std::size_t>(field) % 3;
   if (p.cells[axis] > 1 && p.boundary[2 * axis].kind != BoundaryKind::periodic) ++shape[axis];
   return shape;
+}
+
+double largest_diffusive_dt(const Parameters& p) {
+  return diffusive_reserve * step_constants(p, make_grid(p)).diffusive_dt;
 }
 
 const char* failure_text(FailureReason reason) {

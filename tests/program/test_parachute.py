@@ -185,6 +185,15 @@ class Failures(parachute_program.FlowTest):
         self.assertRegex(message, r"net inflow, but no side is an outflow at step \d+, t = 0\.0\d+ s, .*: \S+ m\^3/s; .*\"outflow\" side\n$")
         self.assertLess(self.result("out")["time"], 0.031)
 
+    def test_viscosity_that_needs_too_many_steps_is_noticed(self):
+        sets = ["fluid.viscosity=1e12", "run.max_steps=3", "output={}"]
+        process = self.start(self.write(GUST), *QUIET[1:], sets=sets)
+        self.assertEqual(4, process.returncode)
+        self.assertRegex(process.stderr, r"viscosity limits a step to \S+ s, .*crank-nicolson")
+        for quiet in ([*sets, "flow.time='ab2'", "flow.diffusion='crank-nicolson'"], sets):
+            words = QUIET if quiet is sets else QUIET[1:]
+            self.assertNotIn("viscosity", self.expect(4, self.write(GUST), *words, "--overwrite", sets=quiet).stderr)
+
     def test_inflow_that_becomes_undefined_is_a_failure(self):
         message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["sqrt(0.2-t)+1", 0, 0]']).stderr
         self.assertRegex(message, r"the prescribed velocity is not finite on the side x_low at step \d+, t = ")
