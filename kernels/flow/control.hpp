@@ -23,12 +23,21 @@ struct Control {
   std::uint64_t first_failure;  ///< least cell whose predicted velocity is not finite, or `no_failure`
   int pressure_failed;          ///< 1 after an iterative pressure solver did not converge
   int failed_side;              ///< 1 + a side whose prescribed velocity is not finite; 0: none
+  int is_unbalanced;            ///< 1 if `net_inflow` is more than round-off
+  double pressure_residual;     ///< relative residual of the solve that did not converge
+  double net_inflow;            ///< m^3/s, of velocities that change in time where no side is an outflow
+  double inflow_magnitude;      ///< m^3/s, sum of the magnitudes of the parts of `net_inflow`
 
   /// True if the step must leave the state as it is. Does not throw.
   [[nodiscard]] KOKKOS_FUNCTION bool has_failed() const {
-    return first_failure != no_failure || pressure_failed != 0 || failed_side != 0;
+    return first_failure != no_failure || pressure_failed != 0 || failed_side != 0 || is_unbalanced != 0;
   }
 };
+
+/// 1 if a net inflow, m^3/s, is more than the round-off of parts with this sum of magnitudes, else 0.
+KOKKOS_INLINE_FUNCTION int is_unbalanced(double net_inflow, double magnitude) {
+  return Kokkos::fabs(net_inflow) > 1e-10 * magnitude ? 1 : 0;
+}
 
 /// Constants that determine dt.
 struct StepConstants {
@@ -39,6 +48,9 @@ struct StepConstants {
   double damping_rate;  ///< 1/s, of implicit diffusion: nu / h^2 with the largest h; 0 if explicit
   std::int64_t max_steps;
 };
+
+/// Part of the limit of explicit diffusion that a variable dt may reach.
+inline constexpr double diffusive_reserve = 0.9;
 
 /// Largest dt of the next step that is stable, s; NaN if the velocity is not finite. Implicit diffusion damps
 /// the waves that the explicit advection amplifies while rate^2 dt is at most twice `damping_rate`.
@@ -57,7 +69,7 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
   if (!(rate >= 0.0)) return rate;  // NaN
   // Advection and diffusion share the stability region: the sum of their rates limits dt. A tenth is kept in
   // reserve for the dissipation of upwind-biased fluxes.
-  const double dt = 1.0 / (rate / k.cfl + 1.0 / (0.9 * k.diffusive_dt));
+  const double dt = 1.0 / (rate / k.cfl + 1.0 / (diffusive_reserve * k.diffusive_dt));
   return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
 }
 

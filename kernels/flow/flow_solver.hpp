@@ -18,6 +18,7 @@
 #include "kernels/flow/halo/halo.hpp"
 #include "kernels/flow/observables/sample.hpp"
 #include "kernels/flow/observables/totals.hpp"
+#include "kernels/flow/projection/net_inflow.hpp"
 #include "kernels/flow/projection/pressure_equation.hpp"
 #include "kernels/flow/projection/projection.hpp"
 #include "kernels/flow/shift_frame.hpp"
@@ -142,6 +143,7 @@ class FlowSolver {
   Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
   void finish_ghosts(const ExecutionSpace& space, const Values& velocity) const;
+  void enqueue_net_inflow(const ExecutionSpace& space) const;
   void enqueue_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) const;
   void enqueue_eddy_viscosity(const ExecutionSpace& space, const Values& velocity) const;
   void enqueue_rates(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
@@ -168,6 +170,7 @@ class FlowSolver {
   MacGrid _grid;
   mutable std::optional<Halo<ExecutionSpace>> _halo;  ///< only on several ranks
   BoundaryTables<ExecutionSpace> _boundary;
+  bool _checks_inflow;  ///< inflows change in time, and the pressure equation has no solution with a net one
   StepConstants _constants{};
   std::array<double, 3> _acceleration{};    ///< m/s^2
   std::array<double, 3> _frame_velocity{};  ///< m/s
@@ -198,6 +201,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
       _ranks((check_parameters(parameters), ranks_of(parameters, group.size(), group.rank()))),
       _grid(make_grid(parameters, _ranks)),
       _boundary(instance.space(), _grid, sides_of(parameters, _ranks)),
+      _checks_inflow(pressure_problem(parameters).is_singular() && inflow_changes(parameters.boundary)),
       _loop(instance),
       // Messages and an iterative solver wait for the host in every step, which a graph cannot hold.
       _launcher(instance, parameters.pressure_solver == PressureSolver::hypre_pfmg || group.size() > 1
@@ -338,7 +342,7 @@ void FlowSolver<ExecutionSpace>::solve_present_pressure() {
   control.trial.dt = fraction * (admissible > 0.0 && admissible < longest ? admissible : longest);
   control.trial.stop = Stop::running;
   control.first_failure = no_failure;
-  control.pressure_failed = control.failed_side = 0;
+  control.pressure_failed = control.failed_side = control.is_unbalanced = 0;
   write_control(control);
   MomentumSetup<ExecutionSpace> setup = momentum_setup(kinematic_viscosity());
   setup.weights = {0.0, 1.0, false};
@@ -372,6 +376,7 @@ void FlowSolver<ExecutionSpace>::start() {
   control.first_failure = no_failure;
   write_control(control);
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  enqueue_net_inflow(space());
   for (int axis = 0; axis < 3; ++axis)
     if (_grid.n[axis] == 1 && _boundary.conditions().kind[2 * axis] == BoundaryKind::slip)
       Kokkos::deep_copy(
@@ -387,7 +392,7 @@ void FlowSolver<ExecutionSpace>::start() {
   enqueue_projection(space(), projection);
   finish_ghosts(space(), _velocity);
   enqueue_eddy_viscosity(space(), _velocity);
-  if (_halo) _halo->agree(space(), _control);
+  if (_halo) _halo->agree(space(), _control, _checks_inflow);
   Kokkos::deep_copy(space(), _pressure, 0.0);  // the first step has no pressure of a previous one
   control = read_control();
   control.now.rate = control.has_failed()
@@ -422,15 +427,20 @@ void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
 template <class ExecutionSpace>
 StepFailure FlowSolver<ExecutionSpace>::failure() {
   const Control control = read_control();
-  StepFailure failure{FailureReason::time_step, -1, control.now.step + 1, control.now.time, control.trial.dt};
+  StepFailure failure{
+      {FailureReason::time_step, -1, control.now.step + 1, control.now.time, control.trial.dt}, 0.0, 0.0};
   if (control.failed_side != 0) {
     failure.reason = FailureReason::side_velocity;
     failure.index = control.failed_side - 1;
+  } else if (control.is_unbalanced != 0) {
+    failure.reason = FailureReason::net_inflow;
+    failure.net_inflow = control.net_inflow;
   } else if (control.first_failure != no_failure) {
     failure.reason = FailureReason::not_finite;
     failure.index = static_cast<std::int64_t>(control.first_failure);
   } else if (control.pressure_failed != 0) {
     failure.reason = FailureReason::pressure_solver;
+    failure.pressure_residual = control.pressure_residual;
   } else if (!std::isfinite(Kokkos::bit_cast<double>(control.next_rate))) {
     failure.reason = FailureReason::not_finite;
   }
@@ -625,6 +635,14 @@ void FlowSolver<ExecutionSpace>::finish_ghosts(const ExecutionSpace& space, cons
     launch_ghosts(space, _grid, _boundary.conditions(), velocity, _control);
 }
 
+/// Net inflow of the present values of the sides, if it may change and must be zero.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_net_inflow(const ExecutionSpace& space) const {
+  if (_checks_inflow)
+    launch_net_inflow(space,
+                      NetInflowFunctor<ExecutionSpace>{_grid, _boundary.conditions(), _control, !_halo});
+}
+
 /// Momentum stage. On several ranks, cells that need no other rank come first, while the messages are under
 /// way.
 template <class ExecutionSpace>
@@ -683,7 +701,7 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
     enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
   }
   enqueue_eddy_viscosity(space, _velocity);
-  if (_halo) _halo->agree(space, _control);
+  if (_halo) _halo->agree(space, _control, _checks_inflow);
   Kokkos::parallel_for("drogue::flow::finish_step", one_thread(space),
                        FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
 }
@@ -711,6 +729,7 @@ void FlowSolver<ExecutionSpace>::enqueue_rates(const ExecutionSpace& space,
                                                    _eddy_acceleration, _control});
   enqueue_momentum(space, setup);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
+  enqueue_net_inflow(space);
   launch_boundary_faces(space, setup, _boundary.conditions());
 }
 
@@ -762,7 +781,7 @@ void FlowSolver<ExecutionSpace>::enqueue_pressure(const ExecutionSpace& space,
   launch_divergence(space, setup);
   if (!_pressure_equation->enqueue_solve(_divergence, unknown()))
     device::launch_each(space, "drogue::flow::pressure_failure", 1,
-                        PressureFailureFunctor<ExecutionSpace>{_control});
+                        PressureFailureFunctor<ExecutionSpace>{_control, last_pressure_solve()->residual});
 }
 
 template <class ExecutionSpace>
@@ -770,7 +789,8 @@ void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
                                                     const ProjectionSetup<ExecutionSpace>& setup) const {
   enqueue_pressure(space, setup);
   if (_halo) {
-    _halo->agree(space, _control);  // no rank may overwrite the state if another one has failed
+    // No rank may overwrite the state if another one has failed.
+    _halo->agree(space, _control, _checks_inflow);
     _halo->exchange_pressure(space, unknown());
   }
   launch_correction(space, setup);

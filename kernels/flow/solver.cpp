@@ -6,6 +6,8 @@
 
 #include "kernels/device/allocate.hpp"
 #include "kernels/device/block_size.hpp"
+#include "kernels/flow/diffusive_step.hpp"
+#include "kernels/flow/step_constants.hpp"
 
 namespace drogue::flow {
 
@@ -50,6 +52,10 @@ std::array<int, 3> extents(const Parameters& p, StateField field) {
   return shape;
 }
 
+double largest_diffusive_dt(const Parameters& p) {
+  return diffusive_reserve * step_constants(p, make_grid(p)).diffusive_dt;
+}
+
 const char* failure_text(FailureReason reason) {
   switch (reason) {
     case FailureReason::not_finite:
@@ -60,6 +66,8 @@ const char* failure_text(FailureReason reason) {
       return "no time step is admissible";
     case FailureReason::pressure_solver:
       return "the pressure solver did not converge";
+    case FailureReason::net_inflow:
+      return "the prescribed velocities have a net inflow, but no side is an outflow";
   }
   return "";
 }

@@ -18,9 +18,14 @@ enum class FailureReason : int {
   /// `StepFailure::dt` then holds.
   time_step,
   pressure_solver,  ///< an iterative pressure solver did not converge
+  net_inflow,       ///< `StepFailure::net_inflow` enters through prescribed sides, but no side is an outflow
 };
 
-using StepFailure = stepping::StepFailure<FailureReason>;
+/// First failed step of a run.
+struct StepFailure : stepping::StepFailure<FailureReason> {
+  double net_inflow = 0.0;         ///< m^3/s
+  double pressure_residual = 0.0;  ///< as `PressureSolve::residual`, of the solve that did not converge
+};
 
 /// Progress of a run. A restart that restores it and all `state_fields` continues bit for bit.
 struct Progress : stepping::AdaptiveTime {

@@ -35,7 +35,8 @@ inline StepConstants step_constants(const Parameters& parameters, const MacGrid&
   // Rates of advection are divided by the CFL number: the standard one, or, of a fixed dt, the largest.
   if (parameters.turbulence != Turbulence::none)
     constants.eddy_weight =
-        4.0 * squares / interval * (parameters.fixed_dt > 0.0 ? constants.stable_cfl : constants.cfl / 0.9);
+        4.0 * squares / interval *
+        (parameters.fixed_dt > 0.0 ? constants.stable_cfl : constants.cfl / diffusive_reserve);
   // Implicit diffusion does not damp the velocity on outflows.
   const bool has_outflow = std::ranges::any_of(
       parameters.boundary, [](const Boundary& side) { return side.kind == BoundaryKind::outflow; });

@@ -25,11 +25,16 @@ struct BeginAdvanceFunctor {
   }
 };
 
-/// Records that the pressure solver did not converge.
+/// Records that the pressure solver did not converge, with the relative residual that it reached first.
 template <class ExecutionSpace>
 struct PressureFailureFunctor {
   ControlView<ExecutionSpace> control;
-  KOKKOS_FUNCTION void operator()(int) const { control().pressure_failed = 1; }
+  double residual;
+  KOKKOS_FUNCTION void operator()(int) const {
+    Control& c = control();
+    if (c.pressure_failed == 0) c.pressure_residual = residual;
+    c.pressure_failed = 1;
+  }
 };
 
 /// Last kernel of a step: accepts it or stops the run.

@@ -1,6 +1,10 @@
 #include "miniapps/parachute/app.hpp"
 
+#include <sstream>
+
+#include "common/program/program.hpp"
 #include "kernels/fabric/host_threads.hpp"
+#include "kernels/flow/diffusive_step.hpp"
 #include "kernels/flow/host_threads.hpp"
 #include "miniapps/framework/metrics.hpp"
 #include "miniapps/framework/typed_scene.hpp"
@@ -13,6 +17,18 @@
 namespace drogue::parachute_app {
 namespace {
 
+/// Prints a notice if explicit diffusion alone needs more steps than a run may take.
+void print_diffusive_limit(const FlowScene& scene) {
+  constexpr double many_steps = 1e7;
+  const double dt = flow::largest_diffusive_dt(scene.parameters), steps = scene.end_time / dt;
+  if (scene.parameters.fixed_dt > 0.0 || !(steps > many_steps)) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "viscosity limits a step to " << dt << " s, so that the run needs more than " << steps
+       << " of them; flow.diffusion = \"crank-nicolson\" has no such limit";
+  print_notice("drogue-parachute", text.str());
+}
+
 /// A flow, or a cloth drop.
 class ParachuteScene final : public framework::TypedScene<FlowScene, Simulation> {
  public:
@@ -21,6 +37,7 @@ class ParachuteScene final : public framework::TypedScene<FlowScene, Simulation>
   [[nodiscard]] std::unique_ptr<framework::Simulation> create(
       const framework::SimulationSettings& settings) const override {
     if (!content().has_fluid()) return std::make_unique<ClothSimulation>(content(), settings);
+    if (!settings.quiet) print_diffusive_limit(content());
     return TypedScene::create(settings);
   }
 

@@ -102,6 +102,8 @@ BAD_LINES = [
     (11, 'wall_velocity = { y_low = ["log(x-1)", 0, 0] }', 11, ["grid.wall_velocity.y_low[0]", "not finite", "y_low"]),
     (13, 'velocity = ["1/x", 0, 0]', 13, ["initial.velocity[0]", "not finite", "(0.0, "]),
     (13, 'velocity = ["t", 0, 0]', 13, ["initial.velocity[0]", '"t"']),
+    (33, 'exact = { x = 1, y = "0/0", z = 0 }', 33, ["verify.exact.y", "not finite", "run.end_time"]),
+    (33, 'exact = { x = 1, y = 0, z = 0, pressure = "log(-t)" }', 33, ["verify.exact.pressure", "not finite"]),
     (6, 'velocity = ["1+q", 0, 0]', 6, ["fluid.velocity[0]", '"q"']),
     (6, 'velocity = ["1+", 0, 0]', 6, ["fluid.velocity[0]", "at character"]),
     # contradictions

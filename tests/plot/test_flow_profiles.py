@@ -114,6 +114,16 @@ class FlowProfiles(unittest.TestCase):
         np.testing.assert_allclose(deviation, np.where(places > 0.5, 0.25, 0), atol=1e-14)
         self.assertEqual(0.5, found[1].tolerance)
 
+    def test_exact_velocity_is_that_of_the_centre_of_two_faces(self):
+        """The mean of x^2 at both faces is larger than x^2 at the centre by a quarter of the squared width."""
+
+        def of_faces(time, x, y, z):
+            faces = [(x + side * LENGTHS[0] / 32) ** 2 for side in (-1, 1)]
+            return {"velocity": np.stack([sum(faces) / 2, 0 * x, 0 * x], axis=-1)}
+
+        (found,) = self.comparisons_of(of_faces, '[verify]\nlinf_velocity = 0.5\nexact = { x = "x^2", y = 0, z = 0 }\n')
+        np.testing.assert_allclose(found.deviations()[1], 0, atol=1e-14)
+
     def test_velocities_are_expected_at_end_only(self):
         run = read_run(self.run_of(exact, EXACT + POINTS, times=(1.0, 2.0)))
         self.assertEqual([0, 4], [len(comparisons(run, snapshot)) for snapshot in run.snapshots])

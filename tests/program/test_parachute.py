@@ -175,8 +175,24 @@ class Failures(parachute_program.FlowTest):
             message = self.expect(4, "cavity", *QUIET, "--overwrite", sets=[
                 "flow.pressure='hypre-pfmg'", "flow.pressure_tolerance=1e-300", f"run.dt={step}",
                 "initial.velocity=['sin(3*x)*cos(2*y)', 'cos(x)*y', 0]"]).stderr
-            self.assertRegex(message, r"did not converge at the initial projection, t = 0 s; .*flow.pressure_tolerance above 1e-300\n$")
+            self.assertRegex(message, r"did not converge at the initial projection, t = 0 s; its relative residual is [0-9.]+e-1[0-9]: .*flow.pressure_tolerance above 1e-300\n$")
             self.assertNotIn("nan", message)
+
+    def test_net_inflow_between_the_checked_times_is_a_failure(self):
+        sets = ['fluid.velocity=["abs(t-0.0325)<0.0025 ? 1 : 0", 0, 0]', 'grid.boundary.x=["inflow", "wall"]',
+                "run.end_time=0.1", "run.max_dt=0.001", "output={}"]
+        message = self.expect(4, self.write(GUST), *QUIET, sets=sets).stderr
+        self.assertRegex(message, r"net inflow, but no side is an outflow at step \d+, t = 0\.0\d+ s, .*: \S+ m\^3/s; .*\"outflow\" side\n$")
+        self.assertLess(self.result("out")["time"], 0.031)
+
+    def test_viscosity_that_needs_too_many_steps_is_noticed(self):
+        sets = ["fluid.viscosity=1e12", "run.max_steps=3", "output={}"]
+        process = self.start(self.write(GUST), *QUIET[1:], sets=sets)
+        self.assertEqual(4, process.returncode)
+        self.assertRegex(process.stderr, r"viscosity limits a step to \S+ s, .*crank-nicolson")
+        for quiet in ([*sets, "flow.time='ab2'", "flow.diffusion='crank-nicolson'"], sets):
+            words = QUIET if quiet is sets else QUIET[1:]
+            self.assertNotIn("viscosity", self.expect(4, self.write(GUST), *words, "--overwrite", sets=quiet).stderr)
 
     def test_inflow_that_becomes_undefined_is_a_failure(self):
         message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["sqrt(0.2-t)+1", 0, 0]']).stderr

@@ -78,8 +78,8 @@ class Halo {
   [[nodiscard]] const double* pressure_below(std::size_t axis) const { return _below[axis]; }
 
   /// Gives all ranks the least failed cell, the largest rate, and the failures of a pressure solver and a
-  /// side.
-  void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view) const {
+  /// side. `checks_inflow`: whether to fail for the net inflow of all ranks.
+  void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view, bool checks_inflow) const {
     Control control;
     device::copy_out(space, &control, view, 1);
     space.fence("drogue::flow::halo: read control");
@@ -97,6 +97,12 @@ class Halo {
     control.failed_side = static_cast<int>(values[3]);
     control.eddy_viscosity = values[4];
     control.side_acceleration = values[5];
+    if (checks_inflow && control.is_unbalanced == 0) {
+      std::array<double, 2> inflow = {control.net_inflow, control.inflow_magnitude};
+      _group.sum(inflow);
+      control.is_unbalanced = is_unbalanced(inflow[0], inflow[1]);
+      if (control.is_unbalanced != 0) control.net_inflow = inflow[0];
+    }
     device::copy_in(space, view, &control, 1);
     space.fence("drogue::flow::halo: write control");
   }

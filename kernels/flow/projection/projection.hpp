@@ -46,6 +46,10 @@ struct ProjectionSetup {
   [[nodiscard]] KOKKOS_FUNCTION bool is_outflow(int side) const {
     return boundary.kind[side] == BoundaryKind::outflow;
   }
+  /// True for a side that other ranks continue.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_neighbour(int side) const {
+    return boundary.kind[side] == BoundaryKind::neighbour;
+  }
 };
 
 /// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that all components of the
@@ -87,7 +91,8 @@ struct DivergenceFunctor {
 };
 
 /// Subtracts the pressure gradient; reduces the maximum of |u|/hx + |v|/hy + |w|/hz, without axes of one
-/// cell.
+/// cell. The velocities are those on the low faces of a cell, and on the larger of both faces beside a high
+/// side, so that each face counts.
 template <class ExecutionSpace>
 struct CorrectionFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
@@ -144,7 +149,7 @@ struct CorrectionFunctor {
     double rate = 0.0;
     for (int axis = 0; axis < 3; stride *= g.n[axis], ++axis) {
       const std::int64_t place = axis * g.component + at;
-      double value = setup.predicted(place);
+      double value = setup.predicted(place), beyond = 0.0;
       if (g.n[axis] > 1) {
         double below = p;  // no gradient across a boundary with a prescribed velocity
         if (index[axis] > 0)
@@ -162,11 +167,13 @@ struct CorrectionFunctor {
           if (setup.is_outflow(2 * axis + 1))
             last += 2.0 * dt * g.inverse_h[axis] * (p - setup.outside_pressure(last));
           setup.velocity(high) = last;
+          if (!setup.is_neighbour(2 * axis + 1)) beyond = Kokkos::fabs(last);
         }
       }
       setup.velocity(place) = value;
+      const double speed = Kokkos::fabs(value);
       // A factor of zero keeps a NaN.
-      rate += (g.n[axis] > 1 ? g.inverse_h[axis] : 0.0) * Kokkos::fabs(value);
+      rate += (g.n[axis] > 1 ? g.inverse_h[axis] : 0.0) * (beyond > speed ? beyond : speed);
     }
     return rate;
   }

@@ -283,7 +283,7 @@ void HypreStructSolver::set_guess(const double* guess) {
 
 int HypreStructSolver::iterations() const { return _objects->iterations; }
 double HypreStructSolver::residual() const { return _objects->residual; }
-bool HypreStructSolver::converged() const { return _objects->residual <= 2.0 * _objects->tolerance; }
+bool HypreStructSolver::converged() const { return _objects->residual <= _objects->tolerance; }
 
 }  // namespace drogue::linear
 

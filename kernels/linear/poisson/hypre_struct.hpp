@@ -34,8 +34,7 @@ class HypreStructSolver {
   [[nodiscard]] int iterations() const;
   /// Relative residual of the last solve, dimensionless. Does not throw.
   [[nodiscard]] double residual() const;
-  /// True unless the last solve ended above twice the tolerance, which leaves room for the round-off of the
-  /// recursive residual that ends the iterations. Does not throw.
+  /// True if the residual of the last solve is at most the tolerance. Does not throw.
   [[nodiscard]] bool converged() const;
 
  private:

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
 
 #include "common/scene/nearest.hpp"
 #include "common/scene/node.hpp"
@@ -241,10 +244,28 @@ void check_profiles(const Table& root, const FlowScene& scene) {
   }
 }
 
+/// The solution is evaluated at the end of the run.
+void check_exact(const Table& root, const FlowScene& scene) {
+  const auto check = [&](const std::string& key, const std::string& text, flow::StateField field) {
+    const std::vector<double> values =
+        evaluate(SpaceTimeFunction(text), lattice_of(scene.parameters, field), scene.end_time);
+    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+      contradict(root, key,
+                 key + " = " + text + " is not finite on the grid at run.end_time = " +
+                     scene::real_text(scene.end_time) + " s");
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    check(std::string("verify.exact.") + axis_names[axis], scene.verify.exact->velocity[axis],
+          velocity_field(axis));
+  if (!scene.verify.exact->pressure.empty())
+    check("verify.exact.pressure", scene.verify.exact->pressure, flow::StateField::pressure);
+}
+
 }  // namespace
 
 void check_verify(const Table& root, const FlowScene& scene) {
   const Verify& verify = scene.verify;
+  if (verify.exact) check_exact(root, scene);
   if (verify.momentum) check_momentum(root, scene);
   if (verify.energy_growth) require_rows(root, scene, "verify.energy_growth");
   if (verify.speed_growth) require_rows(root, scene, "verify.speed_growth");

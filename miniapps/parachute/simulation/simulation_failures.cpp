@@ -50,9 +50,14 @@ std::string Simulation::flow_failure_text() {
   text << " at " << (is_initial ? "the initial projection" : "step " + std::to_string(failure.step))
        << ", t = " << failure.time << " s";
   if (!is_initial && !is_unstable) text << ", dt = " << failure.dt << " s";
-  if (failure.reason == flow::FailureReason::pressure_solver)
-    text << "; it may with a flow.pressure_tolerance above "
+  if (failure.reason == flow::FailureReason::net_inflow)
+    text << ": " << failure.net_inflow << " m^3/s; grid.boundary needs an \"outflow\" side";
+  if (failure.reason == flow::FailureReason::pressure_solver) {
+    text.precision(3);
+    text << "; its relative residual is " << failure.pressure_residual
+         << ": it may with a flow.pressure_tolerance above "
          << scene::real_text(_scene.parameters.pressure_tolerance);
+  }
   if (failure.reason == flow::FailureReason::not_finite && !is_initial)
     text << (fixed_dt > 0.0 ? "; a smaller run.dt" : "; a smaller run.cfl") << " may save the run";
   return text.str();

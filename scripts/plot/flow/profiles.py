@@ -140,13 +140,18 @@ def _exact(run: Run, snapshot: Snapshot) -> list[Comparison]:
     centres = [(faces[1:] + faces[:-1]) / 2 for faces in (run.mesh[axis].values for axis in AXES)]
     # A line through cell centres needs no interpolation across it.
     middle = tuple(float(places[count // 2]) for places, count in zip(centres, counts))
+    widths = [float(faces[1] - faces[0]) for faces in (run.mesh[axis].values for axis in AXES)]
 
     def velocity(component, along):
+        """Mean over the two faces across a component, as the velocity at the centre of a cell is."""
         text = verify["exact"][AXES[component]]
 
         def at(places):
             point = {axis: np.full(np.shape(places), middle[k]) for k, axis in enumerate(AXES)}
-            return evaluate(text, t=snapshot.time, **(point | {AXES[along]: places}))
+            point[AXES[along]] = np.asarray(places, dtype=float)
+            centre, half = point[AXES[component]], 0.5 * widths[component]
+            faces = (point | {AXES[component]: centre + side * half} for side in (-1, 1))
+            return 0.5 * sum(evaluate(text, t=snapshot.time, **face) for face in faces)
 
         return at
 

@@ -60,6 +60,29 @@ TEST(FlowControl, StepSizeFollowsTheVelocity) {
     }
 }
 
+TEST(FlowControl, StepSizesOfMirrorImagesAreEqual) {
+  // Fluid enters on one side and leaves on the next; it is fastest on both.
+  for (std::size_t in = 0; in < 3; ++in) {
+    const std::size_t out = (in + 1) % 3;
+    std::vector<double> steps;
+    for (std::size_t orientation = 0; orientation < 4; ++orientation) {
+      Parameters p = periodic_box({8, 8, 8});
+      const std::size_t inflow = 2 * in + orientation % 2, outflow = 2 * out + orientation / 2;
+      for (const std::size_t axis : {in, out})
+        p.boundary[2 * axis].kind = p.boundary[2 * axis + 1].kind = BoundaryKind::slip;
+      p.boundary[inflow].kind = BoundaryKind::inflow;
+      p.boundary[inflow].velocity[in] = orientation % 2 == 0 ? 3.0 : -3.0;
+      p.boundary[outflow].kind = BoundaryKind::outflow;
+      const auto solver = started(backend, p, FlowDomain(p).zero_field());
+      ASSERT_EQ(solver->advance(endless, 2, {}), Stop::pause);
+      EXPECT_LT(solver->progress().dt_max, 1.0 / (3.0 * 8.0));
+      EXPECT_NEAR(solver->progress().dt_max, steps.empty() ? solver->progress().dt_max : steps[0], 1e-12);
+      EXPECT_NEAR(solver->progress().last_dt, steps.empty() ? solver->progress().last_dt : steps[1], 1e-12);
+      steps.insert(steps.end(), {solver->progress().dt_max, solver->progress().last_dt});
+    }
+  }
+}
+
 TEST(FlowControl, RatesOfAdvectionAndDiffusionAddUp) {
   // The standard CFL number is 1 for RK3 and 0.5 for AB2, the limit of diffusion 2.5 and 1.
   for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})

@@ -89,6 +89,49 @@ TEST(FlowFailure, InflowThatIsNotFiniteFailsTheStep) {
   expect_failed_side(p, 0);
 }
 
+/// Inflow that pulses between 0.085 s and 0.125 s and leaves through the opposite side, `excess` times as
+/// fast.
+Parameters pulse(double excess) {
+  Parameters p = channel();
+  const auto speed = [](double factor) {
+    return postfix({0.085, "t", "<", "t", 0.125, "<", "&&", factor, "*", "y", "*"});
+  };
+  for (const std::size_t side : {0U, 1U}) {
+    p.boundary[side].kind = BoundaryKind::inflow;
+    p.boundary[side].velocity_expressions = {speed(side == 0 ? 1.0 : excess), zero(), zero()};
+  }
+  return p;
+}
+
+TEST(FlowFailure, NetInflowWithoutAnOutflowFailsTheStep) {
+  for (const TimeIntegration& integration : time_integrations) {
+    Parameters p = pulse(0.75);
+    integration.set(p);
+    const auto solver = started(backend, p, FlowDomain(p).zero_field());
+    ASSERT_EQ(solver->advance(endless, 8, {}), Stop::pause);
+    const Outputs before = outputs(*solver, p);
+    ASSERT_EQ(solver->advance(endless, 20, {}), Stop::failed);
+    EXPECT_EQ(solver->failure().reason, FailureReason::net_inflow);
+    EXPECT_EQ(solver->failure().step, 9);
+    EXPECT_NEAR(solver->failure().net_inflow, 0.5 * (1.0 - 0.75), 1e-14);
+    EXPECT_EQ(outputs(*solver, p), before);
+    p = pulse(1.0);
+    integration.set(p);
+    const auto balanced = started(backend, p, FlowDomain(p).zero_field());
+    EXPECT_EQ(balanced->advance(endless, 20, {}), Stop::pause);
+  }
+}
+
+TEST(FlowFailure, NetInflowFromTheBeginningFailsTheFirstStep) {
+  Parameters p = channel();
+  for (const std::size_t side : {0U, 1U}) p.boundary[side].kind = BoundaryKind::wall;
+  p.boundary[0].velocity_expressions = {postfix({1.0, "t", "+"}), zero(), zero()};
+  const auto solver = started(backend, p, FlowDomain(p).zero_field());
+  EXPECT_EQ(solver->advance(endless, 1, {}), Stop::failed);
+  EXPECT_EQ(solver->failure().reason, FailureReason::net_inflow);
+  EXPECT_EQ(solver->failure().net_inflow, 1.0);
+}
+
 TEST(FlowFailure, ChecksOfSidesStopAtTheirEnds) {
   Parameters p = channel();
   // Not finite in ghost cells, where y < 0 or y > 1.

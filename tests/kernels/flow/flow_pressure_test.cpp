@@ -173,6 +173,8 @@ TEST(FlowPressure, ToleranceBelowRoundOffIsNotReached) {
   const auto solver = started_vortices(p);
   EXPECT_EQ(solver->advance(endless, 3, {}), Stop::failed);
   EXPECT_EQ(solver->failure().reason, FailureReason::pressure_solver);
+  EXPECT_GT(solver->failure().pressure_residual, 1e-30);
+  EXPECT_LT(solver->failure().pressure_residual, 1e-10);
 }
 #endif
 

@@ -75,7 +75,14 @@ std::vector<Option> options() {
           {"Smagorinsky", [](Parameters& p) { p.turbulence = Turbulence::smagorinsky; }, 2},
           {"Vreman", [](Parameters& p) { p.turbulence = Turbulence::vreman; }, 2},
           {"external force", [](Parameters& p) { p.external_force = true; }, 0},
-          {"inflow in time", inflow_in_time, 1}};
+          {"inflow in time", inflow_in_time, 1},
+          // A table on each side, and the net inflow.
+          {"equal flows in and out in time",
+           [inflow_in_time](Parameters& p) {
+             inflow_in_time(p);
+             p.boundary[5] = p.boundary[4];
+           },
+           3}};
 }
 
 TEST(FlowCounters, OptionsOfAStepAddOnlyTheirKernels) {

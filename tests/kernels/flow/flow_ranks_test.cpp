@@ -339,6 +339,34 @@ TEST_F(FlowRanks, FailTogetherAtASideOfOneRankAndKeepTheState) {
   }
 }
 
+TEST_F(FlowRanks, FailTogetherForANetInflow) {
+  Parameters p = cases()[0].parameters;
+  set_sides(p, 2, BoundaryKind::inflow, BoundaryKind::inflow);
+  p.fixed_dt = 0.004;
+  // The inflow at low z leaves at high z until 0.01 s; no rank holds both sides.
+  device::ExpressionBuilder in, out, zero;
+  zero.push("constant", 0.0);
+  in.push("t");
+  for (const char* step : {"t", "t"}) out.push(step);
+  out.push("constant", 0.01);
+  for (const char* step : {"<", "*"}) out.push(step);
+  p.boundary[4].velocity_expressions = {zero.program(), zero.program(), in.program()};
+  p.boundary[5].velocity_expressions = {zero.program(), zero.program(), out.program()};
+  const StaggeredField initial = random_field(FlowDomain(p), 3);
+  SharedSolver single(p, {}), shared(p, linear::RankGroup::world());
+  single.start(initial);
+  shared.start(initial);
+  EXPECT_EQ(Stop::failed, single->advance(endless, -1, {}));
+  EXPECT_EQ(Stop::failed, shared->advance(endless, -1, {}));
+  const StepFailure expected = single->failure(), found = shared->failure();
+  EXPECT_EQ(3, expected.step);
+  EXPECT_EQ(3, found.step);
+  EXPECT_EQ(FailureReason::net_inflow, expected.reason);
+  EXPECT_EQ(FailureReason::net_inflow, found.reason);
+  EXPECT_NEAR(0.012 * 1.2 * 0.9, expected.net_inflow, 1e-12);
+  EXPECT_NEAR(expected.net_inflow, found.net_inflow, 1e-12);
+}
+
 TEST_F(FlowRanks, KeepsTheStepsEqualIfOneRankIsInterrupted) {
   const linear::RankGroup world = linear::RankGroup::world();
   const Parameters p = cases()[2].parameters;

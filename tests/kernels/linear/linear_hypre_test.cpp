@@ -118,6 +118,11 @@ TEST_F(Hypre, ReportsSolvesThatDoNotConverge) {
   EXPECT_FALSE(solver.converged());
   EXPECT_GT(solver.residual(), tolerance);
   EXPECT_EQ(solver.iterations(), 1);
+  // A residual a little above the tolerance counts as well.
+  HyprePfmgSolver<Space> close(space, problem, solver.residual() / 1.5, 1);
+  solve(close, f);
+  EXPECT_EQ(close.residual(), solver.residual());
+  EXPECT_FALSE(close.converged());
   // Another solver does not inherit the error state of the library.
   HyprePfmgSolver<Space> next(space, problem, tolerance);
   solve(next, f);
