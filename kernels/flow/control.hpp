@@ -18,8 +18,9 @@ struct Control {
   stepping::StepTrial trial;
   std::uint64_t next_rate;       ///< reduction of the state after the step, as `Progress::rate`
   std::uint64_t eddy_viscosity;  ///< bits of the largest one since the last step, m^2/s; 0 without a model
-  /// Bits of the largest acceleration of a prescribed velocity component in the last step, in cells, 1/s^2.
-  std::uint64_t side_acceleration;
+  /// Bits of the largest acceleration of each prescribed velocity component in the last step, in cells,
+  /// 1/s^2.
+  std::uint64_t side_acceleration[3];
   std::uint64_t first_failure;  ///< least cell whose predicted velocity is not finite, or `no_failure`
   int pressure_failed;          ///< 1 after an iterative pressure solver did not converge
   int failed_side;              ///< 1 + a side whose prescribed velocity is not finite; 0: none
@@ -74,11 +75,13 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
 }
 
 /// Rate that limits the next dt, as `Progress::rate`: that of advection, and that of an eddy viscosity. If
-/// sides accelerate by a in cells, r becomes r' with dt (r + a dt) = cfl for dt = cfl / r'.
+/// sides accelerate by a in cells, the sum over the components, r becomes r' with dt (r + a dt) = cfl for dt
+/// = cfl / r'.
 KOKKOS_INLINE_FUNCTION std::uint64_t limiting_rate(const Control& c, const StepConstants& k) {
   double rate =
       Kokkos::bit_cast<double>(c.next_rate) + k.eddy_weight * Kokkos::bit_cast<double>(c.eddy_viscosity);
-  const double acceleration = Kokkos::bit_cast<double>(c.side_acceleration);
+  double acceleration = 0.0;
+  for (const std::uint64_t bits : c.side_acceleration) acceleration += Kokkos::bit_cast<double>(bits);
   if (acceleration > 0.0 && !(k.fixed_dt > 0.0))
     rate = 0.5 * (rate + Kokkos::sqrt(rate * rate + 4.0 * acceleration * k.cfl));
   return Kokkos::bit_cast<std::uint64_t>(rate);

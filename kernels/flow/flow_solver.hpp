@@ -69,8 +69,8 @@ class FlowSolver {
   /// middle of that step, and zero before the first. Does not throw.
   [[nodiscard]] const Values& pressure() const { return _pressure; }
   /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless
-  /// `Parameters::external_force`. Other kernels may write it between steps; it keeps its values. Does not
-  /// throw.
+  /// `Parameters::external_force`. On sides it acts only on outflows. Other kernels may write it between
+  /// steps; it keeps its values. Does not throw.
   [[nodiscard]] const Values& force() const { return _force; }
 
   // For a coupling that enqueues other kernels between steps. Asynchronous on one rank, without a bound on

@@ -11,11 +11,14 @@ namespace drogue::flow {
 
 /// Width of the ghost region along axes with more than one cell: the stencil of a fifth-order flux.
 inline constexpr int ghost_width = 3;
+static_assert(least_cells_of_rank >= ghost_width,
+              "the ghost cells of a rank come from one neighbour per axis");
 
 /// Staggered (MAC) grid, Harlow and Welch 1965. Cell (i, j, k) has the pressure at its centre; component c of
 /// the velocity lies on its low face along axis c. Arrays with ghost cells hold component after component,
 /// x fastest. Along a bounded axis of n cells, component c of axis c has n + 1 faces; the last one is stored
-/// in the first ghost cell.
+/// in the first ghost cell. Any axis may have one cell: a flow in a plane has one, and no ghost cells along
+/// it.
 ///
 /// On one of several ranks it is the part of a whole grid that the rank holds. Sides towards other ranks are
 /// `BoundaryKind::neighbour`; along such an axis, face n belongs to the neighbour.
@@ -26,7 +29,7 @@ struct MacGrid {
   int origin[3];           ///< index of cell (0, 0, 0) in the whole grid
   bool periodic[3];        ///< with both sides on this rank
   bool whole_periodic[3];  ///< of the whole grid
-  double low[3];           ///< lower corner of the whole grid, m
+  double low[3], high[3];  ///< corners of the whole grid, m
   double h[3];             ///< spacing, m
   double inverse_h[3];     ///< 1/m
   std::int64_t stride[3];  ///< of an array with ghost cells, in numbers
@@ -65,6 +68,7 @@ inline MacGrid make_grid(const Parameters& p, const linear::PencilRanks& ranks =
     grid.whole_periodic[axis] = p.boundary[2 * a].kind == BoundaryKind::periodic;
     grid.periodic[axis] = grid.whole_periodic[axis] && ranks.parts[a] == 1;
     grid.low[axis] = p.low[a];
+    grid.high[axis] = p.high[a];
     grid.h[axis] = (p.high[a] - p.low[a]) / p.cells[a];
     grid.inverse_h[axis] = 1.0 / grid.h[axis];
     extent[axis] = grid.n[axis] + 2 * grid.ghost[axis];

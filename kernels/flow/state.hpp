@@ -47,6 +47,10 @@ enum class StateField : int {
   pressure,  ///< kinematic, at the cell centres, m^2/s^2: that of the last step, of second order at its
              ///< middle
 };
+static_assert(static_cast<int>(StateField::velocity_x) == 0 &&
+                  static_cast<int>(StateField::velocity_z) == 2 &&
+                  static_cast<int>(StateField::rate_x) == 3 && static_cast<int>(StateField::rate_z) == 5,
+              "the axis of a velocity or a rate is its number modulo 3, and velocities come before rates");
 
 /// Field at the cell centres that is computed from the state.
 enum class CellField : int {

@@ -60,7 +60,8 @@ struct FinishStepFunctor {
         stepping::advance_time(now, trial);
         if (stepping::continues(now, trial, constants.max_steps)) prepare_step(now, trial, constants);
         c.next_rate = 0;
-        c.eddy_viscosity = c.side_acceleration = 0;
+        c.eddy_viscosity = 0;
+        for (std::uint64_t& bits : c.side_acceleration) bits = 0;
       }
     }
     stepping::publish_status(now, trial, 0, status());

@@ -118,6 +118,19 @@ class HardCases(parachute_program.FlowTest):
         self.assertLess(speeds[-1], 1.5)
         self.assertTrue(all(math.isfinite(speed) for speed in speeds))
 
+    def test_inflow_profiles_that_end_at_the_sides_of_the_domain(self):
+        """The profiles are undefined beyond y = 0 or y = 1."""
+        for profile in ("sqrt(y*(1-y))", "y^(1/7)"):
+            for side in ("wall", "slip", "periodic"):
+                for model in ("none", "smagorinsky", "vreman"):
+                    with self.subTest(profile=profile, side=side, model=model):
+                        self.run_box([16, 16, 1], velocity="[0.3, 0, 0]", end=0.2, sets=[
+                            f'grid.boundary={{x=["inflow","outflow"],y="{side}"}}', f'fluid.velocity=["{profile}", 0, 0]',
+                            f"flow.turbulence={model}", "output={}"])
+                        history = self.history("out")
+                        for name in ("kinetic_energy", "enstrophy", "dissipation"):
+                            self.assertTrue(all(0 < value < 100 for value in history[name]), name)
+
     def test_turbulence_models_dissipate(self):
         energies = {}
         for model in ("none", "smagorinsky", "vreman"):

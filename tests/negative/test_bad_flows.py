@@ -153,7 +153,7 @@ class BadFlows(parachute_program.FlowTest):
     def test_rejects_requests_without_canopies(self):
         for key, words in {"coupling.gravity=[0, 0, -9.81]": "[[canopy]]", "output.fields=['position']": "[[canopy]]",
                            "verify.force_balance=1": "[[canopy]]",
-                           "verify.peak_force=[{force=[1,2]}]": "number of canopies is 0"}.items():
+                           "verify.peak_force=[{force=[1,2]}]": "verify.peak_force[0] needs a [[canopy]]"}.items():
             with self.subTest(key):
                 self.assertIn(words, self.refusal(key))
 

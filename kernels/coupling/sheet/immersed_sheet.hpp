@@ -249,11 +249,12 @@ class ImmersedSheet {
         throw std::invalid_argument("immersed sheet: alpha and beta must be finite and not negative");
     if (!(density > 0.0) || !is_valid(density))
       throw std::invalid_argument("immersed sheet: the density must be positive");
-    for (const double weight : {p.filter, p.defect_filter})
-      if (!(weight >= 0.0 && weight <= 1.0))
-        throw std::invalid_argument("immersed sheet: the weights of the filters must be 0 to 1");
-    if (p.defect_filter > 0.0 && p.method == CouplingMethod::sharp)
-      throw std::invalid_argument("immersed sheet: a sharp sheet has no defect to filter");
+    if (!(p.filter >= 0.0 && p.filter <= 1.0))
+      throw std::invalid_argument("immersed sheet: the weight of the filter must be 0 to 1");
+    if (!(p.defect_filter >= 0.0 && p.defect_filter <= 0.2))
+      throw std::invalid_argument("immersed sheet: the weight of the defect must be 0 to 0.2");
+    if (p.defect_filter > 0.0 && p.method != CouplingMethod::spread)
+      throw std::invalid_argument("immersed sheet: the defect is filtered with CouplingMethod::spread alone");
   }
 
   static bool has_no_slip(const SheetParameters& p) {

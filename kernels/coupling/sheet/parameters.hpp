@@ -33,13 +33,14 @@ struct SheetParameters {
   DeltaKernel kernel = DeltaKernel::cbs43;
   PorousLaw law;
   std::vector<PorousLaw> law_of_vertex;  ///< one per vertex, or empty: `law` for all
-  /// Weight of the present step in the running mean of the acceleration of the air, 0 to 1. With 0 the energy
-  /// cannot grow, but the sheet leaks in proportion to dt; nearly impermeable sheets need 0.2 or less if dt
-  /// exceeds the period of their oscillations over 2 pi.
+  /// Weight of the present step in the running mean of the acceleration of the air, 0 to 1. With 0 for this
+  /// and for `defect_filter` the energy cannot grow, but the sheet leaks in proportion to dt; nearly
+  /// impermeable sheets need 0.2 or less if dt exceeds the period of their oscillations over 2 pi.
   double filter = 0.5;
   /// Weight of the present step in the running mean of the defect: of what spreading and interpolation give
   /// the air at a vertex, less the row sum times its impulse. 0: without it, so that curved and folded sheets
-  /// leak in proportion to dt. Not for sharp sheets, which have none.
+  /// leak in proportion to dt; 0.2 at most, since single modes grow above. For `CouplingMethod::spread`
+  /// alone.
   double defect_filter = 0.0;
   CouplingMethod method = CouplingMethod::spread;
 };

@@ -7,6 +7,8 @@
 
 namespace drogue::flow {
 
+static_assert(ghost_width == 3, "advective_flux reads three cells on each side of a face");
+
 /// Flux of momentum component c through a face normal to axis d, per density, m^2/s^2: advection minus
 /// diffusion. The face is the low face along d of the control volume of the component. `carried` points at
 /// component c at the control volume, `carrier` at component d of the same cell.

@@ -15,7 +15,10 @@
 namespace drogue::flow {
 
 /// Conditions of the sides on a device. Values of a side whose velocity is an expression stand in a table
-/// with an entry for every point of the side, ghost cells included.
+/// with an entry for every point of the side, ghost cells included. Expressions are evaluated only at points
+/// of the domain: ghost cells beyond a periodic axis have the value of the point that they repeat, and those
+/// beyond another side of the domain extrapolate the two outermost points linearly. Derivatives along the
+/// edges of a side, of first order there, are the only ones that use these.
 template <class ExecutionSpace>
 struct BoundaryConditions {
   BoundaryKind kind[6];
@@ -53,8 +56,48 @@ struct BoundaryTime {
   bool initial;  ///< true before the first step: dt is not known
 };
 
-/// Evaluates the expressions of a side at the points of its table, and checks that the velocity is finite
-/// next to all cells of the side. At the end of a step it reduces the acceleration since the last evaluation.
+/// Component and point of an entry of the table of a side.
+struct TableEntry {
+  int component;
+  int axis[2];   ///< of the table
+  int index[2];  ///< in the whole grid, ghost cells included, along these axes
+
+  /// True next to a cell of the domain.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_beside_cell(const MacGrid& g) const {
+    return index[0] >= 0 && index[0] < g.whole[axis[0]] && index[1] >= 0 && index[1] < g.whole[axis[1]];
+  }
+};
+
+/// Entry of the table of a side by its number.
+template <class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION TableEntry table_entry(const MacGrid& g, int side, int entry) {
+  using Conditions = BoundaryConditions<ExecutionSpace>;
+  const int a = Conditions::first_axis(side / 2), b = Conditions::second_axis(side / 2);
+  const int row = g.n[a] + 2 * g.ghost[a], rows = g.n[b] + 2 * g.ghost[b];
+  return {entry / (row * rows),
+          {a, b},
+          {g.origin[a] + entry % row - g.ghost[a], g.origin[b] + entry / row % rows - g.ghost[b]}};
+}
+
+/// Points of the domain along an axis that give a value of a component at an index: 1 - `weight` times the
+/// value at `index` plus `weight` times that at the next one.
+struct TableSupport {
+  int index;
+  double weight;
+};
+
+/// Support of a component on a side at an index along another axis; see `BoundaryConditions`.
+KOKKOS_INLINE_FUNCTION TableSupport table_support(const MacGrid& g, int axis, int component, int index) {
+  const int n = g.whole[axis];
+  if (g.whole_periodic[axis]) return {(index + n) % n, 0.0};
+  // A component lies on the faces of its own axis.
+  const int last = component == axis ? n : n - 1;
+  if (index < 0) return {0, static_cast<double>(index)};
+  return index > last ? TableSupport{last - 1, index - last + 1.0} : TableSupport{index, 0.0};
+}
+
+/// Evaluates the expressions of a side for the entries of its table, and checks that the velocity is finite.
+/// At the end of a step it reduces the acceleration since the last evaluation.
 template <class ExecutionSpace>
 struct BoundaryTableFunctor {
   MacGrid grid;
@@ -70,29 +113,39 @@ struct BoundaryTableFunctor {
     if (!stage.initial && c.trial.stop != stepping::Stop::running) return;
     const double t = stage.initial ? c.now.time : c.now.time + stage.fraction * c.trial.dt;
     const MacGrid& g = grid;
-    using Conditions = BoundaryConditions<ExecutionSpace>;
-    const int axis = side / 2, a = Conditions::first_axis(axis), b = Conditions::second_axis(axis);
-    const int row = g.n[a] + 2 * g.ghost[a], rows = g.n[b] + 2 * g.ghost[b];
-    const int component = entry / (row * rows);
-    const int index[2] = {g.origin[a] + entry % row - g.ghost[a],
-                          g.origin[b] + entry / row % rows - g.ghost[b]};
-    double point[3];
-    point[axis] = g.low[axis] + (side % 2) * g.whole[axis] * g.h[axis];
-    // A component lies on the faces of its own axis.
-    point[a] = g.low[a] + (index[0] + (component == a ? 0.0 : 0.5)) * g.h[a];
-    point[b] = g.low[b] + (index[1] + (component == b ? 0.0 : 0.5)) * g.h[b];
-    const double value =
-        device::evaluate(programs(static_cast<std::size_t>(component)), point[0], point[1], point[2], t);
+    const TableEntry at = table_entry<ExecutionSpace>(g, side, entry);
+    const int component = at.component, axis = side / 2;
+    const TableSupport support[2] = {table_support(g, at.axis[0], component, at.index[0]),
+                                     table_support(g, at.axis[1], component, at.index[1])};
+    double point[3], value = 0.0;
+    point[axis] = side % 2 == 0 ? g.low[axis] : g.high[axis];
+    for (int corner = 0; corner < 4; ++corner) {
+      double weight = 1.0;
+      for (int i = 0; i < 2; ++i) {
+        const bool is_next = (corner >> i) % 2 == 1;
+        weight *= is_next ? support[i].weight : 1.0 - support[i].weight;
+        point[at.axis[i]] = coordinate(at.axis[i], component, support[i].index + (is_next ? 1 : 0));
+      }
+      if (weight == 0.0) continue;
+      value += weight * device::evaluate(programs(static_cast<std::size_t>(component)), point[0], point[1],
+                                         point[2], t);
+    }
     double& stored = table(static_cast<std::size_t>(first + entry));
     const double change = Kokkos::fabs(value - stored);
     stored = value;
-    const bool is_beside_cell =
-        index[0] >= 0 && index[0] < g.whole[a] && index[1] >= 0 && index[1] < g.whole[b];
-    if (!is_beside_cell) return;
     if (!Kokkos::isfinite(value)) Kokkos::atomic_max(&c.failed_side, side + 1);
-    if (stage.initial || stage.fraction < 1.0 || g.n[component] == 1) return;
+    if (stage.initial || stage.fraction < 1.0 || g.n[component] == 1 || !at.is_beside_cell(g)) return;
     const auto bits = Kokkos::bit_cast<std::uint64_t>(change * g.inverse_h[component] / c.trial.dt);
-    if (bits > device::relaxed_load(&c.side_acceleration)) Kokkos::atomic_max(&c.side_acceleration, bits);
+    std::uint64_t& largest = c.side_acceleration[component];
+    if (bits > device::relaxed_load(&largest)) Kokkos::atomic_max(&largest, bits);
+  }
+
+ private:
+  /// Coordinate of a component along an axis, m. The last face lies on the side, without round-off.
+  [[nodiscard]] KOKKOS_FUNCTION double coordinate(int axis, int component, int index) const {
+    const MacGrid& g = grid;
+    if (component == axis && index == g.whole[axis]) return g.high[axis];
+    return g.low[axis] + (index + (component == axis ? 0.0 : 0.5)) * g.h[axis];
   }
 };
 
@@ -162,9 +215,9 @@ class BoundaryTables {
       for (int c = 0; c < 3; ++c) {
         if (_grid.n[c] == 1) continue;
         double speed = 0.0;
-        for (std::int64_t i = 0; i < entries; ++i)
-          speed = std::max(
-              speed, std::abs(table(static_cast<std::size_t>(_conditions.first[side] + c * entries + i))));
+        for (std::int64_t i = c * entries; i < (c + 1) * entries; ++i)
+          if (table_entry<ExecutionSpace>(_grid, side, static_cast<int>(i)).is_beside_cell(_grid))
+            speed = std::max(speed, std::abs(table(static_cast<std::size_t>(_conditions.first[side] + i))));
         rate += speed * _grid.inverse_h[c];
       }
       largest = std::max(largest, rate);

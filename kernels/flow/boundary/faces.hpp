@@ -45,6 +45,7 @@ struct BoundaryFacesFunctor {
       } else {
         next += f.state * (setup.state(place) - value);
       }
+      if (setup.force.data() != nullptr) next += f.force * setup.force(place);
       setup.out(place) = next;
     } else {
       setup.out(place) =

@@ -1,6 +1,7 @@
 #include "kernels/reference/flow/domain.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace drogue::reference {
@@ -63,8 +64,23 @@ int FlowDomain::side_of(std::size_t component, const GridIndex& face) const {
 double FlowDomain::side_velocity(std::size_t side, std::size_t component, const GridIndex& face,
                                  double time) const {
   Point point{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    point[axis] = _parameters.low[axis] + (face[axis] + (axis == component ? 0.0 : 0.5)) * spacing(axis);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axis == side / 2) continue;
+    const int i = face[axis], outermost = i < 0 ? 0 : faces(component, axis) - 1;
+    GridIndex inside = face;
+    if (!is_bounded(axis)) {
+      inside[axis] = ((i % cells(axis)) + cells(axis)) % cells(axis);
+    } else if (i < 0 || i > outermost) {
+      // Linear continuation of the two outermost values of the component.
+      GridIndex second = face;
+      inside[axis] = outermost;
+      second[axis] = outermost + (i < 0 ? 1 : -1);
+      const double last = side_velocity(side, component, inside, time);
+      return last + std::abs(i - outermost) * (last - side_velocity(side, component, second, time));
+    }
+    point[axis] = _parameters.low[axis] + (inside[axis] + (axis == component ? 0.0 : 0.5)) * spacing(axis);
+    if (axis == component && is_bounded(axis) && i == cells(axis)) point[axis] = _parameters.high[axis];
+  }
   point[side / 2] = side % 2 == 0 ? _parameters.low[side / 2] : _parameters.high[side / 2];
   return _side_velocity(side, component, point, time);
 }

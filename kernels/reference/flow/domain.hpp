@@ -55,6 +55,8 @@ class FlowDomain {
                                 double time) const;
 
  private:
+  /// Prescribed velocity at a point of a side, m/s. Beyond the side it is repeated along periodic axes and
+  /// continued linearly along others.
   [[nodiscard]] double side_velocity(std::size_t side, std::size_t component, const GridIndex& face,
                                      double time) const;
 

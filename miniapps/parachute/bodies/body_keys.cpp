@@ -214,10 +214,10 @@ void declare_coupling(Table& table, coupling::SheetParameters& coupling,
       .value("defect_filter", scene::real_codec(coupling.defect_filter),
              "Weight of the present step in the running mean of what delta functions give the fluid at a "
              "vertex less what the vertex expects; 0: none, so that curved sheets leak in proportion to dt")
-      .range(0.0, 1.0)
+      .range(0.0, 0.2)
       .when([with_fluid,
-             &coupling] { return with_fluid() && coupling.method != coupling::CouplingMethod::sharp; },
-            "with [fluid] and unless method = \"sharp\"", "method");
+             &coupling] { return with_fluid() && coupling.method == coupling::CouplingMethod::spread; },
+            "with [fluid] and method = \"spread\"", "method");
 }
 
 }  // namespace drogue::parachute_app

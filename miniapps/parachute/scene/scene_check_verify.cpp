@@ -146,6 +146,7 @@ void check_oscillations(const Table& root, const FlowScene& scene) {
 }
 
 void check_canopy_number(const Table& root, const FlowScene& scene, const std::string& path, int canopy) {
+  if (scene.canopies.empty()) contradict(root, path + ".canopy", path + " needs a [[canopy]]");
   if (canopy >= static_cast<int>(scene.canopies.size()))
     contradict(root, path + ".canopy",
                path + ".canopy = " + std::to_string(canopy) + ": the number of canopies is " +

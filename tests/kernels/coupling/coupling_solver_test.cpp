@@ -557,6 +557,7 @@ TEST(CoupledSolver, RejectsInvalidParameters) {
   rejects([](Parameters& p) { p.sheet.law_of_vertex.resize(p.fabric.mass.size(), {1.0, -1.0, false}); });
   rejects([](Parameters& p) { p.sheet.filter = 1.5; });
   rejects([](Parameters& p) { p.sheet.defect_filter = -0.5; });
+  rejects([](Parameters& p) { p.sheet.defect_filter = 0.3; });
   rejects([](Parameters& p) { p.fabric.mass.clear(); });
   rejects([](Parameters& p) { p.flow.density = 0.0; });
   rejects([](Parameters& p) { p.cuts = {{1.0, {0}}}; });

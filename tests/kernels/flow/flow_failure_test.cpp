@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -134,12 +135,85 @@ TEST(FlowFailure, NetInflowFromTheBeginningFailsTheFirstStep) {
 
 TEST(FlowFailure, ChecksOfSidesStopAtTheirEnds) {
   Parameters p = channel();
-  // Not finite in ghost cells, where y < 0 or y > 1.
+  // Undefined in ghost cells, where y < 0 or y > 1.
   p.boundary[0].kind = BoundaryKind::inflow;
   p.boundary[0].velocity_expressions = {postfix({"y", 1.0, "y", "-", "*", "sqrt"}), zero(), zero()};
   p.boundary[1].kind = BoundaryKind::outflow;
   const auto solver = started(backend, p, FlowDomain(p).zero_field());
   EXPECT_EQ(solver->advance(endless, 5, {}), Stop::pause);
+}
+
+TEST(FlowFailure, NormalVelocityAtTheEdgeOfASideThatIsNotFiniteFailsTheStep) {
+  for (const double edge : {0.0, 1.0}) {
+    Parameters p = channel();
+    p.boundary[0].kind = BoundaryKind::inflow;
+    p.boundary[0].velocity_expressions = {postfix({1.0}), postfix({"y", edge, "-", "abs", "log"}), zero()};
+    p.boundary[1].kind = BoundaryKind::outflow;
+    const auto solver = started(backend, p, FlowDomain(p).zero_field());
+    EXPECT_EQ(solver->advance(endless, 1, {}), Stop::failed);
+    EXPECT_EQ(solver->failure().reason, FailureReason::side_velocity);
+    EXPECT_EQ(solver->failure().index, 0);
+  }
+}
+
+/// Inflow along x into a domain of length 1.3 along y, with a velocity along x and y.
+Parameters inflow(BoundaryKind beside, const device::ExpressionProgram& profile) {
+  Parameters p = periodic_box({8, 16, 1});
+  p.high[1] = 1.3;
+  p.viscosity = 0.01;
+  p.boundary[0].kind = BoundaryKind::inflow;
+  p.boundary[0].velocity_expressions = {profile, profile, zero()};
+  p.boundary[1].kind = BoundaryKind::outflow;
+  p.boundary[2].kind = p.boundary[3].kind = beside;
+  return p;
+}
+
+TEST(FlowSides, ProfilesThatEndAtTheSidesOfTheDomainGiveFiniteOutputs) {
+  for (const auto& profile : {postfix({"y", 1.3, "y", "-", "*", "sqrt"}), postfix({"y", 1.0, 7.0, "/", "^"})})
+    for (const BoundaryKind beside : {BoundaryKind::wall, BoundaryKind::slip, BoundaryKind::periodic})
+      for (const Turbulence model : {Turbulence::none, Turbulence::smagorinsky, Turbulence::vreman}) {
+        Parameters p = inflow(beside, profile);
+        p.turbulence = model;
+        const auto solver = started(backend, p, FlowDomain(p).zero_field());
+        ASSERT_EQ(solver->advance(endless, 3, {}), Stop::pause);
+        const Outputs all = outputs(*solver, p);
+        EXPECT_LT(largest(all.vorticity), 100.0);
+        EXPECT_LT(largest(all.present_pressure), 1e3);
+        const Totals totals = solver->totals();
+        EXPECT_GT(totals.enstrophy, 0.0);
+        EXPECT_LT(totals.enstrophy, 100.0);
+        EXPECT_GT(totals.dissipation, 0.0);
+        EXPECT_LT(totals.dissipation, 100.0);
+      }
+}
+
+TEST(FlowSides, ShiftedProfileBesideAPeriodicAxisShiftsTheFlow) {
+  for (const TimeIntegration& integration : time_integrations)
+    for (const Turbulence model : {Turbulence::none, Turbulence::vreman}) {
+      // The coordinates are multiples of 1/32.
+      Parameters p = inflow(BoundaryKind::periodic, postfix({"y"}));
+      Parameters shifted =
+          inflow(BoundaryKind::periodic, postfix({"y", 0.75, "+", "y", 0.75, "+", "floor", "-"}));
+      Outputs found[2];
+      for (Parameters* each : {&p, &shifted}) {
+        each->high[1] = 1.0;
+        each->turbulence = model;
+        each->fixed_dt = 0.005;
+        integration.set(*each);
+        const auto solver = started(backend, *each, FlowDomain(*each).zero_field());
+        ASSERT_EQ(solver->advance(endless, 20, {}), Stop::pause);
+        found[each == &shifted] = outputs(*solver, *each);
+      }
+      EXPECT_NEAR(found[0].kinetic_energy, found[1].kinetic_energy, 1e-12);
+      double largest_error = 0.0;
+      for (std::size_t i = 0; i < 8; ++i)
+        for (std::size_t j = 0; j < 16; ++j)
+          largest_error =
+              std::max(largest_error, std::abs(found[0].vorticity[3 * (16 * i + j) + 2] -
+                                               found[1].vorticity[3 * (16 * i + (j + 4) % 16) + 2]));
+      EXPECT_GT(largest(found[0].vorticity), 1.0);
+      EXPECT_LT(largest_error, 1e-10);
+    }
 }
 
 TEST(FlowFailure, VelocityAlongAnAxisOfOneCellThatIsNotFiniteFailsTheStep) {

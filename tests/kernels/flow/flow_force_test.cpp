@@ -121,6 +121,24 @@ Parameters forced_channel() {
   return p;
 }
 
+TEST(FlowForce, ActsOnOutflowsAsABodyForceDoes) {
+  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3}) {
+    Parameters p = forced_channel(), with_body_force = p;
+    p.boundary[0] = p.boundary[1];
+    with_body_force.boundary = p.boundary;
+    with_body_force.body_force = {0.4, 0.0, 0.3};
+    p.time_scheme = with_body_force.time_scheme = time;
+    TypedCase forced(p), accelerated(with_body_force);
+    StaggeredField force = forced.domain.zero_field();
+    for (std::size_t c = 0; c < 3; ++c)
+      for (double& value : force[c]) value = with_body_force.body_force[c];
+    forced.set_force(force);
+    ASSERT_EQ(forced.solver.advance(endless, 3, {}), Stop::pause);
+    ASSERT_EQ(accelerated.solver.advance(endless, 3, {}), Stop::pause);
+    EXPECT_LT(largest_difference(forced.velocity(), accelerated.velocity()), 1e-13);
+  }
+}
+
 /// Points away from the sides, so that no delta function is cut off, and forces on them, N.
 constexpr int number_of_points = 40;
 using PointViews = Kokkos::View<double* [3], Kokkos::LayoutLeft, Space::memory_space>;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "kernels/reference/flow/observables.hpp"
+#include "tests/support/expression_program.hpp"
 #include "tests/support/flow_case.hpp"
 
 // Totals and fields at cell centres against the oracle on random data, corners of the ghost region included.
@@ -62,6 +63,27 @@ TEST(FlowObservables, TotalsEqualThoseOfTheReference) {
     EXPECT_NEAR(totals.divergence_rms, std::sqrt(squares), 1e-13);
     EXPECT_NEAR(totals.divergence_max, most, 1e-13);
   }
+}
+
+TEST(FlowObservables, TotalsBesideProfilesOfSidesEqualThoseOfTheReference) {
+  for (const BoundaryKind y : {BoundaryKind::periodic, BoundaryKind::wall, BoundaryKind::slip})
+    for (const BoundaryKind z : {BoundaryKind::periodic, BoundaryKind::outflow, BoundaryKind::wall}) {
+      Parameters p = domains()[2];
+      for (std::size_t side = 2; side < 6; ++side) p.boundary[side] = {side < 4 ? y : z, {}, {}};
+      // Defined only where 0 <= y <= 0.6 and 0 <= z <= 1.1.
+      const auto profile = postfix({"y", 0.6, "y", "-", "*", "z", "*", 1.1, "z", "-", "*", "sqrt", "y", "+"});
+      p.boundary[0].velocity_expressions = {profile, profile, profile};
+      const FlowDomain domain(
+          p, [&](std::size_t side, std::size_t component, const reference::Point& at, double) {
+            if (side != 0) return p.boundary[side].velocity[component];
+            return std::sqrt(at[1] * (0.6 - at[1]) * at[2] * (1.1 - at[2])) + at[1];
+          });
+      const auto solver = started(backend, p, random_field(domain, 23));
+      const Totals totals = solver->totals();
+      const reference::FlowSums sums = reference::flow_sums(domain, velocity(*solver, p), 0.0);
+      EXPECT_NEAR(totals.enstrophy, sums.enstrophy, 1e-12 * sums.enstrophy);
+      EXPECT_NEAR(totals.dissipation, sums.dissipation, 1e-12 * sums.dissipation);
+    }
 }
 
 TEST(FlowObservables, SamplesEqualThoseOfTheReference) {

@@ -155,6 +155,10 @@ std::vector<Case> cases() {
   large.time_scheme = TimeScheme::rk3;
   large.external_force = true;
   add("large, periodic", {6, 5, 17});
+  Parameters& profile = add("inflow by expressions beside periodic axes", {6, 9, 8});
+  set_sides(profile, 0, inflow, outflow);
+  set_expressions(profile.boundary[0]);
+  profile.turbulence = Turbulence::smagorinsky;
   return all;
 }
 

@@ -125,5 +125,16 @@ TEST(FlowStability, AdamsBashforthIsWeaklyUnstableWithoutViscosity) {
   EXPECT_GT(flow.amplification(stable_dt(flow.progress, flow.constants), central), 1.14);
 }
 
+TEST(FlowStepSize, CountsTheAccelerationsOfAllComponentsOfSides) {
+  Control control{};
+  control.next_rate = Kokkos::bit_cast<std::uint64_t>(2.0);
+  for (std::size_t c = 0; c < 3; ++c)
+    control.side_acceleration[c] = Kokkos::bit_cast<std::uint64_t>(3.0 + static_cast<double>(c));
+  StepConstants constants{};
+  constants.cfl = 0.5;
+  const double dt = constants.cfl / Kokkos::bit_cast<double>(limiting_rate(control, constants));
+  EXPECT_NEAR(dt * (2.0 + 12.0 * dt), constants.cfl, round_off);
+}
+
 }  // namespace
 }  // namespace drogue::flow

@@ -219,31 +219,33 @@ TEST(FlowStep, EqualsTheReferenceWithImplicitDiffusionInThreeDimensions) {
 TEST(FlowStep, EvaluatesExpressionsOfSidesAtTheTimesOfTheStages) {
   const Sides through{BoundaryKind::inflow, BoundaryKind::outflow},
       walls{BoundaryKind::wall, BoundaryKind::slip};
-  for (const TimeIntegration& integration : time_integrations) {
-    Parameters p = parameters_of({6, 5, 4}, {through, walls, walls}, Advection::weno_z);
-    integration.set(p);
-    // Component c is 1 + 40 t y + (c + 1) z.
-    for (int c = 0; c < 3; ++c) {
-      device::ExpressionBuilder builder;
-      builder.push("constant", 40.0);
-      builder.push("t");
-      builder.push("*");
-      builder.push("y");
-      builder.push("*");
-      builder.push("constant", c + 1.0);
-      builder.push("z");
-      builder.push("*");
-      builder.push("+");
-      builder.push("constant", 1.0);
-      builder.push("+");
-      p.boundary[0].velocity_expressions.push_back(builder.program());
+  const Sides periodic{BoundaryKind::periodic, BoundaryKind::periodic};
+  for (const TimeIntegration& integration : time_integrations)
+    for (const Sides& beside : {walls, periodic}) {
+      Parameters p = parameters_of({6, 5, 4}, {through, beside, beside}, Advection::weno_z);
+      integration.set(p);
+      // Component c is 1 + 40 t y + (c + 1) z.
+      for (int c = 0; c < 3; ++c) {
+        device::ExpressionBuilder builder;
+        builder.push("constant", 40.0);
+        builder.push("t");
+        builder.push("*");
+        builder.push("y");
+        builder.push("*");
+        builder.push("constant", c + 1.0);
+        builder.push("z");
+        builder.push("*");
+        builder.push("+");
+        builder.push("constant", 1.0);
+        builder.push("+");
+        p.boundary[0].velocity_expressions.push_back(builder.program());
+      }
+      expect_equal_steps(
+          p, 3000, [&](std::size_t side, std::size_t component, const reference::Point& point, double t) {
+            if (side != 0) return p.boundary[side].velocity[component];
+            return 1.0 + 40.0 * t * point[1] + (static_cast<double>(component) + 1.0) * point[2];
+          });
     }
-    expect_equal_steps(p, 3000,
-                       [&](std::size_t side, std::size_t component, const reference::Point& point, double t) {
-                         if (side != 0) return p.boundary[side].velocity[component];
-                         return 1.0 + 40.0 * t * point[1] + (static_cast<double>(component) + 1.0) * point[2];
-                       });
-  }
 }
 
 }  // namespace
