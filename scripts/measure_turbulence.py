@@ -10,7 +10,6 @@ time per step and cell on one core, all of the program included. ARGUMENTs go to
 """
 
 import argparse
-import csv
 import json
 import math
 import pathlib
@@ -18,22 +17,17 @@ import resource
 import subprocess
 import sys
 
+from measure_inversion import read_history
+
 VOLUME = (2 * math.pi) ** 3
 
 
-def columns(file):
-    """Columns of history.csv by name, without units."""
-    with file.open(newline="", encoding="utf-8") as lines:
-        rows = list(csv.DictReader(lines))
-    return {name.split(" [")[0]: [float(row[name]) for row in rows] for name in rows[0]}
-
-
-def measure(history):
+def measure(rows):
     """Remaining part of the energy, peak of its fall and the time of that, peak of the viscous dissipation."""
-    time, energy = history["time"], history["kinetic_energy"]
+    time, energy, dissipation = ([row[name] for row in rows] for name in ("time", "kinetic_energy", "dissipation"))
     falls = [((e0 - e1) / (t1 - t0), 0.5 * (t0 + t1)) for t0, t1, e0, e1 in zip(time, time[1:], energy, energy[1:], strict=False)]
     peak, at = max(falls)
-    return energy[-1] / energy[0], peak / VOLUME, at, max(history["dissipation"]) / VOLUME
+    return energy[-1] / energy[0], peak / VOLUME, at, max(dissipation) / VOLUME
 
 
 def main():
@@ -58,7 +52,7 @@ def main():
                                 *(word for each in sets for word in ("--set", each)), *arguments], check=True)
                 spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
                 steps = json.loads((out / "result.json").read_text(encoding="utf-8"))["steps"]
-                left, peak, at, viscous = measure(columns(out / "history.csv"))
+                left, peak, at, viscous = measure(read_history(out))
                 print(f"| {cells}^3 | {advection} | {model} | {left:.3f} | {peak:.5f} | {at:.2f} | {viscous:.5f} | "
                       f"{1e9 * spent / steps / cells**3:.0f} |", flush=True)
 

@@ -26,6 +26,14 @@ struct KernelProfile {
   double active_fraction = 0.0;
   int launches = 0;
   double duration = 0.0;  ///< of all launches, s; 0: not measured
+
+  /// True for a kernel of the project, not of a library. Does not throw.
+  [[nodiscard]] bool is_own() const { return kernel.starts_with(project); }
+  /// Label without the namespace of the project.
+  [[nodiscard]] std::string name() const { return is_own() ? kernel.substr(project.size()) : kernel; }
+
+ private:
+  static constexpr std::string_view project = "drogue::";
 };
 
 /// Name of the functor in a demangled name of a kernel of Kokkos or of `device::PersistentKernel`, without

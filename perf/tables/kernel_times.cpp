@@ -21,11 +21,9 @@ struct KernelTime {
 };
 
 KernelTime time_of(const KernelProfile& kernel) {
-  constexpr std::string_view project = "drogue::";
-  if (!kernel.kernel.starts_with(project))
-    return {kernel.kernel, "library", kernel.launches, kernel.duration};
-  const std::string name = kernel.kernel.substr(project.size());
-  return {name, name.substr(0, name.find("::")), kernel.launches, kernel.duration};
+  const std::string name = kernel.name();
+  return {name, kernel.is_own() ? name.substr(0, name.find("::")) : "library", kernel.launches,
+          kernel.duration};
 }
 
 /// Times by `key`, largest first.
@@ -34,7 +32,6 @@ std::vector<KernelTime> sums(const std::vector<KernelTime>& kernels, std::string
   for (const KernelTime& kernel : kernels) {
     KernelTime& sum = by_key[kernel.*key];
     sum.name = kernel.*key;
-    sum.area = kernel.area;
     sum.launches += kernel.launches;
     sum.seconds += kernel.seconds;
   }

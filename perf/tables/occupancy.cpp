@@ -193,15 +193,13 @@ ProfiledKernel compare_with_model(const KernelProfile& kernel) {
                    .achieved = std::min(
                        {kernel.by_registers, kernel.by_shared_memory, kernel.by_threads, kernel.by_limit}),
                    .mean = 0.0,
-                   .name = kernel.kernel,
+                   .name = kernel.name(),
                    .mismatches = 0};
   k.predicted = occupancy(k.on, k.block, kernel.carve_out);
   const int warps = (kernel.threads + 31) / 32;
   k.mean = kernel.active_fraction * k.on.threads / (32.0 * warps);
   const bool exceeds = k.mean > (1.0 + counter_tolerance) * k.predicted.blocks;
   k.mismatches = std::abs(k.achieved - k.predicted.blocks) + (exceeds ? 1 : 0);
-  constexpr std::string_view project = "drogue::";
-  if (k.name.starts_with(project)) k.name.erase(0, project.size());
   return k;
 }
 

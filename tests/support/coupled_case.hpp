@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/coupling/staggered_grid.hpp"
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "tests/support/backend.hpp"
 #include "tests/support/profiled.hpp"
@@ -34,6 +35,17 @@ struct CoupledCase {
 
   [[nodiscard]] double width() const { return p.flow.high[2]; }
   [[nodiscard]] double volume() const { return p.flow.high[0] * p.flow.high[1] * p.flow.high[2]; }
+
+  /// Grid of the references; by default periodic along all axes.
+  [[nodiscard]] coupling::StaggeredGrid grid(const std::array<bool, 3>& periodic = {true, true, true}) const {
+    coupling::StaggeredGrid grid;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      grid.cells[axis] = p.flow.cells[axis];
+      grid.spacing[axis] = p.flow.high[axis] / p.flow.cells[axis];
+      grid.periodic[axis] = periodic[axis];
+    }
+    return grid;
+  }
 
   /// Adds a strip of `segments` segments from (x0, y0) to (x1, y1), m, pinned everywhere. Its normal is that
   /// of the segment turned by a right angle clockwise: along x for a strip along y.

@@ -41,12 +41,17 @@ struct BoundaryConditions {
   }
 };
 
+/// True if an expression depends on t. Does not throw.
+inline bool changes_in_time(const device::ExpressionProgram& program) {
+  return std::find(program.operations, program.operations + program.length, device::Operation::t) !=
+         program.operations + program.length;
+}
+
 /// True if a prescribed velocity is an expression of t. Does not throw.
 inline bool change_in_time(const std::array<Boundary, 6>& sides) {
   for (const Boundary& side : sides)
     for (const device::ExpressionProgram& program : side.velocity_expressions)
-      for (int i = 0; i < program.length; ++i)
-        if (program.operations[i] == device::Operation::t) return true;
+      if (changes_in_time(program)) return true;
   return false;
 }
 

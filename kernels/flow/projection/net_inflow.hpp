@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -15,10 +14,7 @@ inline bool inflow_changes(const std::array<Boundary, 6>& sides) {
   for (std::size_t side = 0; side < 6; ++side) {
     const std::vector<device::ExpressionProgram>& components = sides[side].velocity_expressions;
     if (components.empty()) continue;
-    const device::ExpressionProgram& normal = components[side / 2];
-    if (std::find(normal.operations, normal.operations + normal.length, device::Operation::t) !=
-        normal.operations + normal.length)
-      return true;
+    if (changes_in_time(components[side / 2])) return true;
   }
   return false;
 }

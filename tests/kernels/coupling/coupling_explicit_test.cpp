@@ -35,12 +35,6 @@ CoupledCase piston(double mass, const PorousLaw& law) {
 }
 
 reference::PistonParameters reference_of(const CoupledCase& c, double mass) {
-  StaggeredGrid grid;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    grid.cells[axis] = c.p.flow.cells[axis];
-    grid.spacing[axis] = h;
-    grid.periodic[axis] = true;
-  }
   // Two vertices share the corners of the periodic box; those at its ends have half the area.
   std::vector<double> areas;
   for (std::size_t i = 0; i < c.x.size(); ++i)
@@ -48,7 +42,7 @@ reference::PistonParameters reference_of(const CoupledCase& c, double mass) {
   reference::PistonParameters p;
   p.mass = mass;
   p.fluid_mass = c.p.flow.density * c.p.flow.high[0];
-  p.compliance = reference::spread_row_sums(grid, c.p.sheet.kernel, c.x, areas, c.p.flow.density)[8][0];
+  p.compliance = reference::spread_row_sums(c.grid(), c.p.sheet.kernel, c.x, areas, c.p.flow.density)[8][0];
   p.alpha = c.p.sheet.law.alpha, p.beta = c.p.sheet.law.beta;
   p.filter = c.p.sheet.filter;
   p.dt = c.p.flow.fixed_dt;

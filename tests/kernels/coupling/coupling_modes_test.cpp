@@ -26,16 +26,6 @@ constexpr double h = 0.1, closed = std::numeric_limits<double>::infinity();
 /// Velocities so small that the weights of the delta functions stay the same, m/s.
 constexpr double slow = 1e-6;
 
-StaggeredGrid grid_of(const CoupledCase& c) {
-  StaggeredGrid grid;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    grid.cells[axis] = c.p.flow.cells[axis];
-    grid.spacing[axis] = c.p.flow.high[axis] / c.p.flow.cells[axis];
-    grid.periodic[axis] = true;
-  }
-  return grid;
-}
-
 void set_law(CoupledCase& c, double alpha) {
   c.p.sheet.law = {alpha == closed ? 0.0 : alpha, 0.0, alpha == closed};
 }
@@ -63,7 +53,7 @@ struct Piston {
     std::vector<double> areas;
     for (const double of_vertex : c.p.fabric.mass) areas.push_back(of_vertex / mass);
     p.compliance = p.spread =
-        reference::spread_row_sums(grid_of(c), c.p.sheet.kernel, places, areas, c.p.flow.density)[middle][0];
+        reference::spread_row_sums(c.grid(), c.p.sheet.kernel, places, areas, c.p.flow.density)[middle][0];
     const double air_mass = c.p.flow.density * c.p.flow.high[0];
     p.response = 1.0 / air_mass;
     p.stiffness = std::pow(omega_dt / p.dt, 2) * air_mass;
@@ -165,7 +155,7 @@ struct SineSheet {
       shape.push_back(std::sin(k * c.x[i][1]));
       impulses[i][0] = areas[i] * shape[i];
     }
-    const StaggeredGrid grid = grid_of(c);
+    const StaggeredGrid grid = c.grid();
     const auto amplitude = [&](const reference::FaceField& field) {
       const std::vector<Vector> at_vertices = reference::interpolate(grid, c.p.sheet.kernel, field, c.x);
       double sum = 0.0, norm = 0.0;

@@ -32,16 +32,10 @@ TEST(FixedSheet, LeaksInProportionToTheStepWithoutTheFilteredAcceleration) {
     c.add_strip(1.66, 0.0, 1.66, 1.6, 16);
     c.p.sheet.filter = 0.0;
     c.p.substeps = 1;
-    StaggeredGrid grid;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      grid.cells[axis] = c.p.flow.cells[axis];
-      grid.spacing[axis] = h;
-      grid.periodic[axis] = true;
-    }
     std::vector<double> areas;
     for (const double mass : c.p.fabric.mass) areas.push_back(mass / 0.0373);
     const double row_sum =
-        reference::spread_row_sums(grid, c.p.sheet.kernel, c.x, areas, c.p.flow.density)[16][0];
+        reference::spread_row_sums(c.grid(), c.p.sheet.kernel, c.x, areas, c.p.flow.density)[16][0];
     CoupledRun run(c);
     ASSERT_TRUE(run.advance(400 << level));
     const double law = CoupledCase::law_velocity(dp);
