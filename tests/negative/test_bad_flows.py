@@ -56,6 +56,10 @@ class BadFlows(parachute_program.FlowTest):
         self.scene.write_text(free, encoding="utf-8")
         self.expect(0, self.scene, "--check", sets=[follow])
         self.assertIn("canopy[0].payload.fixed is true", self.refusal(follow, "canopy[0].payload.fixed=true"))
+        guided = "canopy[0].payload={mass=0.5,guided=true}"
+        self.expect(0, self.scene, "--check", sets=[follow, guided])
+        self.assertIn("moves along x, whose sides are open; canopy[0].payload.guided",
+                      self.refusal(follow, guided, 'grid.boundary.x=["inflow","outflow"]'))
         for side in ("periodic", "slip", "wall"):
             self.assertIn('needs an axis whose sides are "inflow" or "outflow"',
                           self.refusal(follow, "fluid.velocity=[0, 0, 0]", f'grid.boundary.z="{side}"'))

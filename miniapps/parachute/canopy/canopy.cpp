@@ -281,6 +281,30 @@ void stretch_drum(const Canopy& canopy, const CanopyAxes& axes, const RingMesh& 
   }
 }
 
+/// Vent lines as springs from the vertices of the vent to the place where they cross. Where the vent has
+/// fewer vertices than the canopy has gores, each spring stands for the lines of several seams.
+void add_vent_lines(const Canopy& canopy, const CanopyAxes& axes, const RingMesh& cloth, CanopyMesh& to) {
+  if (!canopy.vent_lines) return;
+  fabric::Parameters& p = to.fabric;
+  std::vector<int> edge(static_cast<std::size_t>(cloth.ring_size.front()));
+  std::iota(edge.begin(), edge.end(), cloth.ring_begin.front());
+  const auto ends = static_cast<double>(edge.size());
+  const double mass = 0.5 * canopy.vent_lines->line_density * canopy.gores * 0.5 * canopy.vent;
+  Vector centre{};
+  for (const int i : edge) {
+    p.mass[static_cast<std::size_t>(i)] += mass / ends;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      centre[axis] += to.positions[static_cast<std::size_t>(i)][axis] / ends;
+  }
+  const auto first = static_cast<int>(p.mesh.lines.size());
+  for (std::size_t k = 0; k < edge.size(); ++k) to.vent_lines.push_back(first + static_cast<int>(k));
+  fabric::add_payload(p,
+                      {constructed_place(canopy, axes, PolarPoint{}), mass,
+                       canopy.vent_lines->stiffness * canopy.gores / ends},
+                      edge);
+  to.positions.push_back(centre);
+}
+
 /// Suspension lines, the riser and the payload, unless it is shared.
 void add_lines(const Canopy& canopy, const CanopyAxes& axes, CanopyMesh& to) {
   fabric::Parameters& p = to.fabric;
@@ -356,8 +380,14 @@ double Canopy::starting_skirt_radius() const {
 std::size_t Canopy::vertices() const {
   const std::vector<int> sizes = ring_sizes(*this);
   const int ends = (riser ? 1 : 0) + (payload.shared ? 0 : 1);
-  const int others = (vent == 0.0 ? 1 : 0) + (has_lines() ? ends : 0);
+  const int others = (vent == 0.0 ? 1 : 0) + (vent_lines ? 1 : 0) + (has_lines() ? ends : 0);
   return static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), others));
+}
+
+const char* CanopyRows::part_of(std::size_t vertex) const {
+  if (vertex < cloth_end) return "cloth";
+  if (vertex == vent_crossing) return "vent lines";
+  return vertex == payload ? "payload" : "riser";
 }
 
 std::vector<int> ring_sizes(const Canopy& canopy) {
@@ -396,6 +426,7 @@ CanopyMesh make_canopy(const Canopy& canopy) {
   p.mass = fabric::lumped_masses(p.mesh, canopy.area_density, 0.0, fabric::Lumping::area);
   if (canopy.kind == CanopyKind::drum) stretch_drum(canopy, axes, cloth, result);
   add_reinforcement(canopy, cloth, p.mesh);
+  add_vent_lines(canopy, axes, cloth, result);
   const int skirt_begin = cloth.ring_begin.back(), per_gore = cloth.ring_size.back() / canopy.gores;
   for (int gore = 0; gore < canopy.gores; ++gore) result.skirt.push_back(skirt_begin + gore * per_gore);
   add_reefing(canopy, result);
@@ -403,7 +434,8 @@ CanopyMesh make_canopy(const Canopy& canopy) {
   p.pinned.assign(p.mesh.rest.size(), 0);
   if (canopy.kind == CanopyKind::drum)
     std::fill(p.pinned.begin() + skirt_begin, p.pinned.end(), std::uint8_t{7});
-  if (canopy.has_lines() && canopy.payload.fixed && !canopy.payload.shared) p.pinned.back() = 7;
+  if (canopy.has_lines() && !canopy.payload.shared)
+    p.pinned.back() = canopy.payload.fixed ? 7 : canopy.payload.guided ? 3 : 0;
   return result;
 }
 
@@ -451,6 +483,7 @@ void append_canopy(const Canopy& canopy, const coupling::PorousLaw& law, Sheets&
   for (const int k : one.reefing) rows.reefing.push_back(line + k);
   for (const int k : one.suspension) rows.suspension.push_back(line + k);
   if (one.riser) rows.riser = line + *one.riser;
+  if (canopy.vent_lines) rows.vent_crossing = rows.cloth_end;
   if (canopy.has_lines()) rows.payload = rows.end - 1;
   if (canopy.payload.shared && canopy.riser) {
     rows.payload = sheets.canopies[static_cast<std::size_t>(*canopy.payload.shared)].payload;

@@ -47,6 +47,7 @@ struct SuspensionLines {
 struct CanopyPayload {
   double mass = 100.0;            ///< kg
   bool fixed = false;             ///< it does not move
+  bool guided = false;            ///< it moves along z alone
   std::optional<double> release;  ///< s, at which the lines, or the riser, are cut
   std::optional<int> shared;      ///< number of the canopy that has the payload
 };
@@ -63,6 +64,12 @@ struct ReefingLine {
   double length = 0.0;        ///< m
   double stiffness = 8000.0;  ///< E A, N
   std::optional<double> cut;  ///< s
+};
+
+/// Lines across the vent, from seam to seam, which are tied where they cross.
+struct VentLines {
+  double stiffness = 8000.0;     ///< E A of each line, N
+  double line_density = 0.0066;  ///< kg/m; half of it moves with the vent, half with the crossing
 };
 
 /// Conical skirt below the edge of the flat cloth.
@@ -103,6 +110,7 @@ struct Canopy {
   std::optional<Riser> riser;
   CanopyPayload payload;
   std::optional<ReefingLine> reefing;
+  std::optional<VentLines> vent_lines;
   double tension = 0.0;     ///< N/m, of a drum
   double deflection = 0.0;  ///< m, of the centre of a drum at the start, along its axis
   Reinforcement reinforcement;
@@ -127,28 +135,32 @@ struct Canopy {
   [[nodiscard]] double nominal_area() const;
   /// Radius of the edge to which the lines are attached, at the start, m. Does not throw.
   [[nodiscard]] double starting_skirt_radius() const;
-  /// Number of vertices, those of a riser and of an own payload included. Does not throw.
+  /// Number of vertices, those of vent lines, a riser and an own payload included. Does not throw.
   [[nodiscard]] std::size_t vertices() const;
 };
 
 /// A canopy as a mesh, without its place in that of the scene.
 struct CanopyMesh {
-  fabric::Parameters
-      fabric;  ///< after the cloth: where the lines meet the riser, and the payload unless shared
+  /// After the cloth: where the vent lines cross, where the lines meet the riser, the payload unless shared.
+  fabric::Parameters fabric;
   std::vector<fabric::Vector> positions;  ///< at the start, m
   std::size_t cloth_vertices = 0;         ///< they come first
   std::vector<int> skirt;                 ///< vertices to which the lines are attached, one per gore
-  std::vector<int> reefing, suspension;   ///< numbers of lines
-  std::optional<int> riser;               ///< line to an own payload
+  std::vector<int> vent_lines, reefing, suspension;  ///< numbers of lines
+  std::optional<int> riser;                          ///< line to an own payload
 };
 
 /// Rows of a canopy in the vectors of the solver.
 struct CanopyRows {
   std::size_t begin = 0, cloth_end = 0, end = 0;  ///< vertices, those of the cloth first
+  std::optional<std::size_t> vent_crossing;       ///< where the vent lines cross
   std::optional<std::size_t> payload;             ///< perhaps of an earlier canopy
   std::size_t triangles_begin = 0, triangles_end = 0;
   std::vector<int> reefing, suspension;  ///< numbers of lines
   std::optional<int> riser;
+
+  /// What a vertex of the canopy belongs to: "cloth", "vent lines", "payload" or "riser". Does not throw.
+  [[nodiscard]] const char* part_of(std::size_t vertex) const;
 };
 
 /// All sheets of a scene as one fabric.

@@ -38,6 +38,8 @@ double cell_width(const flow::Parameters& p, std::size_t axis) {
 void check_measures(const Table& root, const Canopy& canopy, const std::string& name) {
   if (canopy.vent == 0.0 && canopy.reinforcement.vent > 0.0)
     contradict(root, name + ".reinforcement.vent", name + ".reinforcement.vent: this canopy has no vent");
+  if (canopy.vent == 0.0 && canopy.vent_lines)
+    contradict(root, name + ".vent_lines", name + ".vent_lines: this canopy has no vent");
   if (canopy.perturbation.amplitude > 0.25 * canopy.edge_length)
     contradict(root, name + ".perturbation.amplitude",
                name + ".perturbation.amplitude = " + real_text(canopy.perturbation.amplitude) +
@@ -231,6 +233,12 @@ void check_frame(const Table& root, const FlowScene& scene) {
     if (scene.canopies[i].payload.fixed && !scene.canopies[i].payload.shared)
       contradict(root, "grid.frame",
                  follow + " needs payloads that move freely; " + name_of(i) + ".payload.fixed is true");
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
+    for (const std::size_t axis : {0U, 1U})
+      if (scene.canopies[i].payload.guided && scene.open_axes()[axis])
+        contradict(root, "grid.frame",
+                   follow + " moves along " + axis_names[axis] + ", whose sides are open; " + name_of(i) +
+                       ".payload.guided keeps the payload from it");
   const auto require_constant = [&](const std::string& key, const VectorExpression& velocity) {
     for (const std::string& component : velocity)
       if (!component.empty() && !SpaceTimeFunction(component).constant())

@@ -122,6 +122,10 @@ void declare_payload(Table& table, CanopyPayload& payload) {
   table.value("fixed", scene::boolean_codec(payload.fixed), "The payload does not move")
       .when(is_own, "without shared", "shared");
   table
+      .value("guided", scene::boolean_codec(payload.guided),
+             "The payload moves along z alone, as on a guide wire without friction")
+      .when([&payload] { return !payload.shared && !payload.fixed; }, "without shared and fixed", "fixed");
+  table
       .value("release", scene::real_codec(payload.release),
              "Time at which the riser, or without one the lines, are cut")
       .unit("s")
@@ -157,6 +161,19 @@ void declare_reefing(Table& table, ReefingLine& reefing) {
       .unit("s")
       .above(0.0)
       .default_text("never");
+}
+
+void declare_vent_lines(Table& table, VentLines& lines) {
+  table
+      .value("stiffness", scene::real_codec(lines.stiffness),
+             "Young's modulus times cross-section of each line; lines carry no compression")
+      .unit("N")
+      .above(0.0);
+  table
+      .value("line_density", scene::real_codec(lines.line_density),
+             "Mass per length; half of it moves with the edge of the vent, half with the crossing")
+      .unit("kg/m")
+      .above(0.0);
 }
 
 void declare_reinforcement(Table& table, Reinforcement& bands) {
@@ -240,6 +257,10 @@ void declare_canopy(Table& table, Canopy& canopy, const std::function<bool()>& w
   table
       .optional_table("reefing", canopy.reefing, declare_reefing,
                       "Closed line through the skirt, between the suspension lines")
+      .when(has_lines, no_sheet, "kind");
+  table
+      .optional_table("vent_lines", canopy.vent_lines, declare_vent_lines,
+                      "Lines across the vent from seam to seam, tied where they cross")
       .when(has_lines, no_sheet, "kind");
   table.table(
       "reinforcement", [&](Table& bands) { declare_reinforcement(bands, canopy.reinforcement); },

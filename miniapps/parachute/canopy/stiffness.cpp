@@ -16,15 +16,20 @@ StiffPart stiffest_part(const Canopy& canopy, const CanopyMesh& mesh) {
     double inverse_mass = 0.0;
     for (const int i : p.mesh.lines[k])
       if (const auto end = static_cast<std::size_t>(i); p.pinned[end] != 7) inverse_mass += 1.0 / p.mass[end];
-    const double frequency = std::sqrt(stiffness / mesh::rest_length(p.mesh, k) * inverse_mass);
+    const double frequency =
+        std::sqrt(p.mesh.line_stiffness[k] / mesh::rest_length(p.mesh, k) * inverse_mass);
     if (frequency > stiffest.frequency) stiffest = {key, stiffness, "N", frequency};
   };
   for (const int line : mesh.suspension) compare("lines.stiffness", canopy.lines.stiffness, line);
   if (canopy.reefing)
     for (const int line : mesh.reefing) compare("reefing.stiffness", canopy.reefing->stiffness, line);
   if (canopy.riser && mesh.riser) compare("riser.stiffness", canopy.riser->stiffness, *mesh.riser);
+  if (canopy.vent_lines)
+    for (const int line : mesh.vent_lines)
+      compare("vent_lines.stiffness", canopy.vent_lines->stiffness, line);
   // Bands come before all other lines.
-  const int bands = static_cast<int>(p.mesh.lines.size() - mesh.suspension.size() - mesh.reefing.size()) -
+  const int bands = static_cast<int>(p.mesh.lines.size() - mesh.suspension.size() - mesh.reefing.size() -
+                                     mesh.vent_lines.size()) -
                     (mesh.riser ? 1 : 0);
   for (int line = 0; line < bands; ++line)
     compare("reinforcement", p.mesh.line_stiffness[static_cast<std::size_t>(line)], line);

@@ -194,10 +194,8 @@ std::string canopy_vertex_text(const Sheets& sheets, std::size_t vertex) {
   for (std::size_t i = 0; i < sheets.canopies.size(); ++i) {
     const CanopyRows& rows = sheets.canopies[i];
     if (vertex < rows.begin || vertex >= rows.end) continue;
-    if (vertex < rows.cloth_end)
-      text << "vertex " << vertex - rows.begin << " of the cloth of canopy[" << i << "]";
-    else
-      text << (vertex == rows.payload ? "the payload" : "the riser") << " of canopy[" << i << "]";
+    if (vertex < rows.cloth_end) text << "vertex " << vertex - rows.begin << " of ";
+    text << "the " << rows.part_of(vertex) << " of canopy[" << i << "]";
   }
   return text.str();
 }

@@ -126,10 +126,7 @@ std::string Simulation::leaving_part_text(std::size_t vertex) const {
   for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
     const CanopyRows& rows = _sheets.canopies[i];
     if (vertex < rows.begin || vertex >= rows.end) continue;
-    const char* part = vertex < rows.cloth_end  ? "its cloth"
-                       : vertex == rows.payload ? "its payload"
-                                                : "its riser";
-    return "canopy[" + std::to_string(i) + "] leaves the domain: " + part;
+    return "canopy[" + std::to_string(i) + "] leaves the domain: its " + rows.part_of(vertex);
   }
   for (std::size_t i = 0; i < _sheets.flags.size(); ++i)
     if (vertex >= _sheets.flags[i].begin && vertex < _sheets.flags[i].end)

@@ -277,6 +277,74 @@ TEST(Canopy, FixedPayloadIsTheOnlyPinnedVertex) {
   EXPECT_EQ(std::accumulate(mesh.fabric.pinned.begin(), mesh.fabric.pinned.end(), 0), 7);
 }
 
+TEST(Canopy, GuidedPayloadMovesAlongTheStreamAlone) {
+  Canopy canopy = c9(0.5);
+  canopy.payload.guided = true;
+  const CanopyMesh mesh = make_canopy(canopy);
+  EXPECT_EQ(mesh.fabric.pinned.back(), 1 + 2) << "x and y";
+  EXPECT_EQ(std::accumulate(mesh.fabric.pinned.begin(), mesh.fabric.pinned.end(), 0), 3);
+}
+
+TEST(Canopy, VentLinesCrossInTheMiddleOfTheVent) {
+  for (const double edge_length : {0.5, 0.1, 0.02}) {
+    Canopy canopy = c9(edge_length);
+    const double bare =
+        std::accumulate(make_canopy(canopy).fabric.mass.begin(), make_canopy(canopy).fabric.mass.end(), 0.0);
+    canopy.vent_lines = VentLines{5000.0, 0.01};
+    canopy.centre = {1.0, 2.0, 3.0};
+    canopy.angle = 30.0;
+    const CanopyMesh mesh = make_canopy(canopy);
+    EXPECT_EQ(mesh.positions.size(), canopy.vertices());
+    EXPECT_FALSE(mesh::find_defect(mesh.fabric.mesh));
+    const auto crossing = static_cast<int>(mesh.cloth_vertices);
+    const auto ring = static_cast<std::size_t>(ring_sizes(canopy).front());
+    ASSERT_EQ(mesh.vent_lines.size(), ring);
+    double stiffness = 0.0;
+    for (std::size_t k = 0; k < ring; ++k) {
+      const auto line = static_cast<std::size_t>(mesh.vent_lines[k]);
+      EXPECT_EQ(mesh.fabric.mesh.lines[line], (std::array{static_cast<int>(k), crossing}));
+      EXPECT_NEAR(mesh::rest_length(mesh.fabric.mesh, line), 0.5 * 0.457, 1e-12);
+      EXPECT_NEAR(distance_of(mesh.positions[k], mesh.positions[mesh.cloth_vertices]), 0.5 * 0.457, 1e-12);
+      stiffness += mesh.fabric.mesh.line_stiffness[line];
+    }
+    EXPECT_NEAR(stiffness, 28 * 5000.0, 1e-8) << "as many half lines as gores";
+    const double total = std::accumulate(mesh.fabric.mass.begin(), mesh.fabric.mass.end(), 0.0);
+    EXPECT_NEAR(total - bare, 14 * 0.457 * 0.01, 1e-12) << "14 lines across the vent";
+    EXPECT_NEAR(mesh.fabric.mass[mesh.cloth_vertices], 7 * 0.457 * 0.01, 1e-15);
+    for (const int k : mesh.suspension)
+      EXPECT_EQ(mesh.fabric.mesh.lines[static_cast<std::size_t>(k)][1], crossing + 1) << "the payload";
+  }
+}
+
+TEST(Canopy, VentLinesAreSlackInAPleatedCone) {
+  for (const double closure : {0.12, 0.25, 0.5, 0.9}) {
+    Canopy canopy = c9(0.14);
+    canopy.shape = CanopyShape::partly_closed;
+    canopy.closure = closure;
+    canopy.vent_lines = VentLines{};
+    const CanopyMesh mesh = make_canopy(canopy);
+    for (const int k : mesh.vent_lines) {
+      const auto& [edge, crossing] = mesh.fabric.mesh.lines[static_cast<std::size_t>(k)];
+      EXPECT_LE(distance_of(mesh.positions[static_cast<std::size_t>(edge)],
+                            mesh.positions[static_cast<std::size_t>(crossing)]),
+                0.5 * 0.457 * (1.0 + 1e-12));
+    }
+  }
+}
+
+TEST(Canopy, VerticesBeyondTheClothAreNamed) {
+  Canopy canopy = c9(0.5);
+  canopy.vent_lines = VentLines{};
+  canopy.riser = Riser{3.0, 2e5, 0.5};
+  const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+  const CanopyRows& rows = sheets.canopies.front();
+  ASSERT_EQ(rows.end, rows.cloth_end + 3);
+  EXPECT_STREQ(rows.part_of(rows.cloth_end - 1), "cloth");
+  EXPECT_STREQ(rows.part_of(rows.cloth_end), "vent lines");
+  EXPECT_STREQ(rows.part_of(rows.cloth_end + 1), "riser");
+  EXPECT_STREQ(rows.part_of(rows.end - 1), "payload");
+}
+
 TEST(Canopy, ReinforcementFollowsEdgesOfTheCloth) {
   Canopy canopy = c9(0.1);
   canopy.reinforcement = {1000.0, 2000.0, 3000.0};
