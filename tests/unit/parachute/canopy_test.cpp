@@ -288,8 +288,8 @@ TEST(Canopy, GuidedPayloadMovesAlongTheStreamAlone) {
 TEST(Canopy, VentLinesCrossInTheMiddleOfTheVent) {
   for (const double edge_length : {0.5, 0.1, 0.02}) {
     Canopy canopy = c9(edge_length);
-    const double bare =
-        std::accumulate(make_canopy(canopy).fabric.mass.begin(), make_canopy(canopy).fabric.mass.end(), 0.0);
+    const std::vector<double> bare_masses = make_canopy(canopy).fabric.mass;
+    const double bare = std::accumulate(bare_masses.begin(), bare_masses.end(), 0.0);
     canopy.vent_lines = VentLines{5000.0, 0.01};
     canopy.centre = {1.0, 2.0, 3.0};
     canopy.angle = 30.0;
