@@ -160,6 +160,9 @@ BAD_LINES = [
     (39, "leak = [{ from = 0.05, to = 0.2, tolerance = 1 }]", 39, ["verify.leak[0].to", "run.end_time"]),
     (39, "leak = [{ from = 0.05, to = 0.1 }]", 39, ["verify.leak[0].tolerance"]),
     (39, "leak = [{ from = 0.05, to = 0.1, tolerance = -1 }]", 39, ["verify.leak[0].tolerance"]),
+    (39, "leak = [{ from = 0.05, to = 0.1, tolerance = 1, rms_tolerance = -1 }]", 39, ["verify.leak[0].rms_tolerance", ">= 0"]),
+    # The payload is fixed.
+    (3, "velocity = [0, 0, 0]", 39, ["verify.drag[0] is relative to the speed", "fluid.velocity is 0", "canopy[0].payload.fixed"]),
     (42, "intersections = 0", 42, ["verify.intersections", "coupling.contact"]),
     (41, "peak_force = [{ canopy = 2, force = [1, 100] }]", 41, ["verify.peak_force[0].canopy = 2"]),
     (41, "peak_force = [{ canopy = 1, force = [100, 1] }]", 41, ["verify.peak_force[0].force"]),
