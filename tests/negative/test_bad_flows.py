@@ -107,7 +107,7 @@ class BadFlows(parachute_program.FlowTest):
             self.assertTrue(key.startswith(name[1]), key)
         for key, words in {"output.fields=['velocity']": '"velocity" needs [fluid]', "run.dt=0": "run.dt",
                            "output.fields=['position','vorticity']": '"vorticity" needs [fluid]',
-                           "canopy[0].edge_length=1e-4": "2^20", "coupling.allow_unstable=true": "coupling.allow_unstable",
+                           "canopy[0].edge_length=1e-4": "2^20", "coupling.gravity=[0,0,1e30]": "an edge of canopy[0]", "coupling.allow_unstable=true": "coupling.allow_unstable",
                            "canopy[0].lines.length=0.9": "do not reach the payload"}.items():
             self.assertIn(words, self.refusal(key), key)
         self.assertIn('missing table "grid" (needed with [fluid])', self.refusal("fluid.density=1"))
