@@ -122,6 +122,8 @@ BAD_LINES = [
     (13, 'cloth = "mil-c-7020-1"', 14, ["canopy[0].area_density", "custom"]),
     (15, "edge_length = 0.08", 15, ["canopy[0].edge_length = 0.08", "too coarse", "0.0714"]),
     (15, "edge_length = 1e-4", 15, ["canopy[0].edge_length", "2^20"]),
+    (15, "edge_length = 1e-300", 15, ["canopy[0].edge_length", "2^20"]),
+    (25, 'kind = "extended-skirt"\nskirt = { length = 2000, diameter = 1.2 }', 29, ["canopy[1].edge_length", "2^20"]),
     (16, 'shape = "flat"', 17, ["canopy[0].closure", "partly-closed"]),
     (16, 'shape = "angled-15"', 17, ["canopy[0].closure", "partly-closed"]),
     (17, "closure = 0.3", 17, ["canopy[0].closure = 0.3", "8 gores", "0.38"]),
