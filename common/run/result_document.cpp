@@ -133,7 +133,8 @@ std::string ResultDocument::failed_check() const {
   if (std::isnan(failed->value))
     std::snprintf(
         text, sizeof text,
-        "%s could not be measured in this run, perhaps because it is too short; its tolerance is %.6g",
+        "%s could not be measured in this run, perhaps because it is too short, or relative to a value of 0; "
+        "its tolerance is %.6g",
         failed->name.c_str(), failed->tolerance);
   else
     std::snprintf(text, sizeof text, "%s is %.6g, above its tolerance %.6g", failed->name.c_str(),

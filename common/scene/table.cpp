@@ -39,6 +39,12 @@ Key& Key::at_most(double high) {
   return *this;
 }
 
+Key& Key::below(double high) {
+  _limits.high = high;
+  _limits.high_excluded = true;
+  return *this;
+}
+
 Key& Key::range(double low, double high) { return at_least(low).at_most(high); }
 
 Key& Key::default_text(std::string text) {

@@ -33,6 +33,7 @@ class Key {
   Key& above(double low);
   Key& at_least(double low);
   Key& at_most(double high);
+  Key& below(double high);
   Key& range(double low, double high);
   /// Documentation of a default that the variable cannot show.
   Key& default_text(std::string text);

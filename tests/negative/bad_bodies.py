@@ -50,6 +50,7 @@ BAD_LINES = [
     (13, "edge_length = -1", 13, ["body[0].edge_length", "> 0"]),
     (14, 'porosity = { law = "forchheimer", alpha = -1 }', 14, ["body[0].porosity.alpha", ">= 0"]),
     (14, 'porosity = { law = "forchheimer", beta = "2" }', 14, ["body[0].porosity.beta", "number"]),
+    (14, 'porosity = { law = "forchheimer", alpha = 0, beta = 0 }', 14, ["body[0].porosity: alpha and beta are 0", "no obstacle"]),
     (16, 'method = "spred"', 16, ["coupling.method", 'did you mean "spread"?']),
     (16, "filter = 1.5", 16, ["coupling.filter", "0 .. 1"]),
     # contradictions
@@ -128,7 +129,7 @@ BAD_ROUND_LINES = [
     (28, 'opening = "left"', 28, ["body[2].opening", '"low"']),
     # porosity
     (15, 'porosity = { law = "ergun", void_fraction = 0.4, thickness = 1e-4 }', 15, ['missing key "body[0].porosity.grain"']),
-    (15, 'porosity = { law = "ergun", void_fraction = 1.4, thickness = 1e-4, grain = 1e-5 }', 15, ["body[0].porosity.void_fraction", "<= 1"]),
+    (15, 'porosity = { law = "ergun", void_fraction = 1.4, thickness = 1e-4, grain = 1e-5 }', 15, ["body[0].porosity.void_fraction", "> 0 and < 1"]),
     (15, 'porosity = { law = "ergun", void_fraction = 0.4, thickness = 1e-4, grain = 1e-5, alpha = 1 }', 15, ["body[0].porosity.alpha", "forchheimer"]),
     (24, 'porosity = { law = "kim-peskin", pores = 0, conductance = 1e-9 }', 24, ["body[1].porosity.pores", "> 0"]),
     (24, 'porosity = { law = "kim-peskin", pores = 1e6 }', 24, ['missing key "body[1].porosity.conductance"']),

@@ -49,6 +49,7 @@ BAD_LINES = [
     (7, "cells = [40, 24, 4]", 9, ["grid.boundary.z"]),
     (8, "domain = [[-1, 4], [-1.5, 1.5], [0, 0]]", 8, ["grid.domain"]),
     (19, 'method = "explicit"', 19, ["coupling.method", "[[flag]]"]),
+    (19, "gravity = [0, -1e4, 0]", 19, ["coupling.gravity: 1e+04 m/s^2", "an edge of flag[0]", "at most 2.13e+03 m/s^2"]),
     (19, "contact = true", 19, ["coupling.contact", "[[canopy]]"]),
     (22, "", 20, ['missing key "run.max_dt"', "[[flag]]"]),
     (27, 'column = "flag_0_tip_z"', 27, ["verify.oscillation[0].column", 'did you mean "flag_0_tip_']),

@@ -77,6 +77,24 @@ class BadFlows(parachute_program.FlowTest):
         self.assertGreaterEqual(len(bad_canopies.BAD_LINES), 50)
         self.assert_lines_are_rejected(bad_canopies.GOOD, bad_canopies.BAD_LINES)
 
+    def test_rejects_ratios_to_a_speed_of_zero(self):
+        self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
+        still = ("fluid.velocity=[0, 0, 0]", "verify={leak=[{canopy=CANOPY,from=0.05,to=0.1,tolerance=1}]}")
+
+        def still_air(canopy):
+            return [text.replace("CANOPY", str(canopy)) for text in still]
+
+        self.assertIn("verify.leak[0] is relative to the speed of the fluid far upstream, which is 0: fluid.velocity is 0 and "
+                      "canopy[0].payload.fixed is true", self.refusal(*still_air(0)))
+        # The other payload moves, and the speed is that of the payload.
+        self.expect(0, self.scene, "--check", sets=still_air(1))
+        risers = ["canopy[0].riser={length=0.05}", "canopy[1].riser={length=0.05}", "canopy[1].payload={shared=0}", "canopy[1].angle=60",
+                  "canopy[0].angle=-60", "canopy[0].centre=[0, 0, 0]", "grid.domain=[[-4, 4], [-4, 4], [-4, 4]]", "grid.cells=[80, 80, 80]"]
+        self.expect(0, self.scene, "--check", sets=[*risers, still_air(1)[1]])
+        self.assertIn("canopy[0].payload.fixed is true", self.refusal(*risers, *still_air(1)))
+        self.scene.write_text(bad_canopies.DRUM, encoding="utf-8")
+        self.assertIn('canopy[0].kind is "drum"', self.refusal(still_air(0)[1]))
+
     def test_rejects_flows_in_cloth_drops(self):
         self.scene.write_text(parachute_program.CLOTH, encoding="utf-8")
         self.expect(0, self.scene, "--check")
@@ -93,7 +111,7 @@ class BadFlows(parachute_program.FlowTest):
             self.assertTrue(key.startswith(name[1]), key)
         for key, words in {"output.fields=['velocity']": '"velocity" needs [fluid]', "run.dt=0": "run.dt",
                            "output.fields=['position','vorticity']": '"vorticity" needs [fluid]',
-                           "canopy[0].edge_length=1e-4": "2^20", "coupling.allow_unstable=true": "coupling.allow_unstable",
+                           "canopy[0].edge_length=1e-4": "2^20", "coupling.gravity=[0,0,1e30]": "an edge of canopy[0]", "coupling.allow_unstable=true": "coupling.allow_unstable",
                            "canopy[0].lines.length=0.9": "do not reach the payload"}.items():
             self.assertIn(words, self.refusal(key), key)
         self.assertIn('missing table "grid" (needed with [fluid])', self.refusal("fluid.density=1"))

@@ -216,6 +216,12 @@ void complete_and_check_bodies(const Table& root, FlowScene& scene) {
 void check_porosity(const Table& root, const FlowScene& scene, const std::string& name,
                     const Porosity& porosity) {
   const coupling::PorousLaw law = law_of(porosity, scene.parameters.density, scene.parameters.viscosity);
+  if (!law.impermeable && law.alpha == 0.0 && law.beta == 0.0)
+    contradict(root, name + ".porosity",
+               name +
+                   ".porosity: alpha and beta are 0, so that the fluid passes without a pressure difference "
+                   "and the sheet is no obstacle; one of them must be positive, and law = \"none\" is "
+                   "impermeable");
   constexpr double most = 1e100;
   if (law.alpha <= most && law.beta <= most) return;
   contradict(root, name + ".porosity",

@@ -46,7 +46,7 @@ void declare_porosity(Table& table, Porosity& porosity) {
   const std::string bed = "ergun", pores = "kim-peskin";
   with("void_fraction", porosity.void_fraction, "Volume of voids over that of the sheet", ergun, bed)
       .above(0.0)
-      .at_most(1.0)
+      .below(1.0)
       .required();
   with("thickness", porosity.thickness, "Thickness of the sheet", ergun, bed).unit("m").above(0.0).required();
   with("grain", porosity.grain, "Diameter of its grains or threads", ergun, bed)

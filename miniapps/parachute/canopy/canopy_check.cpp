@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -128,9 +129,14 @@ void check_edges(const Table& root, const flow::Parameters& p, const Canopy& can
 
 void check_size(const Table& root, const Canopy& canopy, const std::string& name) {
   const std::string key = name + ".edge_length";
-  // Without counting, which would take as long as there are rings.
-  const double edges = canopy.diameter / canopy.edge_length;
-  if (edges * edges > most_canopy_vertices)
+  // Counting takes as long as there are rings, of three vertices at least.
+  const double along = 0.5 * canopy.diameter + (canopy.has_skirt() ? canopy.skirt.length : 0.0);
+  bool is_too_large = 3.0 * along / canopy.edge_length > most_canopy_vertices;
+  if (!is_too_large) {
+    const std::vector<int> sizes = ring_sizes(canopy);
+    is_too_large = std::accumulate(sizes.begin(), sizes.end(), 0.0) > most_canopy_vertices;
+  }
+  if (is_too_large)
     contradict(root, key,
                key + " = " + real_text(canopy.edge_length) + " m: the vertices are more than 2^20");
 }
@@ -160,7 +166,7 @@ void check_stiffness(const Table& root, const FlowScene& scene, const Canopy& ca
   text.precision(3);
   text << name << "." << part.key << ": " << part.stiffness << " " << part.unit << " needs some " << steps
        << " steps of the cloth in each step of the flow, of " << dt << " s; at most "
-       << coupling::most_substeps << ", with a lower stiffness or a smaller "
+       << coupling::most_substeps << ", with a lower stiffness, a larger edge_length or a smaller "
        << (scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.max_dt");
   contradict(root, name + "." + part.key, text.str());
 }

@@ -97,12 +97,12 @@ struct CanopyMean {
   Target target;
 };
 
-/// Largest magnitude that passes of the mean leak of a canopy over an interval of time, relative to the means
-/// of speed and projected area.
+/// Leak of a canopy over an interval of time, relative to the means of speed and projected area.
 struct CanopyLeak {
   int canopy = 0;
-  double from = 0.0, to = 0.0;  ///< s
-  double tolerance = 0.0;
+  double from = 0.0, to = 0.0;          ///< s
+  double tolerance = 0.0;               ///< largest magnitude of the mean that passes
+  std::optional<double> rms_tolerance;  ///< and largest root mean square
 };
 
 /// Bounds of the largest force of the lines on the payload of a canopy, N, and of its time, s.

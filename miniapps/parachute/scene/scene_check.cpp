@@ -225,6 +225,27 @@ void check_initial(const Table& root, const FlowScene& scene) {
   }
 }
 
+/// Gravity in whose field the cloth along one edge, hanging from its end, would double the length of the edge
+/// is a mistake: neither the cloth nor its mesh are meant for it.
+void check_gravity(const Table& root, const FlowScene& scene) {
+  const auto [x, y, z] = scene.gravity;
+  const double gravity = std::hypot(x, y, z);
+  const auto check = [&](const std::string& name, const auto& cloth) {
+    const double most = cloth.membrane_modulus / (cloth.area_density * cloth.edge_length);
+    if (gravity <= most) return;
+    std::ostringstream text;
+    text.precision(3);
+    text << "coupling.gravity: " << gravity << " m/s^2 would stretch an edge of " << name << " of "
+         << cloth.edge_length << " m to twice its length by the weight of its own cloth; at most " << most
+         << " m/s^2";
+    contradict(root, "coupling.gravity", text.str());
+  };
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
+    check("canopy[" + std::to_string(i) + "]", scene.canopies[i]);
+  for (std::size_t i = 0; i < scene.flags.size(); ++i)
+    check("flag[" + std::to_string(i) + "]", scene.flags[i]);
+}
+
 void complete_fields(const Table& root, FlowScene& scene) {
   std::vector<std::string> by_default;
   if (scene.has_fluid()) by_default = {"velocity", "pressure", "vorticity"};
@@ -246,6 +267,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
       contradict(root, "", "missing table \"fluid\": the fluid, without which a scene needs a [[canopy]]");
     check_and_place_canopies(root, scene.canopies);
     check_canopies(root, scene);
+    check_gravity(root, scene);
     complete_fields(root, scene);
     check_verify(root, scene);
     return;
@@ -265,6 +287,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   check_and_place_canopies(root, scene.canopies);
   check_canopies(root, scene);
   complete_and_check_flags(root, scene);
+  check_gravity(root, scene);
   complete_fields(root, scene);
   check_verify(root, scene);
   check_initial(root, scene);

@@ -168,6 +168,22 @@ void check_canopy_interval(const Table& root, const FlowScene& scene, const std:
   require_rows(root, scene, path);
 }
 
+/// Ratios to the speed far upstream need one: the fluid must not rest relative to the payload all the time.
+void check_speed(const Table& root, const FlowScene& scene, const std::string& path, int canopy) {
+  for (const std::string& component : scene.velocity)
+    if (SpaceTimeFunction(component).constant() != 0.0) return;
+  const auto of = static_cast<std::size_t>(canopy);
+  const bool is_drum = scene.canopies[of].kind == CanopyKind::drum;
+  const auto owner = static_cast<std::size_t>(scene.canopies[of].payload.shared.value_or(canopy));
+  if (!is_drum && !(scene.canopies[owner].has_lines() && scene.canopies[owner].payload.fixed)) return;
+  const std::string name = "canopy[" + std::to_string(is_drum ? of : owner) + "]";
+  contradict(root, path,
+             path +
+                 " is relative to the speed of the fluid far upstream, which is 0: fluid.velocity is 0 and " +
+                 (is_drum ? name + ".kind is \"drum\", whose rim rests" : name + ".payload.fixed is true") +
+                 "; give fluid.velocity");
+}
+
 void check_canopy_means(const Table& root, const FlowScene& scene, const std::string& key,
                         const std::vector<CanopyMean>& means) {
   for (std::size_t i = 0; i < means.size(); ++i) {
@@ -195,10 +211,15 @@ void check_energy_drift(const Table& root, const FlowScene& scene) {
 void check_canopy_checks(const Table& root, const FlowScene& scene) {
   const Verify& verify = scene.verify;
   check_canopy_means(root, scene, "drag", verify.drags);
+  for (std::size_t i = 0; i < verify.drags.size(); ++i)
+    check_speed(root, scene, "verify.drag[" + std::to_string(i) + "]", verify.drags[i].canopy);
   check_canopy_means(root, scene, "terminal_speed", verify.terminal_speeds);
   check_canopy_means(root, scene, "projected_area", verify.projected_areas);
-  for (std::size_t i = 0; i < verify.leaks.size(); ++i)
-    check_canopy_interval(root, scene, "verify.leak[" + std::to_string(i) + "]", verify.leaks[i]);
+  for (std::size_t i = 0; i < verify.leaks.size(); ++i) {
+    const std::string path = "verify.leak[" + std::to_string(i) + "]";
+    check_canopy_interval(root, scene, path, verify.leaks[i]);
+    check_speed(root, scene, path, verify.leaks[i].canopy);
+  }
   if (verify.intersections) {
     if (!scene.contact)
       contradict(root, "verify.intersections", "verify.intersections needs coupling.contact = true");

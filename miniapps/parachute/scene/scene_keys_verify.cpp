@@ -141,9 +141,14 @@ void declare_canopy_checks(Table& table, Verify& verify) {
       "leak", verify.leaks,
       [](Table& leak, CanopyLeak& value) {
         declare_interval(leak, value);
-        leak.value("tolerance", scene::real_codec(value.tolerance), "Largest ratio that passes")
+        leak.value("tolerance", scene::real_codec(value.tolerance),
+                   "Largest ratio of the mean that passes; what flows in and out of a canopy that breathes "
+                   "cancels")
             .at_least(0.0)
             .required();
+        leak.value("rms_tolerance", scene::real_codec(value.rms_tolerance),
+                   "Largest ratio of the root mean square that passes")
+            .at_least(0.0);
       },
       "Mean flow through canopies over the mean speed far upstream and the mean projected area");
   table.tables("peak_force", verify.peak_forces, declare_peak_force,

@@ -32,9 +32,14 @@ void check_canopies(const Verify& wanted, const CanopyRecord& record, run::Resul
   for (std::size_t i = 0; i < wanted.leaks.size(); ++i) {
     const CanopyLeak& leak = wanted.leaks[i];
     const std::string name = "leak_" + std::to_string(i);
-    const double value = record.relative_leak(static_cast<std::size_t>(leak.canopy), leak.from, leak.to);
+    const auto canopy = static_cast<std::size_t>(leak.canopy);
+    const double value = record.relative_leak(canopy, leak.from, leak.to),
+                 rms = record.relative_leak_rms(canopy, leak.from, leak.to);
     result.metrics.set("canopies", name, value);
     result.add_check(name, value, leak.tolerance);
+    const std::string name_of_rms = "leak_rms_" + std::to_string(i);
+    result.metrics.set("canopies", name_of_rms, rms);
+    if (leak.rms_tolerance) result.add_check(name_of_rms, rms, *leak.rms_tolerance);
   }
   // A value passes between two bounds if its distance from their mean is at most half of theirs.
   const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {

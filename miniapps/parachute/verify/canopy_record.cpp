@@ -41,16 +41,38 @@ void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies,
   }
 }
 
-double CanopyRecord::mean(std::size_t column, double from, double to) const {
+template <class Value>
+double CanopyRecord::mean_of(const Value& value, double from, double to) const {
   double integral = 0.0, first = std::numeric_limits<double>::quiet_NaN(), last = first;
   for (std::size_t row = 0; row < rows(); ++row) {
     const double time = at(row, 0);
     if (time < from || time > to) continue;
     if (std::isnan(first)) first = time;
-    if (!std::isnan(last)) integral += 0.5 * (time - last) * (at(row - 1, column) + at(row, column));
+    if (!std::isnan(last)) integral += 0.5 * (time - last) * (value(row - 1) + value(row));
     last = time;
   }
   return integral / (last - first);
+}
+
+double CanopyRecord::mean(std::size_t column, double from, double to) const {
+  return mean_of([&](std::size_t row) { return at(row, column); }, from, to);
+}
+
+double CanopyRecord::mean_square(std::size_t column, double from, double to) const {
+  return mean_of([&](std::size_t row) { return at(row, column) * at(row, column); }, from, to);
+}
+
+double CanopyRecord::stream(std::size_t canopy, double from, double to) const {
+  const double product = mean_speed(canopy, from, to) * mean_area(canopy, from, to);
+  return product > 0.0 ? product : std::numeric_limits<double>::quiet_NaN();
+}
+
+double CanopyRecord::relative_leak(std::size_t canopy, double from, double to) const {
+  return std::abs(mean(first_column + 4 + per_canopy * canopy, from, to)) / stream(canopy, from, to);
+}
+
+double CanopyRecord::relative_leak_rms(std::size_t canopy, double from, double to) const {
+  return std::sqrt(mean_square(first_column + 4 + per_canopy * canopy, from, to)) / stream(canopy, from, to);
 }
 
 CanopyRecord::Peak CanopyRecord::peak(std::size_t canopy) const {

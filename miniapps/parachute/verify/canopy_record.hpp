@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "common/run/restart/restart_file.hpp"
@@ -43,11 +42,12 @@ class CanopyRecord {
     return mean(first_column + 3 + per_canopy * canopy, from, to);
   }
 
-  /// Magnitude of the mean leak over the mean speed and the mean projected area, likewise.
-  [[nodiscard]] double relative_leak(std::size_t canopy, double from, double to) const {
-    return std::abs(mean(first_column + 4 + per_canopy * canopy, from, to)) /
-           (mean_speed(canopy, from, to) * mean_area(canopy, from, to));
-  }
+  /// Magnitude of the mean leak over the mean speed and the mean projected area, likewise. What flows in and
+  /// out of a canopy that breathes cancels. NaN also where speed or area are zero.
+  [[nodiscard]] double relative_leak(std::size_t canopy, double from, double to) const;
+
+  /// Root mean square of the leak, likewise: in and out add up.
+  [[nodiscard]] double relative_leak_rms(std::size_t canopy, double from, double to) const;
 
   /// Largest force of the lines on a payload. Does not throw.
   [[nodiscard]] Peak peak(std::size_t canopy) const;
@@ -73,6 +73,11 @@ class CanopyRecord {
     return _values[row * _columns + column];
   }
   [[nodiscard]] double mean(std::size_t column, double from, double to) const;
+  [[nodiscard]] double mean_square(std::size_t column, double from, double to) const;
+  template <class Value>
+  [[nodiscard]] double mean_of(const Value& value, double from, double to) const;
+  /// Mean speed times mean projected area, m^3/s; NaN if zero.
+  [[nodiscard]] double stream(std::size_t canopy, double from, double to) const;
 
   const FlowScene& _scene;
   fabric::Vector _stream{};  ///< velocity of the fluid far upstream, m/s

@@ -308,20 +308,25 @@ TEST(Chute, HasTheDragOfItsLawWhateverTheMassOfItsCloth) {
   const Inflation fast = inflate(60.0, 0.0373, false);
   EXPECT_NEAR(fast.drag / (36.0 * usual.drag), 1.0, 0.15);
   EXPECT_LT(fast.noise, 0.1);
-  EXPECT_NEAR(inflate(10.0, 0.0373, false, 0.1).drag / usual.drag, 1.0, 0.1);
+  const Inflation filtered = inflate(10.0, 0.0373, false, 0.1);
+  EXPECT_NEAR(filtered.drag / usual.drag, 1.0, 0.01);
+  EXPECT_LT(filtered.noise, 0.1);
 }
 
 TEST(Chute, InflatesIfImpermeable) {
+  // Own results, which are not chaotic: cloth whose mass differs by a thousandth changes them by 0.2 % at
+  // most.
+  struct Expected {
+    double speed, defect_filter, drag, noise;
+  };
   const double porous = inflate(10.0, 0.0373, false).drag;
-  for (const double defect_filter : {0.0, 0.1}) {
-    const Inflation found = inflate(10.0, 0.0373, true, defect_filter);
-    EXPECT_GT(found.drag, 1.2 * porous) << defect_filter;
-    EXPECT_LT(found.drag, 2.0 * porous) << defect_filter;
-    EXPECT_LT(found.noise, 2.0) << defect_filter;
+  for (const Expected& expected :
+       {Expected{10.0, 0.0, 1074.0, 0.575}, {10.0, 0.1, 1211.0, 1.057}, {60.0, 0.0, 38944.0, 0.322}}) {
+    const Inflation found = inflate(expected.speed, 0.0373, true, expected.defect_filter);
+    EXPECT_NEAR(found.drag / expected.drag, 1.0, 0.03) << expected.speed << ' ' << expected.defect_filter;
+    EXPECT_LT(found.noise, 1.1 * expected.noise) << expected.speed << ' ' << expected.defect_filter;
+    EXPECT_GT(found.drag, 1.2 * std::pow(expected.speed / 10.0, 2) * porous);
   }
-  const Inflation fast = inflate(60.0, 0.0373, true);
-  EXPECT_GT(fast.drag, 1.2 * 36.0 * porous);
-  EXPECT_LT(fast.noise, 2.0);
 }
 
 }  // namespace

@@ -633,6 +633,40 @@ TEST(GridTransfer, CompositeSplinesInterpolateDivergenceFreeFieldsWithoutDiverge
   }
 }
 
+/// Mean row sum along the normal of a plane sheet askew to the cells, times density and spacing: vertices
+/// within a cell of its middle, `part` cells apart.
+double row_sum_of_plane(double part) {
+  constexpr double spacing = 0.2, density = 1.2;
+  const StaggeredGrid grid = {{16, 16, 16}, {}, {spacing, spacing, spacing}, {true, true, true}};
+  constexpr Vector normal = {2.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0}, first = {2.0 / 3.0, -2.0 / 3.0, -1.0 / 3.0},
+                   second = {1.0 / 3.0, 2.0 / 3.0, -2.0 / 3.0}, middle = {1.626, 1.654, 1.538};
+  const double distance = part * spacing;
+  // Delta functions reach at most two cells from a vertex.
+  const int count = static_cast<int>(std::lround(5.0 / part));
+  Vectors points;
+  std::vector<std::size_t> inner;
+  for (int a = -count; a <= count; ++a)
+    for (int b = -count; b <= count; ++b) {
+      if (std::abs(a) * part <= 1.0 && std::abs(b) * part <= 1.0) inner.push_back(points.size());
+      Vector& place = points.emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        place[axis] = middle[axis] + distance * (a * first[axis] + b * second[axis]);
+    }
+  const std::vector<double> areas(points.size(), distance * distance);
+  const Vectors sums = Case<Space>(grid, DeltaKernel::cbs43, points).row_sums(areas, density);
+  double mean = 0.0;
+  for (const std::size_t i : inner)
+    for (std::size_t axis = 0; axis < 3; ++axis) mean += normal[axis] * normal[axis] * sums[i][axis];
+  return mean / static_cast<double>(inner.size()) * density * spacing;
+}
+
+TEST(GridTransfer, RowSumsDoNotDependOnTheDistanceOfVertices) {
+  const double finest = row_sum_of_plane(1.0 / 16.0);
+  for (const double part : {0.5, 0.25, 0.125})
+    EXPECT_NEAR(row_sum_of_plane(part) / finest, 1.0, 1e-4) << part;
+  EXPECT_NEAR(row_sum_of_plane(1.0 / 1.4) / finest, 1.0, 1e-3);
+}
+
 TEST(GridTransfer, RowSumsBoundTheEnergyOfSpreadImpulses) {
   // Impulses J = a f on a crumpled sheet give the fluid at most the energy of the local masses (D - A >= 0).
   const StaggeredGrid grid = all_grids()[0];

@@ -202,9 +202,26 @@ TEST(CanopyRecord, LeakIsThatOfAnIntervalRelativeToTheStream) {
     measures.leak = leaks[row];
     record.add(times[row], {measures}, 0.0, 0.0);
   }
+  // Trapezoids: means of the leak of -1 for 2 s and 0 for 1 s, and of its square of 5 and 1.
   EXPECT_NEAR(record.relative_leak(0, 0.5, 5.0), 2.0 / 3.0 / (5.0 * 4.0), 1e-15);
+  EXPECT_NEAR(record.relative_leak_rms(0, 0.5, 5.0), std::sqrt(11.0 / 3.0) / (5.0 * 4.0), 1e-15);
   EXPECT_NEAR(record.relative_leak(0, 1.0, 3.0), 1.0 / (5.0 * 4.0), 1e-15);
   EXPECT_TRUE(std::isnan(record.relative_leak(0, 3.5, 5.0))) << "one row is no interval";
+  EXPECT_TRUE(std::isnan(record.relative_leak_rms(0, 3.5, 5.0)));
+}
+
+TEST(CanopyRecord, LeakRelativeToStillAirIsNoNumber) {
+  FlowScene scene = scene_with_canopy();
+  scene.velocity = {"0", "0", "0"};
+  for (const double leak : {0.0, 1.0}) {
+    CanopyRecord record(scene);
+    CanopyMeasures measures = measures_of(0.0, 0.0, 40.0);
+    measures.leak = leak;
+    record.add(0.0, {measures}, 0.0, 0.0);
+    record.add(1.0, {measures}, 0.0, 0.0);
+    EXPECT_TRUE(std::isnan(record.relative_leak(0, 0.0, 1.0))) << leak;
+    EXPECT_TRUE(std::isnan(record.relative_leak_rms(0, 0.0, 1.0))) << leak;
+  }
 }
 
 TEST(CanopyRecord, NonFiniteBalanceIsNotHidden) {
