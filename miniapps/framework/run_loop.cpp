@@ -113,7 +113,7 @@ class RunLoop {
 
 void set_up(Simulation& simulation, const RunFiles& files) {
   if (files.restart.empty()) return simulation.start();
-  const run::RestartReader reader(files.restart, files.fingerprint);
+  const run::RestartReader reader(files.restart, files.fingerprint, files.describe_difference);
   simulation.restore(reader);
   const EndTime end = simulation.end_time();
   run::require_not_after(files.restart, simulation.now().time, end.key, end.time);

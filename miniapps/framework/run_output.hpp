@@ -16,6 +16,7 @@ struct RunFiles {
   std::string title;                             ///< scene name, names the grid in ParaView
   std::string fingerprint;                       ///< of the scene, for restart.h5
   std::filesystem::path restart;                 ///< restart file that the run continues from, or empty
+  run::DescribeDifference describe_difference;   ///< from the scene of `restart`
 };
 
 /// Writes the state of `simulation` to `file`, atomically. Throws `Failure` (io_error).

@@ -69,7 +69,9 @@ class SceneRun {
   void execute() {
     const std::unique_ptr<Scene> scene = _app.read(_file, _options.set, _options.baseline);
     const device::Backend backend = choose_backend(_options.backend, scene->useful_threads(_result.ranks));
-    const RunFiles files{&_directory, _result.scene, scene->fingerprint(), _restart};
+    const SceneIdentity identity = scene->identity();
+    const RunFiles files{&_directory, _result.scene, fingerprint(identity), _restart,
+                         [&](const std::string& restarted) { return difference(restarted, identity); }};
     if (!_is_empty && !_options.restart.empty() && !_options.overwrite) require_same_scene(files.fingerprint);
     const DeviceSession session(backend, _options.kokkos);
     session.describe(_result);
@@ -91,15 +93,26 @@ class SceneRun {
       throw Failure(ExitCode::verification_failed, failed);
   }
 
+  /// How the scene beside the restart file differs from that of this run; empty if its fingerprint is not
+  /// `restarted`, that of the restart file.
+  [[nodiscard]] std::string difference(const std::string& restarted, const SceneIdentity& identity) const {
+    try {
+      const SceneIdentity other = _app.read(_restart.parent_path() / "scene.toml", {}, false)->identity();
+      return fingerprint(other) == restarted ? first_difference(other, identity) : "";
+    } catch (const Failure&) {
+      return {};  // no scene, or none of this program
+    }
+  }
+
   /// In a directory that holds results, `--restart auto` without a restart file starts anew and the restart
   /// file of another directory is continued, but only if both belong to the same scene.
-  void require_same_scene(const std::string& fingerprint) const {
+  void require_same_scene(const std::string& present) const {
     const std::filesystem::path from = _restart.has_parent_path() ? _restart.parent_path() : ".";
     if (std::error_code ignored; !_restart.empty() && std::filesystem::equivalent(from, _out, ignored))
       return;
     bool same = false;
     try {
-      same = _app.read(_out / "scene.toml", {}, false)->fingerprint() == fingerprint;
+      same = fingerprint(_app.read(_out / "scene.toml", {}, false)->identity()) == present;
     } catch (const Failure&) {
       // No scene, or none of this program; or it lacks a file that lies beside the original.
     }

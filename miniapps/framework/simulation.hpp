@@ -16,6 +16,7 @@
 #include "common/run/result_document.hpp"
 #include "common/run/run_directory.hpp"
 #include "kernels/device/backend.hpp"
+#include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
 /// Everything that scene-driven mini-apps share. A mini-app supplies a `Scene` and a `Simulation`;
@@ -145,8 +146,8 @@ class Scene {
   /// The resolved scene as TOML; it resolves to itself.
   [[nodiscard]] virtual std::string print() const = 0;
 
-  /// Fingerprint of everything that must agree between a run and its continuation.
-  [[nodiscard]] virtual std::string fingerprint() const = 0;
+  /// Everything that must agree between a run and its continuation.
+  [[nodiscard]] virtual SceneIdentity identity() const = 0;
 
   /// Text that `--check` prints; may be empty.
   [[nodiscard]] virtual std::string check_report() const { return {}; }

@@ -60,7 +60,7 @@ A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an in
          "\n" + scene::document(root);
 }
 
-/// Scene with the values `Content`, which `Run` simulates. `scene_fingerprint(Content)` is found by its
+/// Scene with the values `Content`, which `Run` simulates. `scene_identity(Content)` is found by its
 /// argument.
 template <class Content, class Run>
 class TypedScene : public Scene {
@@ -69,7 +69,7 @@ class TypedScene : public Scene {
       : _content(std::move(content)), _declare(declare) {}
 
   [[nodiscard]] std::string print() const override { return print_scene(_content, _declare); }
-  [[nodiscard]] std::string fingerprint() const override { return scene_fingerprint(_content); }
+  [[nodiscard]] SceneIdentity identity() const override { return scene_identity(_content); }
   [[nodiscard]] std::unique_ptr<Simulation> create(const SimulationSettings& settings) const override {
     return std::make_unique<Run>(_content, settings);
   }

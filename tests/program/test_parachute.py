@@ -1018,9 +1018,20 @@ class Restart(parachute_program.FlowTest):
         self.scene = self.write(GUST)
         sets = ["output.restart_every=5", "output.fields=[]"]
         self.expect(0, self.scene, *QUIET, sets=sets)
-        for change in ("fluid.viscosity=0.02", "grid.cells=[12, 10, 10]", "flow.time=ab2"):
+        for change, difference in {"fluid.viscosity=0.02": "fluid.viscosity was 0.01 and is 0.02",
+                                   "grid.cells=[12, 10, 10]": "grid.cells was [12, 10, 8] and is [12, 10, 10]",
+                                   "flow.time=ab2": 'flow.time was "rk3" and is "ab2"'}.items():
             with self.subTest(change):
-                self.assertIn("another scene", self.expect(6, self.scene, *QUIET, "--restart", "auto", sets=[*sets, change]).stderr)
+                message = self.expect(6, self.scene, *QUIET, "--restart", "auto", sets=[*sets, change]).stderr
+                self.assertTrue(message.endswith(f"it belongs to another scene: {difference}\n"), message)
+        # Without the scene of the file, or with one that is not its own, the difference is not known.
+        changed = [*sets, "fluid.viscosity=0.02"]
+        scene = self.folder / "out/scene.toml"
+        for text in (scene.read_text().replace("time = \"rk3\"", "time = \"ab2\""), "no scene", None):
+            with self.subTest(text):
+                scene.write_text(text) if text else scene.unlink()
+                message = self.expect(6, self.scene, *QUIET, "--restart", "auto", sets=changed).stderr
+                self.assertTrue(message.endswith("it belongs to another scene\n"), message)
         self.expect(0, self.scene, *QUIET, "--restart", "auto", sets=[*sets, "run.cfl=0.2", "run.end_time=0.6"])
 
 

@@ -82,9 +82,10 @@ struct RestartReader::State {
   h5::Handle file;
 };
 
-RestartReader::RestartReader(const std::filesystem::path& file, const std::string& scene)
+RestartReader::RestartReader(const std::filesystem::path& file, const std::string& scene,
+                             const DescribeDifference& describe_difference)
     : _state(std::make_unique<State>()) {
-  check_seal(file, scene);
+  check_seal(file, scene, describe_difference);
   _state->file = h5::open_file(file, false);
 }
 

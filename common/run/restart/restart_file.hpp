@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +16,9 @@ std::string fingerprint(std::string_view text);
 /// Throws `Failure` (io_error) if the state of `file`, at `time`, s, is later than `end`, s, which `key` of
 /// the scene sets.
 void require_not_after(const std::filesystem::path& file, double time, const char* key, double end);
+
+/// Describes how the scene with a fingerprint differs from the present one; empty if that is not known.
+using DescribeDifference = std::function<std::string(const std::string& fingerprint)>;
 
 /// Writes a restart file: named numbers, texts and arrays of doubles. A former file stays whole until
 /// commit().
@@ -46,10 +50,12 @@ class RestartWriter {
 };
 
 /// Reads a restart file. The constructor verifies every byte first. Throws `Failure` (io_error), with the
-/// fault, for a truncated or damaged file and for another format version or scene.
+/// fault, for a truncated or damaged file and for another format version or scene, how that differs
+/// according to `describe_difference`.
 class RestartReader {
  public:
-  RestartReader(const std::filesystem::path& file, const std::string& scene);
+  RestartReader(const std::filesystem::path& file, const std::string& scene,
+                const DescribeDifference& describe_difference = {});
   ~RestartReader();
   RestartReader(const RestartReader&) = delete;
   RestartReader& operator=(const RestartReader&) = delete;

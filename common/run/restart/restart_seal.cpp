@@ -61,7 +61,8 @@ void write_seal(const std::filesystem::path& file, const std::string& scene) {
   if (!seal) throw io_failure("write", file, errno);
 }
 
-void check_seal(const std::filesystem::path& file, const std::string& scene) {
+void check_seal(const std::filesystem::path& file, const std::string& scene,
+                const DescribeDifference& describe_difference) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw io_failure("open restart file", file, errno);
   const Seal seal = read_seal(stream);
@@ -72,7 +73,9 @@ void check_seal(const std::filesystem::path& file, const std::string& scene) {
   if (std::filesystem::file_size(file, ignored) != seal.bytes) unreadable(file, "it is truncated");
   if (checksum_after_seal(stream, file) != seal.checksum)
     unreadable(file, "it is damaged, its checksum is wrong");
-  if (seal.scene != scene) unreadable(file, "it belongs to another scene");
+  if (seal.scene == scene) return;
+  const std::string difference = describe_difference ? describe_difference(seal.scene) : "";
+  unreadable(file, "it belongs to another scene" + (difference.empty() ? "" : ": " + difference));
 }
 
 }  // namespace drogue::run

@@ -1,6 +1,5 @@
 #include "miniapps/gas/scene/scene.hpp"
 
-#include "common/run/restart/restart_file.hpp"
 #include "miniapps/framework/mini_app.hpp"
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/gas/scene/scene_check.hpp"
@@ -36,7 +35,7 @@ std::string print_gas_scene(const GasScene& scene) {
   return framework::print_scene(scene, declare_gas_scene);
 }
 
-std::string scene_fingerprint(GasScene scene) {
+framework::SceneIdentity scene_identity(GasScene scene) {
   scene.description.clear();
   scene.output = {};
   scene.verify = {};
@@ -44,7 +43,7 @@ std::string scene_fingerprint(GasScene scene) {
   scene.parameters.max_steps = 1;
   scene.parameters.block = 0;
   scene.parameters.driver = gas::Driver::automatic;
-  return run::fingerprint(print_gas_scene(scene));
+  return {print_gas_scene(scene)};
 }
 
 std::filesystem::path scene_folder() { return framework::find_scene_folder("gas", DROGUE_GAS_SCENES); }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/gas/parameters.hpp"
+#include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
 /// Scene of `drogue-gas`: the content of a TOML file, checked and with every default filled in.
@@ -88,9 +89,9 @@ GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std
 /// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself.
 std::string print_gas_scene(const GasScene& scene);
 
-/// Fingerprint of mesh, gas and scheme for restart files. Output, end time and checks may change between a
-/// run and its continuation.
-std::string scene_fingerprint(GasScene scene);
+/// Mesh, gas and scheme, for restart files. Output, end time and checks may change between a run and its
+/// continuation.
+framework::SceneIdentity scene_identity(GasScene scene);
 
 /// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
 std::filesystem::path scene_folder();

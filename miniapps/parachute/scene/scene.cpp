@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "common/run/restart/restart_file.hpp"
 #include "kernels/coupling/sheet/added_mass.hpp"
 #include "miniapps/framework/mini_app.hpp"
 #include "miniapps/framework/obj_file.hpp"
@@ -85,7 +84,7 @@ std::string print_flow_scene(const FlowScene& scene) {
   return framework::print_scene(scene, declare_flow_scene);
 }
 
-std::string scene_fingerprint(FlowScene scene) {
+framework::SceneIdentity scene_identity(FlowScene scene) {
   const FlowScene neutral;
   scene.description.clear();
   scene.output = neutral.output;
@@ -112,7 +111,7 @@ std::string scene_fingerprint(FlowScene scene) {
     surfaces += framework::contents_of(body.surface);
     body.file = "mesh.obj";
   }
-  return run::fingerprint(print_flow_scene(scene) + surfaces);
+  return {print_flow_scene(scene), surfaces};
 }
 
 std::filesystem::path scene_folder() {

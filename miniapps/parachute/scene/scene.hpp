@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "kernels/flow/parameters.hpp"
+#include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
@@ -252,9 +253,9 @@ FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<s
 /// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself.
 std::string print_flow_scene(const FlowScene& scene);
 
-/// Fingerprint of fluid, grid and scheme for restart files. Output, checks, the end time, the times at which
-/// lines are cut and the choice of dt may change between a run and its continuation.
-std::string scene_fingerprint(FlowScene scene);
+/// Fluid, grid and scheme, for restart files. Output, checks, the end time, the times at which lines are cut
+/// and the choice of dt may change between a run and its continuation.
+framework::SceneIdentity scene_identity(FlowScene scene);
 
 /// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
 std::filesystem::path scene_folder();

@@ -1,6 +1,5 @@
 #include "miniapps/springs/scene/scene.hpp"
 
-#include "common/run/restart/restart_file.hpp"
 #include "miniapps/framework/mini_app.hpp"
 #include "miniapps/framework/obj_file.hpp"
 #include "miniapps/framework/typed_scene.hpp"
@@ -26,7 +25,7 @@ std::string print_springs_scene(const SpringsScene& scene) {
   return framework::print_scene(scene, declare_springs_scene);
 }
 
-std::string scene_fingerprint(SpringsScene scene) {
+framework::SceneIdentity scene_identity(SpringsScene scene) {
   scene.description.clear();
   scene.output = {};
   scene.verify = {};
@@ -40,7 +39,7 @@ std::string scene_fingerprint(SpringsScene scene) {
     contents = framework::contents_of(scene.mesh);
     scene.source.file = "mesh.obj";
   }
-  return run::fingerprint(print_springs_scene(scene) + contents);
+  return {print_springs_scene(scene), contents};
 }
 
 std::filesystem::path scene_folder() {

@@ -9,6 +9,7 @@
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/fabric/parameters.hpp"
 #include "kernels/mesh/generators.hpp"
+#include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
 /// Scene of `drogue-springs`: the content of a TOML file, checked and with every default filled in.
@@ -200,9 +201,9 @@ SpringsScene read_springs_scene(const std::filesystem::path& file, const std::ve
 /// folder of the scene.
 std::string print_springs_scene(const SpringsScene& scene);
 
-/// Fingerprint of the mesh, the fabric and everything that acts on it, for restart files. Output, end time,
-/// step lengths and checks may change between a run and its continuation.
-std::string scene_fingerprint(SpringsScene scene);
+/// The mesh, the fabric and everything that acts on it, for restart files. Output, end time, step lengths and
+/// checks may change between a run and its continuation.
+framework::SceneIdentity scene_identity(SpringsScene scene);
 
 /// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
 std::filesystem::path scene_folder();

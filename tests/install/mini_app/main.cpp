@@ -92,7 +92,7 @@ struct HeatScene final : framework::Scene {
     framework::complete_output(_root, _data.output, {"u"}, {_data.end_time, "end_time"});
   }
   std::string print() const override { return scene::print(_root); }
-  std::string fingerprint() const override { return run::fingerprint(std::to_string(_data.cells)); }
+  framework::SceneIdentity identity() const override { return {"cells = " + std::to_string(_data.cells)}; }
   std::unique_ptr<framework::Simulation> create(const framework::SimulationSettings&) const override {
     return std::make_unique<Heat>(_data);
   }
