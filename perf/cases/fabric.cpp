@@ -37,7 +37,7 @@ Case scatter_case(int vertices, long steps) {
                           }};
           },
           [=] { return sheet::energy_drift(run->p, run->state); },
-          sheet::tolerance(fabric::Integrator::rk4),
+          sheet::tolerance(fabric::Integrator::rk4, vertices),
           [=] {
             return Facts{"serial", static_cast<std::int64_t>(run->p.mass.size()), "scatter-loop"};
           }};
@@ -115,7 +115,7 @@ Case sheet_case(device::Backend backend, int vertices, const std::shared_ptr<Sha
             return sheet::steps(run->p, *run->solver, steps);
           },
           [=] { return sheet::energy_drift(run->p, *run->solver); },
-          sheet::tolerance(changed.integrator),
+          sheet::tolerance(changed.integrator, vertices),
           [=] { return sheet_facts(backend, run->p, *run->solver, variant.name); }};
 }
 

@@ -36,10 +36,11 @@ Case surface_case(device::Backend backend, const puts::SurfaceSize& size, bool a
 
 /// Bermudan puts by cosine series, to a tolerance that leaves few cosines.
 Case cosine_case(device::Backend backend, std::size_t count) {
-  constexpr double tolerance = 1e-3;
+  constexpr double loose = 1e-3;
   const std::string name(device::name(backend));
-  Case batch = puts::batch("options-cos/" + name + "/" + std::to_string(count), backend, HostMemory::pinned,
-                           count, {.method = options::Method::cos, .tolerance = tolerance}, tolerance);
+  Case batch =
+      puts::batch("options-cos/" + name + "/" + std::to_string(count), backend, HostMemory::pinned, count,
+                  {.method = options::Method::cos, .tolerance = loose}, puts::loose_cosine_error);
   batch.facts = [=] { return Facts{name, static_cast<std::int64_t>(count), "cos"}; };
   return batch;
 }

@@ -41,8 +41,10 @@ State start(const fabric::Parameters& p) {
   return state;
 }
 
-double tolerance(fabric::Integrator integrator) {
-  return integrator == fabric::Integrator::rk4 ? 1e-8 : 5e-6;
+double tolerance(fabric::Integrator integrator, int vertices) {
+  if (vertices > 100'000) return 5e-9;
+  const bool small = vertices < 10'000;
+  return integrator == fabric::Integrator::rk4 ? (small ? 1e-8 : 7e-10) : (small ? 5e-6 : 6e-7);
 }
 
 double default_dt(const fabric::Parameters& p, fabric::Solver& solver) {

@@ -173,7 +173,8 @@ std::vector<BlockForm> options_forms(device::Backend backend, bool quick) {
            {count},
            [=](const std::string& name, std::size_t /*mesh*/, int block) {
              return puts::batch(name, backend, HostMemory::pinned, static_cast<std::size_t>(count),
-                                {.method = options::Method::cos, .tolerance = loose, .block = block}, loose);
+                                {.method = options::Method::cos, .tolerance = loose, .block = block},
+                                puts::loose_cosine_error);
            },
            [](int block) {
              // Its launch states no bounds, but one compiled kernel serves all blocks, up to the largest.
