@@ -22,7 +22,7 @@ springs-hung drogue-springs table-cloth time.end_time=0.01
 springs-pulled drogue-springs stress-wave time.end_time=0.001
 springs-rings drogue-springs drum time.end_time=0.01 load=[{follower_pressure=1.0}]
 springs-stages drogue-springs drum time.end_time=0.002 load=[{follower_pressure=1.0}] tuning.step.driver="plain"
-springs-outputs drogue-springs drum time.end_time=0.002 output={fields=["von_mises"],times=[0.0]}
+springs-outputs drogue-springs drum time.end_time=0.002 output={fields=["vertex_von_mises"],times=[0.0]}
 parachute-walls drogue-parachute oscillating-plate run.end_time=0.2
 parachute-outflow drogue-parachute jet run.end_time=0.2
 parachute-inflow drogue-parachute uniform run.end_time=0.2 grid.boundary.x="inflow" fluid.velocity=["1+0.1*t",0,0]
