@@ -20,8 +20,13 @@ springs-contact drogue-springs cloth-on-sphere time.end_time=0.01
 springs-twisted drogue-springs twist time.end_time=0.01
 springs-hung drogue-springs table-cloth time.end_time=0.01
 springs-pulled drogue-springs stress-wave time.end_time=0.001
+springs-rings drogue-springs drum time.end_time=0.01 load=[{follower_pressure=1.0}]
+springs-stages drogue-springs drum time.end_time=0.002 load=[{follower_pressure=1.0}] tuning.step.driver="plain"
+springs-outputs drogue-springs drum time.end_time=0.002 output={fields=["vertex_von_mises"],times=[0.0]}
 parachute-walls drogue-parachute oscillating-plate run.end_time=0.2
 parachute-outflow drogue-parachute jet run.end_time=0.2
+parachute-inflow drogue-parachute uniform run.end_time=0.2 grid.boundary.x="inflow" fluid.velocity=["1+0.1*t",0,0]
+parachute-outputs drogue-parachute taylor-green-2d run.end_time=0.02 output={fields=["pressure"],times=[0]}
 parachute-sharp drogue-parachute porous-channel-sharp run.end_time=0.1
 parachute-moving-grid drogue-parachute c9-drop run.end_time=0.2
 parachute-explicit drogue-parachute c9-heavy run.end_time=0.05
@@ -29,7 +34,7 @@ parachute-cluster drogue-parachute cluster-3 run.end_time=0.05
 parachute-drop drogue-parachute cloth-drop run.end_time=0.02
 parachute-strength drogue-parachute c9-flat run.end_time=0.1 canopy[0].lines.strength=1e5'
 # Their kernels; without this choice the launches of a step would use up the number that is profiled.
-rare='(Add|Boundary|Check|Copy|Count|Crossing|Damping|Dirichlet|EndSharp|EndVertex|External|Flush|Force|Gather|Guide|Impose|Initial|Largest|Level|LoadStiff|Mean|Motion|Outflow|Publish|Restore|Rings|Row|RungeKutta|Sample|SaveFaces|Shift|Stress|Sum|Symplectic|Totals|Triangle)\w*Functor'
+rare='(Add|Boundary|Check|Copy|Count|Crossing|Damping|Dirichlet|EndSharp|EndVertex|External|Flush|Force|Gather|Guide|Impose|Initial|Largest|Level|LoadStiff|Mean|Motion|NetInflow|Outflow|Publish|Restore|Rings|Row|RungeKutta|Sample|SaveFaces|Shift|Stress|Sum|Symplectic|Totals|Triangle)\w*Functor'
 
 mkdir -p "$folder"
 nvcc="$(find_nvcc)"

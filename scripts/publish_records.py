@@ -182,9 +182,11 @@ def publish(folder, machine, programs):
         sys.exit(f"{folder} holds no records of scripts/bench.sh")
     if not plot.exists():
         sys.exit(f"there is no {plot}: build it, or name the folder of another by --bin")
+    # It refuses what is no record with file and line.
+    if subprocess.run([plot, folder, "--report", "--quiet"], check=False).returncode != 0:
+        sys.exit("nothing is published: no page can be made of the records, for the reason above")
     found = rows(folder, machine)
     published = set(found)
-    subprocess.run([plot, folder, "--report", "--quiet"], check=True)
     copy_records(folder, machine, evidence)
     shutil.copy(folder / "report.html", evidence / f"report-{machine}.html")
     page = evidence / "README.md"

@@ -20,8 +20,6 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "README.md"
 EVIDENCE = ROOT / "docs/evidence"
 MARK = re.compile(r"(<!-- scripts/readme_tables\.py: ([\w-]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
-# Medians of programs that are not part of this project, ms: docs/options-notebook.md states how they were measured.
-HAND_WRITTEN = {1: "0.037 to 0.047", 4096: "0.276"}
 
 
 class Records:
@@ -123,8 +121,8 @@ def options_table(evidence):
         own, other = ([records(case.format(backend))] if case.format(backend) in records.cases() else []
                       for records, backend in ((gpu, "cuda"), (host, "serial")))
         rows.append([words, *(time_of(found[0], 1e3) if found else "" for found in (own, other)),
-                     error_of((own + other)[0]), HAND_WRITTEN.get(count, "")])
-    heading = ["options", "GPU, ms", "core, ms", "error", "hand-written CUDA, one solve, no stated error, ms"]
+                     error_of((own + other)[0])])
+    heading = ["options", "GPU, ms", "core, ms", "error"]
     return [
         gpu.source("drogue-perf run --filter '^options/cuda/N/'"), "This is run for each number N of options alone.",
         host.source("drogue-perf run --filter '^options/serial'"), "", *table(heading, rows),

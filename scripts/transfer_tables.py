@@ -118,7 +118,7 @@ def springs_words(rows):
     words = (f"[Shi] takes {thesis:.0f} us for {size} vertices and a number of substeps that is not recorded, so no ratio to it means "
              f"anything; its copies are {share(few.thesis['h2d'] + few.thesis['d2h'], thesis)} of that. Here two copies take "
              f"{number(few.copies)} us, whatever lies between them: {share(few.copies, few.time['total'])} of the total with one step "
-             f"between them, {share(many.copies, many.time['total'])} with {many.steps}. What changed is the compute, "
+             f"between them (`--seed-mode`), {share(many.copies, many.time['total'])} with {many.steps}. What changed is the compute, "
              f"{number(many.time['compute'] / many.steps)} us per step of {many.steps}: persistent packets of vertices instead of "
              "arrays of structs with stored neighbours (rung `structs` of the [ladder](lessons/tables.md)).")  # fmt: skip
     pinned = pick(rows, size=size, memory="pinned", steps=few.steps)

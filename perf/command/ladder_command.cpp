@@ -11,6 +11,7 @@
 #include "perf/command/command.hpp"
 #include "perf/ladders/exercises/exercises.hpp"
 #include "perf/ladders/ladder.hpp"
+#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
 
 namespace drogue::perf {
@@ -95,7 +96,8 @@ ExitCode climb(const LadderOptions& options, device::Backend backend) {
   std::vector<Case> cases;
   for (const ladder::Rung& rung : ladder.rungs)
     if (rung.available) cases.push_back(case_of(ladder, rung, backend));
-  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(options.quick));
+  const std::vector<Record> records =
+      measure(cases, warm_up_rounds, kept_rounds(options.quick), {&device_clocks()});
 
   std::printf("%-18s %12s  %-10s %12s  %-22s %9s %9s  %9s\n", "rung", "predicted", "by", "measured",
               ("us per " + ladder.unit + ", 95 %").c_str(), "to first", "to last", "error");

@@ -21,10 +21,10 @@
 #include "perf/command/command.hpp"
 #include "perf/command/filter.hpp"
 #include "perf/compare/baseline.hpp"
+#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/measure/repeats.hpp"
 #include "perf/memory/cache_sweep.hpp"
-#include "perf/memory/device_memory.hpp"
 #include "perf/profile/kernel_profile.hpp"
 
 namespace drogue::perf {
@@ -47,10 +47,6 @@ nlohmann::json to_json(const Facts& facts) {
   if (facts.device_seconds > 0.0) json["device_s"] = facts.device_seconds;
   if (facts.solution_error > 0.0) json["solution_error"] = facts.solution_error;
   return json;
-}
-
-nlohmann::json to_json(const ClockReading& clocks) {
-  return {{"sm_mhz", clocks.sm_mhz}, {"memory_mhz", clocks.memory_mhz}, {"throttled", clocks.throttled}};
 }
 
 std::vector<Case> matching_cases(const std::regex& filter, bool quick) {
@@ -133,8 +129,7 @@ ExitCode run_cases(RunOptions options, const std::regex& filter) {
                 1e3 * shortest_sample);
   std::fflush(stdout);
   bool passed = true;
-  const GpuClocks clocks(device_address());
-  Instruments instruments{&clocks};
+  Instruments instruments{&device_clocks()};
   if (options.cold) instruments.empty_caches = cache_sweeps(cases);
   for (const Record& record : measure(cases, warm_up_rounds, run_rounds, instruments)) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
@@ -143,14 +138,14 @@ ExitCode run_cases(RunOptions options, const std::regex& filter) {
                                   {"units", record.units},
                                   {"clock", "host"},
                                   {"caches", options.cold ? "cold" : "warm"}};
-    const ClockReading seen = record.clocks.empty() ? ClockReading{} : summarize(record.clocks);
-    if (!record.clocks.empty()) lines.back()["clocks"] = to_json(seen);
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);
     std::printf("%-32s %12.3f us per %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
                 1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
                 verdict(record));
-    for (const std::string& reason : seen.throttled) std::printf("  throttled: %s\n", reason.c_str());
+    if (!record.clocks.empty())
+      for (const std::string& reason : summarize(record.clocks).throttled)
+        std::printf("  throttled: %s\n", reason.c_str());
   }
   const ExitCode code = code_of(passed);
   if (options.baselines.empty() || code == ExitCode::ok) write_records(options.out, lines);

@@ -15,6 +15,7 @@
 #include "perf/ceilings/ceilings.hpp"
 #include "perf/command/command.hpp"
 #include "perf/command/filter.hpp"
+#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/measurement.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/work_precision/solution.hpp"
@@ -55,6 +56,8 @@ nlohmann::json to_json(const WorkPrecision& app, const Solution& solution, const
   record.bound = app.bound;
   record.samples = solution.samples;
   record.error = solution.error;
+  if (device::needs_device(solution.backend))
+    if (auto reading = device_clocks().read()) record.clocks.push_back(std::move(*reading));
   // A scheme that fails on a problem gives a failed record.
   record.tolerance = solution.sound ? solution.error : -1.0;
   nlohmann::json facts = solution.scheme;

@@ -65,7 +65,7 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
   std::vector<long> repeats(cases.size(), 1);
   WarmUp warmth;
   for (int round = -warm_up; round < rounds && !interrupted(); ++round) {
-    if (round == 0 && warm_up > 0 && !warmth.has_reached(warm_up_seconds)) round = -1;
+    if (round == 0 && warm_up > 0 && !warmth.is_over(warm_up_seconds)) round = -1;
     for (std::size_t i = 0; i < cases.size() && !interrupted(); ++i) {
       const TimedSample taken = take(samples[i], repeats[i], [&] {
         if (cold) instruments.empty_caches(cases[i].on_device);
@@ -84,6 +84,8 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       records[i].repeats = repeats[i];
       records[i].units = taken.units;
     }
+    if (round < 0 && clocks != nullptr)
+      if (const auto reading = clocks->read()) warmth.add_clock(reading->sm_mhz);
   }
   if (interrupted() && std::ranges::any_of(records, [](const Record& r) { return r.samples.empty(); }))
     throw Failure(ExitCode::interrupted, "interrupted by a signal before every case had a sample");

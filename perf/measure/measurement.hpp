@@ -66,8 +66,9 @@ struct Record {
   [[nodiscard]] bool passed() const { return error <= tolerance; }
 };
 
-/// Numbers of discarded and of recorded rounds. Warm-up lasts `warm_up_seconds` at least: a GPU that idled
-/// runs at a fraction of its clock for some tenths of a second.
+/// Numbers of discarded and of recorded rounds. Warm-up lasts `warm_up_seconds` at least, and twice as long
+/// while the clock of a GPU rises: one that idled runs at a fraction of its clock for some tenths of a
+/// second.
 inline constexpr int warm_up_rounds = 3;
 inline constexpr double warm_up_seconds = 1.0;
 constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
@@ -88,10 +89,11 @@ struct Instruments {
 
 /// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
 /// Discards the first `warm_up` rounds, and more until cases on a device and those on a host have each worked
-/// for `warm_up_seconds`, unless `warm_up` is 0; sweeps of caches count as work. The warm-up also determines
-/// how often a sample repeats its work, to last for `shortest_sample`; each work starts from the initial
-/// state. Blocking; passes on exceptions of the cases. After a signal (`interrupted`) it ends with the
-/// samples that there are; throws Failure(interrupted) if a case has none.
+/// for `warm_up_seconds` and the clock of the GPU no longer rises (`WarmUp`), unless `warm_up` is 0; sweeps
+/// of caches count as work. The warm-up also determines how often a sample repeats its work, to last for
+/// `shortest_sample`; each work starts from the initial state. Blocking; passes on exceptions of the cases.
+/// After a signal (`interrupted`) it ends with the samples that there are; throws Failure(interrupted) if a
+/// case has none.
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds,
                             const Instruments& instruments = {});
 

@@ -37,6 +37,11 @@ nlohmann::json to_json(const Record& record, const nlohmann::json& provenance, c
     json["interval"] = {time.low, time.high};
   }
   if (!facts.is_null()) json["facts"] = facts;
+  if (!record.clocks.empty()) {
+    const ClockReading seen = summarize(record.clocks);
+    json["clocks"] = {
+        {"sm_mhz", seen.sm_mhz}, {"memory_mhz", seen.memory_mhz}, {"throttled", seen.throttled}};
+  }
   return json;
 }
 

@@ -16,6 +16,7 @@ constexpr Architecture kepler(std::string_view name, int thread_registers) {
           .blocks = 16,
           .threads = 2048,
           .registers = 64 * kib,
+          .block_registers = 64 * kib,
           .register_unit = 256,
           .thread_registers = thread_registers,
           .partitions = 4,
@@ -24,6 +25,20 @@ constexpr Architecture kepler(std::string_view name, int thread_registers) {
           .shared_unit = 256,
           .block_shared_bytes = 48 * kib,
           .reserved_bytes = 0};
+}
+
+/// Twice the registers of its family, of which a block holds half at most.
+constexpr Architecture kepler_37() {
+  Architecture a = kepler("sm_37", 255);
+  a.registers = 128 * kib;
+  a.shared_bytes = 112 * kib;
+  return a;
+}
+
+/// The system on a chip of a family, in which a block holds half of the registers.
+constexpr Architecture tegra(Architecture a) {
+  a.block_registers = 32 * kib;
+  return a;
 }
 
 /// From Maxwell to Turing.
@@ -59,33 +74,41 @@ constexpr Architecture ampere(std::string_view name, int threads, int blocks, in
   return a;
 }
 
-constexpr Architecture fermi_20() {
-  Architecture a = kepler("sm_20", 63);
+constexpr Architecture fermi_2x(std::string_view name) {
+  Architecture a = kepler(name, 63);
   a.blocks = 8;
   a.threads = 1536;
-  a.registers = 32 * kib;
+  a.registers = a.block_registers = 32 * kib;
   a.register_unit = 64;
   a.partitions = a.launch_partitions = 2;
   a.shared_unit = 128;
   return a;
 }
 
-constexpr std::array known = {fermi_20(),
+constexpr std::array known = {fermi_2x("sm_20"),
+                              fermi_2x("sm_21"),
                               kepler("sm_30", 63),
+                              tegra(kepler("sm_32", 255)),
                               kepler("sm_35", 255),
+                              kepler_37(),
                               maxwell("sm_50", 64, 48),
                               maxwell("sm_52", 96, 48),
+                              tegra(maxwell("sm_53", 64, 48)),
                               pascal_60(),
                               maxwell("sm_61", 96, 48),
+                              tegra(maxwell("sm_62", 64, 48)),
                               maxwell("sm_70", 96, 96),
+                              maxwell("sm_72", 96, 96),
                               turing(),
                               ampere("sm_80", 2048, 32, 164),
                               ampere("sm_86", 1536, 16, 100),
                               ampere("sm_87", 1536, 16, 164),
+                              ampere("sm_88", 1536, 16, 100),
                               ampere("sm_89", 1536, 24, 100),
                               ampere("sm_90", 2048, 32, 228),
                               ampere("sm_100", 2048, 32, 228),
                               ampere("sm_103", 2048, 32, 228),
+                              ampere("sm_110", 1536, 24, 228),
                               ampere("sm_120", 1536, 24, 100),
                               ampere("sm_121", 1536, 24, 100)};
 
@@ -94,7 +117,8 @@ constexpr int rounded_up(int value, int unit) { return (value + unit - 1) / unit
 int blocks_by_registers(const Architecture& on, int warps, int registers) {
   const int per_warp = rounded_up(std::max(registers, 1) * warp, on.register_unit);
   // The launch check assumes that the warps are spread evenly over all partitions.
-  if (registers > on.thread_registers || per_warp * rounded_up(warps, on.launch_partitions) > on.registers)
+  if (registers > on.thread_registers ||
+      per_warp * rounded_up(warps, on.launch_partitions) > on.block_registers)
     return 0;
   return on.registers / on.partitions / per_warp * on.partitions / warps;
 }
@@ -108,7 +132,7 @@ int blocks_by_shared_memory(const Architecture& on, int bytes, int carve_out) {
 }  // namespace
 
 Architecture fermi() {
-  Architecture a = fermi_20();
+  Architecture a = fermi_2x("sm_20");
   a.multiprocessors = 14;
   a.register_unit = a.partitions = a.launch_partitions = a.shared_unit = 1;
   return a;

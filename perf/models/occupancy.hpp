@@ -8,11 +8,13 @@ namespace drogue::perf {
 
 /// Resources of a multiprocessor and their allocation units.
 struct Architecture {
-  std::string_view name;         ///< name in compiler options: "sm_90"
-  int multiprocessors;           ///< of the device; 0: of none in particular
-  int blocks, threads;           ///< largest numbers of resident blocks and threads
-  int registers, register_unit;  ///< registers are allocated to a warp in multiples of the unit
-  int thread_registers;          ///< largest number of a thread
+  std::string_view name;  ///< name in compiler options: "sm_90"
+  int multiprocessors;    ///< of the device; 0: of none in particular
+  int blocks, threads;    ///< largest numbers of resident blocks and threads
+  int registers;          ///< of all resident blocks
+  int block_registers;    ///< largest number of a block
+  int register_unit;      ///< registers are allocated to a warp in multiples of it
+  int thread_registers;   ///< largest number of a thread
   int partitions;         ///< equal parts of the register file; the registers of a warp lie in one of them
   int launch_partitions;  ///< partitions over which the launch check spreads the warps of a block
   int shared_bytes, shared_unit;  ///< shared memory and its allocation unit, bytes
@@ -24,8 +26,9 @@ struct Architecture {
 /// 14 multiprocessors. Does not throw.
 Architecture fermi();
 
-/// Compute capabilities 2.0 to 12.1 by the tables of the CUDA C++ Programming Guide and, from 3.0, the rules
-/// of CUDA's cuda_occupancy.h; in ascending order, without a number of multiprocessors. Does not throw.
+/// All compute capabilities from 2.0 to 12.1 by the tables of the CUDA C++ Programming Guide and, from 3.0,
+/// the rules of CUDA's cuda_occupancy.h; in ascending order, without a number of multiprocessors. Does not
+/// throw.
 std::span<const Architecture> architectures();
 
 /// The one of that name, "sm_90", or of that compute capability, "9.0"; null if there is none. Does not

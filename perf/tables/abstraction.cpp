@@ -9,6 +9,7 @@
 #include "common/program/failure.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/compare/version_cost.hpp"
+#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/problems/sheet.hpp"
 #include "perf/problems/sod.hpp"
@@ -154,7 +155,7 @@ void add_size(const Size& size, device::Backend backend, bool quick, const nlohm
           "abstraction/" + backend_name + "/" + size.name + "/" + name_of(launches) + "/" + name_of(version),
           version, launches, size, difference));
   }
-  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
+  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick), {&device_clocks()});
   for (std::size_t row = 0; row < 2; ++row) {
     const Launches launches = row == 0 ? Launches::plain : Launches::graph;
     const Record &kokkos = records[2 * row], &hand_written = records[2 * row + 1];

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/profile/kernel_profile.hpp"
 #include "perf/rows/block_rows.hpp"
@@ -108,7 +109,7 @@ Table print_block_sizes(const std::string& app, device::Backend backend, bool qu
       }
   }
   const std::vector<Record> records =
-      measure(cases, warm_up_rounds, std::min(sweep_rounds, kept_rounds(quick)));
+      measure(cases, warm_up_rounds, std::min(sweep_rounds, kept_rounds(quick)), {&device_clocks()});
   Table table;
   for (std::size_t i = 0; i < records.size(); ++i) table.add(records[i], provenance, facts[i]);
   std::printf(

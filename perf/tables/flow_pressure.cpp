@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/problems/pressure_solves.hpp"
 #include "perf/rows/timed_columns.hpp"
@@ -23,9 +24,9 @@ std::vector<Record> measure_solves(const std::vector<PressureSolve>& solves, con
     for (std::size_t i = 0; i < solves.size(); ++i)
       if (solves[i].method.iterates() == iterative) chosen.push_back(cases[i]);
     if (chosen.empty()) continue;
-    const std::vector<Record> measured = iterative
-                                             ? measure(chosen, iterative_warm_up_rounds, iterative_rounds)
-                                             : measure(chosen, warm_up_rounds, kept_rounds(quick));
+    const std::vector<Record> measured =
+        iterative ? measure(chosen, iterative_warm_up_rounds, iterative_rounds, {&device_clocks()})
+                  : measure(chosen, warm_up_rounds, kept_rounds(quick), {&device_clocks()});
     for (std::size_t i = 0, next = 0; i < solves.size(); ++i)
       if (solves[i].method.iterates() == iterative) records[i] = measured[next++];
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/problems/inflation.hpp"
 #include "perf/problems/streams.hpp"
@@ -59,7 +60,7 @@ Table print_parachute_transfers(device::Backend backend, bool quick, const nlohm
   const std::vector<ParachuteTransfer> rows = parachute_transfers_of(backend, quick);
   std::vector<Case> cases;
   for (const ParachuteTransfer& row : rows) cases.push_back(case_of(backend, row, quick ? 0.02 : 0.2));
-  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
+  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick), {&device_clocks()});
   std::printf(
       "A C-9 that opens, with the air around it, on %s, microseconds per step of the flow; [Shi] has no such "
       "table\nThe whole state of cloth and air is copied before and after so many steps. The error is that "

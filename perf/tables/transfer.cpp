@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/run/statistics.hpp"
+#include "perf/measure/device_clocks.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -32,7 +33,8 @@ Transfers measure_transfers(device::Backend backend, const std::vector<Case>& ca
       if (std::ranges::find(distinct, row.name, &Case::name) == distinct.end()) distinct.push_back(row);
     measured_on_core = measure(distinct, 1, core_rounds);
   }
-  Transfers measured = {measure(cases, warm_up, rounds), std::vector<std::optional<double>>(on_core.size())};
+  Transfers measured = {measure(cases, warm_up, rounds, {&device_clocks()}),
+                        std::vector<std::optional<double>>(on_core.size())};
   const std::vector<Record>& known = is_core ? measured.records : measured_on_core;
   for (std::size_t i = 0; i < on_core.size(); ++i) {
     const auto record = std::ranges::find(known, on_core[i].name, &Record::name);

@@ -22,6 +22,21 @@ class Lessons(unittest.TestCase):
         for file in (ROOT / "docs/evidence/ladders").glob("*.jsonl"):
             self.assertNotIn('"check":"failed"', file.read_text(encoding="utf-8"), file.name)
 
+    def test_each_rung_is_one_short_file(self):
+        found = 0
+        for ladder in ("weno", "springs", "options", "transfers"):
+            rungs = re.findall(r"make_rung<", (ROOT / f"perf/ladders/{ladder}/ladder.hpp").read_text(encoding="utf-8"))
+            texts = 0
+            for header in sorted((ROOT / "perf/ladders" / ladder).glob("*.hpp")):
+                text = header.read_text(encoding="utf-8")
+                for name in re.findall(r'RungText text\{\s*"([^"]+)"', text):
+                    self.assertEqual(header.stem, name.replace("-", "_"))
+                    self.assertLess(text.count("\n"), 150, header.name)
+                    texts += 1
+            self.assertEqual(len(rungs), texts, ladder)
+            found += texts
+        self.assertGreater(found, 25)
+
     def test_times_that_a_rung_states_are_those_of_its_record(self):
         folder = ROOT / "perf/ladders"
         stated = 0

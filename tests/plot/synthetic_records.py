@@ -163,6 +163,17 @@ def counted_steps(machine=H200):
     return found
 
 
+def counted_batches(machine=H200):
+    """Batches of options and tridiagonal systems, the first bound by FP64 at 80 % and the second by memory."""
+    facts = {"backend": "cuda", "cells": 4096}
+    return [
+        record("options/cuda/4096/128x32", 400e-6, machine, facts | {"variant": "128x32", "flops": 320e-6 * 33e12, "bytes": 1e5}),
+        record("options/cuda/4096/256x64", 1e-3, machine, facts | {"variant": "256x64"}),
+        record("tridiagonal/cuda/4096/scan/128", 10e-6, machine,
+               facts | {"variant": "scan/128", "flops": 33e6, "bytes": 8e-6 * 4.2e12}),
+    ]  # fmt: skip
+
+
 def scaling(machine=EPYC):
     """Strong scaling over threads at 80 %, and weak scaling over ranks at 50 %."""
     threads = [

@@ -86,6 +86,14 @@ class Page(Folder):
         verdicts = {row[0]: row[-1] for row in rows if len(row) == 7}
         self.assertEqual("memory, 80 %", verdicts["1000000"])
 
+    def test_page_names_the_binding_ceiling_of_batches(self):
+        page, _ = self.page(records.ceilings() + records.more_ceilings() + records.counted_batches(), app="options")
+        for title, size, verdict in (("Bounds of a batch, CUDA", "4096 128x32", "FP64, 80 %"),
+                                     ("Bounds of tridiagonal systems, CUDA", "4096 scan/128", "memory, 80 %")):
+            rows = page.tables[H200, title]
+            self.assertEqual({size: verdict}, {row[0]: row[-1] for row in rows[1:] if len(row) == 7})
+            self.assertEqual("us per batch", rows[0][1])
+
 
 class CostOfKokkos(Folder):
     def rows(self, app, lines):

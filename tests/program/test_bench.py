@@ -269,6 +269,13 @@ class Bench(unittest.TestCase):
                          (quick.returncode, quick.stderr))
         self.assertEqual(["README.md"], [path.name for path in (tree / "docs/evidence").iterdir()])
         text.write_text(f"{command}\n{printed}")
+        noted = (self.bin / "drogue-plot").read_text()
+        (self.bin / "drogue-plot").write_text("#!/bin/sh\necho 'a.jsonl:1: the line ends within a record' >&2\nexit 3\n")
+        broken = subprocess.run(words, capture_output=True, text=True, check=False)
+        self.assertEqual((1, "a.jsonl:1: the line ends within a record\nnothing is published: no page can be made of the records, "
+                             "for the reason above\n"), (broken.returncode, broken.stderr))  # fmt: skip
+        self.assertEqual(["README.md"], [path.name for path in (tree / "docs/evidence").iterdir()])
+        (self.bin / "drogue-plot").write_text(noted)
         first = subprocess.run(words, capture_output=True, text=True, check=True)
         self.assertEqual("", first.stdout)
         published = {path.relative_to(tree / "docs/evidence").as_posix(): path for path in (tree / "docs").rglob("*.jsonl")}

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "perf/ladders/make_rung.hpp"
+#include "perf/ladders/options/interleaved.hpp"
 #include "perf/ladders/options/matrix_product.hpp"
+#include "perf/ladders/options/one_team.hpp"
 #include "perf/ladders/options/one_thread.hpp"
 #include "perf/ladders/options/registers.hpp"
+#include "perf/ladders/options/scratch.hpp"
 
 namespace drogue::perf::ladder {
 

@@ -53,20 +53,4 @@ class OneThreadRung : public OptionsRung<ExecutionSpace, Layout> {
   }
 };
 
-/// Rung 2. The same with the options of a node side by side: neighbouring threads of a GPU read neighbouring
-/// numbers. A thread of a host now jumps through memory.
-///
-/// Prediction: none, since the model counts the bytes that are used, and these are the same.
-template <class ExecutionSpace>
-class InterleavedRung final : public OneThreadRung<ExecutionSpace, Kokkos::LayoutLeft> {
- public:
-  static constexpr RungText text{
-      "interleaved", "The options of a node side by side, for neighbouring threads.",
-      "On a host this rung loses, since a thread fetches a line of memory per node and uses one "
-      "number of it. On a GPU it is the layout that neighbouring threads need. On an H100 it "
-      "takes 11222 us, after 43207 us; the model has 229 us for both (docs/lessons/tables.md)."};
-
-  using OneThreadRung<ExecutionSpace, Kokkos::LayoutLeft>::OneThreadRung;
-};
-
 }  // namespace drogue::perf::ladder

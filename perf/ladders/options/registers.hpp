@@ -1,6 +1,6 @@
 #pragma once
 
-#include "perf/ladders/options/one_team.hpp"
+#include "perf/ladders/options/scratch.hpp"
 
 namespace drogue::perf::ladder {
 

@@ -1,8 +1,12 @@
 #pragma once
 
 #include "perf/ladders/make_rung.hpp"
+#include "perf/ladders/springs/arrays.hpp"
+#include "perf/ladders/springs/graph.hpp"
+#include "perf/ladders/springs/packets.hpp"
 #include "perf/ladders/springs/recomputed.hpp"
-#include "perf/ladders/springs/solver_rungs.hpp"
+#include "perf/ladders/springs/renumbered.hpp"
+#include "perf/ladders/springs/rings.hpp"
 #include "perf/ladders/springs/structs.hpp"
 
 namespace drogue::perf::ladder {

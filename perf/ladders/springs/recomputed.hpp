@@ -37,24 +37,4 @@ class RecomputedRung final : public SpringRung<ExecutionSpace, RecomputedSheet<E
       : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, Tension>>(problem, problem.scattered) {}
 };
 
-/// Rung 4. Vertices in the order of Cuthill and McKee: those of neighbours lie beside one another, so that a
-/// line of memory that one thread fetched serves the next.
-///
-/// Prediction: none, since the model takes loads of neighbours for free.
-template <class ExecutionSpace>
-class RenumberedRung final
-    : public SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, RecomputedTension>> {
- public:
-  static constexpr RungText text{
-      "renumbered", "Neighbours lie beside one another in memory.",
-      "A gain that the model does not predict: neighbours share lines of memory, so that fewer "
-      "loads wait. The larger the mesh, the more it is."};
-
-  static Work work(const SpringProblem& problem) { return RecomputedRung<ExecutionSpace>::work(problem); }
-
-  explicit RenumberedRung(const SpringProblem& problem)
-      : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, RecomputedTension>>(problem,
-                                                                                       problem.renumbered) {}
-};
-
 }  // namespace drogue::perf::ladder

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "perf/ladders/make_rung.hpp"
+#include "perf/ladders/transfers/crumbs.hpp"
 #include "perf/ladders/transfers/one_upload.hpp"
 #include "perf/ladders/transfers/overlapped.hpp"
 #include "perf/ladders/transfers/pageable.hpp"
+#include "perf/ladders/transfers/pinned.hpp"
 
 namespace drogue::perf::ladder {
 

@@ -54,21 +54,4 @@ class OverlappedRung : public PinnedRung<ExecutionSpace> {
   device::Instance<ExecutionSpace> _second{std::numeric_limits<int>::max()};
 };
 
-/// Rung 4, which loses on a GPU: more overlap by 512 chunks. Each copy has a latency that its bytes must
-/// outlast.
-///
-/// Prediction: 1024 copies per step, each at the latency of a copy of a few bytes.
-template <class ExecutionSpace>
-class CrumbsRung final : public OverlappedRung<ExecutionSpace, 512> {
- public:
-  static constexpr RungText text{
-      "crumbs", "512 chunks: the latency of copies.",
-      "This rung loses on a host as well: hundreds of launches and small copies cost more than "
-      "the bytes. The model has their latency and predicts the loss. On an H100 6669 us, after "
-      "814 us, but less than pageable memory takes, 7467 us. The model has 9131 us: it waits "
-      "for the end of each copy, which this rung does not (docs/lessons/tables.md)."};
-
-  using OverlappedRung<ExecutionSpace, 512>::OverlappedRung;
-};
-
 }  // namespace drogue::perf::ladder

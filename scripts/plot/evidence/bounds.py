@@ -17,6 +17,11 @@ RATES = {
     "cache": ("bytes", "cache, read and written"),
 }
 LATENCIES = {"launch": "launch of a kernel", "graph-node": "kernel in a graph"}  # s
+# Kinds whose unit of work is a batch, each variant of which is another problem: their title, and what is not counted.
+_BATCHES = {
+    "options": ("Bounds of a batch", " Of puts the marches alone are counted, without the set-up of an option."),
+    "tridiagonal": ("Bounds of tridiagonal systems", ""),
+}
 # A ceiling that explains less of the time binds nothing.
 LEAST_SHARE = 1 / 3
 _LEVELS = {"memory": "memory", "l3": "L3", "l2": "L2", "cache": "L1"}  # slowest first
@@ -91,10 +96,10 @@ def _verdict(record: Record, found: list[Bound]) -> str:
 
 
 def bounds_table(steps: list[Record], tops: dict[str, float]) -> Table | None:
-    """Table of the default variants whose work is counted, by increasing size; None without them."""
-    rows = []
+    """Table of the default variants whose work is counted, of batches all, by increasing size; None without them."""
+    rows, kind = [], steps[0].kind if steps else ""
     for record in sorted(steps, key=lambda record: record.facts["cells"]):
-        if record.facts["variant"] not in ("", "periodic", "tunnel"):
+        if kind not in _BATCHES and record.facts["variant"] not in ("", "periodic", "tunnel"):
             continue
         found = bounds(record, tops)
         if not found and "driver" not in record.facts:
@@ -113,13 +118,14 @@ def bounds_table(steps: list[Record], tops: dict[str, float]) -> Table | None:
         )
     if not rows:
         return None
-    columns = [("size", True), ("us per step", True), ("FP64", True), ("issue", True), ("traffic", True)]
+    unit = "batch" if kind in _BATCHES else "step"
+    columns = [("size", True), (f"us per {unit}", True), ("FP64", True), ("issue", True), ("traffic", True)]
     columns += [("launches", True), ("binding ceiling, its share", False)]
     note = (
         "Least times in us: counted work over the measured ceiling, launches times their latency. "
         "Traffic counts each array of a kernel once, from the slowest level that is fast enough."
     )
-    return Table(columns, rows, "What binds a step", note)
+    return Table(columns, rows, f"What binds a {unit}", note + _BATCHES.get(kind, ("", ""))[1])
 
 
 def ceiling_table(tops: dict[str, float], backend: str) -> Table:
@@ -153,6 +159,6 @@ def sections(machine: Machine, measured: list[Record], steps: list[Record]) -> l
             continue
         kind = beside[0].kind
         command = f"drogue-perf run --filter '^(ceiling|{kind})/' --out FILE.jsonl"
-        title = f"Bounds of a step, {BACKENDS.get(backend, backend)}"
+        title = f"{_BATCHES.get(kind, ('Bounds of a step', ''))[0]}, {BACKENDS.get(backend, backend)}"
         found.append(Section(title, command, own + beside, tables=[table, ceiling_table(tops, backend)]))
     return found

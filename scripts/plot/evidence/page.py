@@ -41,6 +41,8 @@ def _options_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
     for kind in ("options", "options-surface", "options-cos", "tridiagonal"):
         found += steps.sections(evidence.select(machine, kind))
+    for kind in ("options", "tridiagonal"):
+        found += bounds.sections(machine, evidence.ceilings, evidence.select(machine, kind))
     found += options_transfers.sections(machine, evidence.select(machine, "options-transfers"))
     return found + block_sizes.sections(machine, evidence.select(machine, "options-block"))
 

@@ -90,6 +90,8 @@ _OPTIONAL = {
     },
     "gas-step": {"flops": float, "bytes": float, "vector_bits": int, **_COUNTS},
     "springs-step": {"bytes": float, **_COUNTS},
+    "options": {"flops": float, "bytes": float},
+    "tridiagonal": {"flops": float, "bytes": float},
     "ceiling": {"flops": float, "bytes": float, "instructions": float},
     "machine": {"device": dict, "thesis": dict},
     "occupancy": {

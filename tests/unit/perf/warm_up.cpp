@@ -23,5 +23,23 @@ TEST(WarmUp, WaitsForHostsWithoutADevice) {
   EXPECT_TRUE(warmth.has_reached(1.0));
 }
 
+TEST(WarmUp, GoesOnWhileTheClockRises) {
+  WarmUp warmth;
+  warmth.add(true, 1.0);
+  EXPECT_TRUE(warmth.is_over(1.0)) << "no clock is known";
+  warmth.add_clock(345);
+  EXPECT_TRUE(warmth.is_over(1.0)) << "one reading shows no change";
+  warmth.add_clock(1980);
+  EXPECT_FALSE(warmth.is_over(1.0));
+  warmth.add_clock(1985);
+  EXPECT_TRUE(warmth.is_over(1.0)) << "settled";
+  warmth.add_clock(1500);
+  EXPECT_TRUE(warmth.is_over(1.0)) << "throttled, which no warm-up mends";
+  warmth.add_clock(1980);
+  EXPECT_FALSE(warmth.is_over(1.0));
+  warmth.add(true, 1.0);
+  EXPECT_TRUE(warmth.is_over(1.0)) << "twice the time is enough";
+}
+
 }  // namespace
 }  // namespace drogue::perf

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "perf/ladders/springs/fabric_rung.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 6, GPU only: the kernels of a step are captured once into a CUDA graph.
+///
+/// Prediction: one launch per step instead of four.
+template <class ExecutionSpace>
+class SpringGraphRung final : public FabricRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "graph", "The kernels of a step as one CUDA graph.",
+      "On an H100 the graph gains little: 14.0 us, after 15.4 us without it, where the model "
+      "has 24.1 us, after 43.5 us. The model counts a launch at the time of an empty one alone, "
+      "and has no caches, which hold this mesh (docs/lessons/tables.md)."};
+  static constexpr bool available = !device::is_host<ExecutionSpace>;
+
+  static Work work(const SpringProblem& problem) { return ring_work(problem, 0.25); }
+
+  explicit SpringGraphRung(const SpringProblem& problem)
+      : FabricRung<ExecutionSpace>(problem, fabric::Driver::graph) {}
+};
+
+}  // namespace drogue::perf::ladder

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "perf/ladders/springs/fabric_rung.hpp"
+
+namespace drogue::perf::ladder {
+
+/// Rung 5. The solver of the library (kernels/fabric/stepping/step.hpp): rings of neighbours share the edges
+/// of their triangles, in sliced ELLPACK rows. It also tests the state for divergence.
+///
+/// Prediction: one number less per triangle, a third of the edges less to compute, and packs on a host.
+template <class ExecutionSpace>
+class RingsRung final : public FabricRung<ExecutionSpace> {
+ public:
+  static constexpr RungText text{
+      "rings", "Triangles around a vertex share their edges: the library's kernel.",
+      "By far the largest gain, to near the bound of memory: the library computes packs of "
+      "vertices from sliced rows, so that a host reads neighbouring numbers at once, as the "
+      "arrays of rung 2 were meant to be read."};
+
+  static Work work(const SpringProblem& problem) { return ring_work(problem, 1); }
+
+  explicit RingsRung(const SpringProblem& problem)
+      : FabricRung<ExecutionSpace>(problem, fabric::Driver::plain) {}
+};
+
+}  // namespace drogue::perf::ladder
