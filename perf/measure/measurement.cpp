@@ -63,10 +63,12 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
     samples.push_back(c.prepare());
   }
   std::vector<long> repeats(cases.size(), 1);
+  std::vector<double> lasted(cases.size(), 0.0);
   WarmUp warmth;
   for (int round = -warm_up; round < rounds && !interrupted(); ++round) {
     if (round == 0 && warm_up > 0 && !warmth.is_over(warm_up_seconds)) round = -1;
     for (std::size_t i = 0; i < cases.size() && !interrupted(); ++i) {
+      if (lasted[i] >= instruments.longest_case && records[i].samples.size() >= least_samples) continue;
       const TimedSample taken = take(samples[i], repeats[i], [&] {
         if (cold) instruments.empty_caches(cases[i].on_device);
       });
@@ -78,6 +80,7 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       }
       if (clocks != nullptr && cases[i].on_device)
         if (auto reading = clocks->read()) records[i].clocks.push_back(std::move(*reading));
+      lasted[i] += taken.wall;
       const auto units = static_cast<double>(taken.units);
       for (const auto& [name, part] : taken.parts) records[i].parts[name].push_back(part / units);
       records[i].samples.push_back(taken.seconds / units);

@@ -75,6 +75,8 @@ constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
 /// Recorded rounds of `run`, whose records a verdict compares: as many as find a change of a tenth at 3 %
 /// noise.
 inline constexpr int run_rounds = 30;
+/// Samples that a case has at least, however long they take.
+inline constexpr std::size_t least_samples = 3;
 /// Time that a sample of no work takes, s: median of 200 means.
 double timer_overhead();
 
@@ -85,15 +87,19 @@ struct Instruments {
   /// sample is one work then. Without it caches are warm: as the work before and the initial state leave
   /// them.
   std::function<void(bool on_device)> empty_caches = {};
+  /// Time, s, after whose samples a case takes no part in later rounds: a table of puts on many meshes would
+  /// otherwise wait for the longest one.
+  double longest_case = 10.0;
 };
 
 /// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
 /// Discards the first `warm_up` rounds, and more until cases on a device and those on a host have each worked
 /// for `warm_up_seconds` and the clock of the GPU no longer rises (`WarmUp`), unless `warm_up` is 0; sweeps
-/// of caches count as work. The warm-up also determines how often a sample repeats its work, to last for
-/// `shortest_sample`; each work starts from the initial state. Blocking; passes on exceptions of the cases.
-/// After a signal (`interrupted`) it ends with the samples that there are; throws Failure(interrupted) if a
-/// case has none.
+/// of caches count as work. A case whose samples have lasted for `Instruments::longest_case` has fewer than
+/// `rounds`, but `least_samples`. The warm-up also determines how often a sample repeats its work, to last
+/// for `shortest_sample`; each work starts from the initial state. Blocking; passes on exceptions of the
+/// cases. After a signal (`interrupted`) it ends with the samples that there are; throws Failure(interrupted)
+/// if a case has none.
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds,
                             const Instruments& instruments = {});
 

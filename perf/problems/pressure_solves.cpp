@@ -53,12 +53,11 @@ Case pressure_case(const PressureSolve& solve,
                    const std::shared_ptr<std::unique_ptr<pressure::Solver>>& solver) {
   const PressureMethod& method = solve.method;
   const auto cells = static_cast<long>(solve.cell_count());
-  // Both right-hand sides: an iterative solver may need more iterations for one of them, and the residual at
-  // the end is that of the second one.
-  const long pairs = method.iterates()                        ? 1
-                     : solve.backend == device::Backend::cuda ? std::clamp(100'000'000L / cells, 3L, 100L)
-                                                              : std::clamp(1'000'000L / cells, 1L, 50L);
-  const long solves = 2 * pairs;
+  const long pairs = solve.backend == device::Backend::cuda ? std::clamp(100'000'000L / cells, 3L, 100L)
+                                                            : std::clamp(1'000'000L / cells, 1L, 50L);
+  // Solves alternate between two right-hand sides, of which an iterative solver may need more iterations for
+  // one: its samples alternate too, and half of them belong to each.
+  const long solves = method.iterates() ? 1 : 2 * pairs;
   const std::string name(device::name(solve.backend));
   const std::string sides = streams::name(solve.sides);
   // A tolerance of 1e-6 is a variant of the usual one.

@@ -58,6 +58,19 @@ TEST(Measurement, WarmSamplesRepeatShortWorks) {
   EXPECT_EQ(records.front().units, records.front().repeats);
 }
 
+TEST(Measurement, LongCasesLeaveTheLaterRounds) {
+  std::string log;
+  Case brief = logged_case(log, false), slow = logged_case(log, false, milliseconds(20));
+  Instruments instruments;
+  instruments.longest_case = 0.02;
+  std::vector<Record> records = measure({brief, slow}, 0, 7, instruments);
+  EXPECT_EQ(records[0].samples.size(), 7U);
+  EXPECT_EQ(records[1].samples.size(), least_samples);
+  instruments.longest_case = 0.09;
+  records = measure({slow}, 0, 7, instruments);
+  EXPECT_EQ(records[0].samples.size(), 5U) << "five waits of 20 ms last for 90 ms";
+}
+
 TEST(Measurement, ColdSamplesAreSingleWorks) {
   std::string log;
   Instruments instruments;
