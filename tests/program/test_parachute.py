@@ -631,6 +631,29 @@ class Canopies(parachute_program.FlowTest):
         self.assertGreater(reported["canopies"]["vertices"], 200)
         self.assertGreater(reported["canopies"]["substeps"], 1)
 
+    def test_guided_payload_moves_along_z_alone(self):
+        leaning = CANOPY.replace("edge_length", "angle = 30\nedge_length").replace("times = [0.1, 0.2]", "times = [0.2]")
+        for payload, moves in (("{ mass = 2 }", True), ("{ mass = 2, guided = true }", False)):
+            with self.subTest(payload):
+                self.expect(0, self.write(leaning.replace("{ mass = 2, fixed = true }", payload)), *QUIET, "--overwrite")
+                rows = self.history("out")
+                self.assertGreater(max(map(abs, rows["canopy_0_line_force_x"])), 10)
+                self.assertGreater(max(rows["canopy_0_payload_velocity_z"]), 0.1)
+                self.assertEqual(moves, max(map(abs, rows["canopy_0_payload_velocity_x"])) > 0)
+                self.assertEqual(moves, len(set(rows["canopy_0_payload_x"])) > 1)
+
+    def test_vent_lines_hold_the_vent_together(self):
+        """Without a band along the vent, its edge is stretched least with them."""
+        strains, strings = [], []
+        for lines in ("", "vent_lines = { stiffness = 2000 }\n"):
+            self.expect(0, self.write(CANOPY.replace("reinforcement", lines + "reinforcement")), *QUIET, "--overwrite")
+            strains.append(max(self.history("out")["canopy_0_largest_strain"]))
+            fields = self.fields("out")
+            strings.append(len(array.array("q", fields.datasets["/mesh/canopy/strings"])) // 2)
+            self.assertEqual(3 * self.result("out")["canopies"]["vertices"], len(fields.values("/mesh/canopy/vertices")))
+        self.assertLess(strains[1], 0.9 * strains[0])
+        self.assertGreater(strings[1], strings[0])
+
     def test_files_hold_the_canopy_beside_the_flow(self):
         self.expect(0, self.write(CANOPY), *QUIET)
         fields, vertices = self.fields("out"), self.result("out")["canopies"]["vertices"]
