@@ -20,7 +20,7 @@ constexpr double tolerance(int mesh) {
   return mesh < 1024 ? 1.3e-6 : 1.5e-7;
 }
 
-/// Largest error of cosine series that were asked for 1e-3: five times that of
+/// Largest error of cosine series with a tolerance of 1e-3: five times that of
 /// docs/evidence/options-cos-h100.jsonl.
 inline constexpr double loose_cosine_error = 1.5e-5;
 
