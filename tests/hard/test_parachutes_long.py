@@ -49,18 +49,26 @@ class ShippedParachutes(parachute_program.FlowTest):
         self.assertLess(porous[2], 0.1 * closed[2])
 
     def leak(self, cells, defect_filter, code=0):
-        """Mean flow through an impermeable canopy of c9-drop whose payload is held, over U A."""
+        """Mean and root mean square of the flow through an impermeable canopy of c9-drop whose payload is held, over U A."""
         self.expect(code, "c9-drop", "--quiet", "--backend", "serial", "--out", "out", "--overwrite",
                     sets=["grid.frame=fixed", "canopy[0].payload={fixed=true}", 'canopy[0].porosity={law="none"}',
                           f"grid.cells=[{cells},{cells},{cells}]", "run.end_time=6", "run.max_dt=0.005",
                           f"coupling.defect_filter={defect_filter}", "output={history_every=5}",
-                          "verify={leak=[{from=3,to=6,tolerance=1e-3}]}"])
-        return self.result("out")["canopies"]["leak_0"]
+                          "verify={leak=[{from=3,to=6,tolerance=1e-3,rms_tolerance=3e-3}]}"])
+        canopies = self.result("out")["canopies"]
+        return canopies["leak_0"], canopies["leak_rms_0"]
 
     def test_impermeable_canopies_do_not_leak_with_the_filtered_defect(self):
+        # Single runs of a chaotic flow had means of 3e-5 to 4e-4 and root mean squares of 0.9e-3 to 1.7e-3 with the filtered
+        # defect, since most of what remains flows in and out; on 30 cells without it, means of 3e-3 and 4.7e-3.
         for cells in (30, 40, 60):
-            self.assertLess(self.leak(cells, 0.1), 1e-3, cells)
-        self.assertGreater(self.leak(30, 0.0, 5), 1e-3)
+            with self.subTest(cells):
+                mean, rms = self.leak(cells, 0.1)
+                self.assertLess(mean, 1e-3)
+                self.assertLess(rms, 3e-3)
+        mean, rms = self.leak(30, 0.0, 5)
+        self.assertAlmostEqual(4e-3, mean, delta=2e-3)
+        self.assertAlmostEqual(1, rms / mean, delta=0.3)
 
     def test_breathing_in_terminal_descent_neither_drifts_nor_dies(self):
         """210 s of flight in 10 500 steps on cells of 2 m; the canopy glides through periodic sides."""
