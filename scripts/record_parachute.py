@@ -14,8 +14,8 @@ sentence of the refusal. Options:
     --limit    seconds of a run after which it is stopped; default: none
     --add      keep the rows of the file of an earlier call that have run, and run the others
 
-What --skip or --limit leaves out has a row with the reason in `not_run`. Prints what failed, refused or was not run. The
-exit code is 1 if any run failed.
+What --skip or --limit leaves out has a row with the reason in `not_run`. Prints what failed, refused or was not run, and
+a table of the small scenes, which miniapps/parachute/README.md holds. The exit code is 1 if any run failed.
 """
 
 import json
@@ -45,9 +45,14 @@ def failed(row):
     return not ("refused" in row or "not_run" in row) and row["exit_code"] != 0
 
 
+def small_scenes(program):
+    """Names of the scenes without -full."""
+    return [name for name in list_scenes(program) if not name.endswith("-full")]
+
+
 def scene_names(program, arguments):
     """Names of the scenes that have rows."""
-    names = [name for name in list_scenes(program) if arguments.full or not name.endswith("-full")]
+    names = list_scenes(program) if arguments.full else small_scenes(program)
     return [name for name in names if re.search(arguments.only, name)]
 
 
@@ -86,6 +91,21 @@ def print_gaps(rows):
                 print(f"{key}: {row['scene']}, {row['backend']}, ranks {row['ranks']}: {row[key]}")
 
 
+def table(rows, names):
+    """Markdown table of the scenes `names`: how many passed on each backend and number of ranks, and the others."""
+    lines = ["| ranks | backend | passed | failed | refuse several ranks | not run |", "|---:|---|---:|---|---|---|"]
+    for ranks, backend in sorted({(row["ranks"], row["backend"]) for row in rows}):
+        here = {row["scene"]: row for row in rows if (row["ranks"], row["backend"]) == (ranks, backend)}
+        kinds = {"passed": [], "refused": [], "not_run": [], "failed": []}
+        for name in names:
+            row = here.get(name, {"not_run": "no row"})
+            kind = next((key for key in ("refused", "not_run") if key in row), None)
+            kinds[kind or ("failed" if failed(row) else "passed")].append(name)
+        lists = (", ".join(f"`{name}`" for name in kinds[key]) for key in ("failed", "refused", "not_run"))
+        lines.append(f"| {ranks} | {backend} | {len(kinds['passed'])} of {len(names)} | {' | '.join(lists)} |")
+    return "\n".join(lines)
+
+
 def main():
     options = argument_parser(__doc__)
     options.add_argument("--ranks", default="1,2,4")
@@ -102,8 +122,10 @@ def main():
     def save(rows):
         save_record(record | {"runs": rows}, file)
 
-    rows = record_rows(arguments.bin / "drogue-parachute", arguments, earlier, save)
+    program = arguments.bin / "drogue-parachute"
+    rows = record_rows(program, arguments, earlier, save)
     print_gaps(rows)
+    print(table(rows, small_scenes(program)))
     return write_record(record | {"runs": rows}, file, [row for row in rows if failed(row)], ())
 
 

@@ -109,6 +109,22 @@ class ParachuteRecords(TemporaryFolder):
         self.assertEqual("stopped after 0.25 s", rows["lasts", 1]["not_run"])
 
 
+    def test_table_counts_scenes_and_names_those_that_did_not_pass(self):
+        _, _, lines = self.record("--ranks", "1,2", "--skip", "lasts")
+        self.assertEqual(["| ranks | backend | passed | failed | refuse several ranks | not run |", "|---:|---|---:|---|---|---|",
+                          "| 1 | serial | 2 of 4 | `fails` |  | `lasts` |", "| 2 | serial | 1 of 4 | `fails` | `alone` | `lasts` |"],
+                         [line for line in lines if line.startswith("|")])  # fmt: skip
+        self.assertEqual("| 1 | serial | 0 of 1 |  |  | `new` |",
+                         record_parachute.table([{"ranks": 1, "backend": "serial", "scene": "old"}], ["new"]).splitlines()[2])
+
+    def test_readme_holds_the_table_of_the_record(self):
+        rows = json.loads((packages.SOURCE / "docs/evidence/parachute-xeon-2.json").read_text(encoding="utf-8"))["runs"]
+        names = sorted(path.stem for path in (packages.SOURCE / "miniapps/parachute/scenes").glob("*.toml"))
+        table = record_parachute.table(rows, [name for name in names if not name.endswith("-full")])
+        text = (packages.SOURCE / "miniapps/parachute/README.md").read_text(encoding="utf-8")
+        self.assertTrue(table + "\n" in text, f"the README lacks:\n{table}")
+
+
 class Records(TemporaryFolder):
     def test_response_of_strip_is_that_of_material(self):
         _write_strip(self.folder / "fields.h5", 1e-6, 0.3)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/reference/flow/turbulence.hpp"
+
 namespace drogue::reference {
 
 using flow::Advection;
@@ -49,13 +51,13 @@ double momentum_flux(const FlowDomain& domain, const StaggeredField& u, std::siz
 
 StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, double time) {
   const flow::Parameters& p = domain.parameters();
-  StaggeredField rate = domain.zero_field();
+  StaggeredField rate = eddy_acceleration(domain, u, time);
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
     double& result = rate[c][domain.at(c, face)];
     const double acceleration = (p.body_force[c] + p.pressure_drop[c] / (p.high[c] - p.low[c])) / p.density;
     const int side = domain.side_of(c, face);
     if (side < 0) {
-      result = acceleration;
+      result += acceleration;
       for (std::size_t d = 0; d < 3; ++d) {
         if (domain.cells(d) == 1) continue;
         GridIndex next = face;

@@ -14,7 +14,8 @@ namespace drogue::reference {
 [[nodiscard]] double momentum_flux(const FlowDomain& domain, const StaggeredField& u, std::size_t c,
                                    std::size_t d, const GridIndex& face, double time);
 
-/// Rate of change of the velocity without the pressure gradient, m/s^2, in conservative form. On outflows:
+/// Rate of change of the velocity without the pressure gradient, m/s^2, in conservative form, with the stress
+/// of an eddy viscosity if there is a model. On outflows:
 /// advection by the outward velocity, first order. Zero on sides with a prescribed normal velocity.
 [[nodiscard]] StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, double time);
 

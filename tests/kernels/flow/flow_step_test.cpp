@@ -118,6 +118,23 @@ TEST(FlowMomentum, RatesBetweenBoundedSidesEqualThoseOfTheReference) {
     }
 }
 
+TEST(FlowMomentum, RatesWithEddyViscositiesEqualThoseOfTheReference) {
+  const Sides periodic{BoundaryKind::periodic, BoundaryKind::periodic},
+      walls{BoundaryKind::wall, BoundaryKind::slip}, through{BoundaryKind::inflow, BoundaryKind::outflow};
+  for (const Turbulence model : {Turbulence::smagorinsky, Turbulence::vreman})
+    for (const std::array<int, 3>& cells : {std::array<int, 3>{13, 9, 7}, {12, 1, 9}, {17, 10, 1}, {1, 8, 6}})
+      for (const std::array<Sides, 3>& sides : {std::array<Sides, 3>{periodic, periodic, periodic},
+                                                {through, walls, walls},
+                                                {walls, through, periodic},
+                                                {periodic, walls, through}}) {
+        Parameters p = parameters_of(cells, sides, Advection::central);
+        p.turbulence = model;
+        p.turbulence_constant = 0.6;  // larger than usual, so that its stress matters
+        expect_equal_rates(p, 14);
+        if (HasFatalFailure()) return;
+      }
+}
+
 /// Expects the initial projection and some steps to equal those of the oracle.
 void expect_equal_steps(const Parameters& p, unsigned seed,
                         const reference::SideVelocity& side_velocity = {}) {
@@ -214,6 +231,20 @@ TEST(FlowStep, EqualsTheReferenceWithImplicitDiffusionInThreeDimensions) {
     expect_equal_steps(p, ++seed);
     if (HasFatalFailure()) return;
   }
+}
+
+TEST(FlowStep, EqualsTheReferenceWithEddyViscositiesForPairsOfSides) {
+  const std::vector<Sides> sides = all_sides();
+  unsigned seed = 6000;
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    for (const TimeIntegration& integration : time_integrations) {
+      Parameters p =
+          parameters_of({5, 4, 6}, {sides[i], sides[(i + 5) % 17], sides[(i + 11) % 17]}, schemes[seed % 3]);
+      integration.set(p);
+      p.turbulence = seed % 2 == 0 ? Turbulence::smagorinsky : Turbulence::vreman;
+      expect_equal_steps(p, ++seed);
+      if (HasFatalFailure()) return;
+    }
 }
 
 TEST(FlowStep, EvaluatesExpressionsOfSidesAtTheTimesOfTheStages) {
