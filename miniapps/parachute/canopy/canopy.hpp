@@ -159,7 +159,8 @@ struct CanopyRows {
   std::vector<int> reefing, suspension;  ///< numbers of lines
   std::optional<int> riser;
 
-  /// What a vertex of the canopy belongs to: "cloth", "vent lines", "payload" or "riser". Does not throw.
+  /// Part of the canopy that a vertex belongs to: "cloth", "vent lines", "payload" or "riser". Does not
+  /// throw.
   [[nodiscard]] const char* part_of(std::size_t vertex) const;
 };
 

@@ -15,7 +15,7 @@ class InterleavedRung final : public OneThreadRung<ExecutionSpace, Kokkos::Layou
       "interleaved", "The options of a node side by side, for neighbouring threads.",
       "On a host this rung loses, since a thread fetches a line of memory per node and uses one "
       "number of it. On a GPU it is the layout that neighbouring threads need. On an H100 it "
-      "takes 11222 us, after 43207 us; the model has 229 us for both (docs/lessons/tables.md)."};
+      "takes 11302 us, after 43454 us; the model has 227 us for both (docs/lessons/tables.md)."};
 
   using OneThreadRung<ExecutionSpace, Kokkos::LayoutLeft>::OneThreadRung;
 };

@@ -38,7 +38,7 @@ class OneThreadRung : public OptionsRung<ExecutionSpace, Layout> {
       "one-thread", "One thread per option, its nodes side by side.",
       "On a host more than twice the prediction: a sum of 128 products is one chain of "
       "dependent additions, so that a core waits for each, and the compiler may not reorder it. "
-      "On an H100 43207 us where the model has 229 us: neighbouring threads read numbers that "
+      "On an H100 43454 us where the model has 227 us: neighbouring threads read numbers that "
       "lie an option apart, and one thread per option is too few to hide the latency of loads "
       "(docs/lessons/tables.md)."};
 

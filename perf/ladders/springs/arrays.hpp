@@ -134,8 +134,8 @@ class ArraysRung final : public SpringRung<ExecutionSpace, SheetOfArrays<Executi
       "arrays", "A structure of arrays: neighbouring threads read neighbouring numbers.",
       "On a host this rung loses: a vertex now gathers its numbers from some eighty lines of "
       "memory, where the structure had them in a dozen. Arrays pay where neighbouring threads "
-      "read neighbouring numbers at once, on a GPU or in packs. On an H100 this rung takes 47.2 "
-      "us, after 64.6 us of the structures; the model has 53.1 us for both "
+      "read neighbouring numbers at once, on a GPU or in packs. On an H100 this rung takes 46.7 "
+      "us, after 64.0 us of the structures; the model has 45.2 us for both "
       "(docs/lessons/tables.md)."};
 
   static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, stored_operations); }

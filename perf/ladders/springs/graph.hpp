@@ -12,8 +12,8 @@ class SpringGraphRung final : public FabricRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "graph", "The kernels of a step as one CUDA graph.",
-      "On an H100 the graph gains little: 14.0 us, after 15.4 us without it, where the model "
-      "has 24.1 us, after 43.5 us. The model counts a launch at the time of an empty one alone, "
+      "On an H100 the graph gains little: 13.8 us, after 14.4 us without it, where the model "
+      "has 22.2 us, after 35.6 us. The model counts a launch at the time of an empty one alone, "
       "and has no caches, which hold this mesh (docs/lessons/tables.md)."};
   static constexpr bool available = !device::is_host<ExecutionSpace>;
 

@@ -14,7 +14,7 @@ class PacketsRung final : public FabricRung<ExecutionSpace> {
   static constexpr RungText text{
       "packets", "One launch for all steps; patches exchange tagged messages.",
       "Left over is the latency of messages between patches, which the model omits "
-      "(docs/springs-notebook.md). On an H100 8.41 us where the model has 1.54 us "
+      "(docs/springs-notebook.md). On an H100 8.38 us where the model has 1.44 us "
       "(docs/lessons/tables.md)."};
   static constexpr bool available = !device::is_host<ExecutionSpace>;
 

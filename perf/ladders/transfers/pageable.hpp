@@ -16,7 +16,7 @@ class PageableRung final : public TransferRung<ExecutionSpace> {
       "On a host the copies are memcpy; all takes somewhat longer than predicted, since the "
       "loop over values is not limited by memory alone. On a GPU pageable memory costs 46 % of "
       "the time of the WENO port at 8192 cells (docs/transfers.md). On an H100 this rung takes "
-      "7467 us where the model has 5796 us (docs/lessons/tables.md)."};
+      "6229 us where the model has 4611 us (docs/lessons/tables.md)."};
 
   static Work work(const TransferProblem& problem) { return transfer_work(problem, 1, 2, 2); }
 

@@ -12,9 +12,9 @@ class GraphRung final : public LibraryRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "graph", "The kernels of a step as one CUDA graph.",
-      "On an H100 at 8192 cells a step takes 9.99 us where the model has 6.26 us, for it has "
-      "launches but neither the latency of loads nor chains of operations. The graph takes 1.84 "
-      "times as long as the persistent kernel, 5.42 us (docs/lessons/tables.md)."};
+      "On an H100 at 8192 cells a step takes 9.97 us where the model has 5.10 us, for it has "
+      "launches but neither the latency of loads nor chains of operations. The graph takes 1.90 "
+      "times as long as the persistent kernel, 5.25 us (docs/lessons/tables.md)."};
   static constexpr bool available = !device::is_host<ExecutionSpace>;
 
   static Work work(const WenoProblem& problem) { return library_work(problem, 1); }

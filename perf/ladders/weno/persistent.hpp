@@ -15,7 +15,7 @@ class PersistentRung final : public LibraryRung<ExecutionSpace> {
       "persistent", "One launch for all steps; the state stays in shared memory.",
       "The model omits waiting: on an H200 two of five microseconds per step pass until the "
       "fastest signal of all teams has arrived (docs/gas-notebook.md). On an H100 at 8192 cells "
-      "a step takes 5.42 us where the model has 0.638 us (docs/lessons/tables.md)."};
+      "a step takes 5.25 us where the model has 0.612 us (docs/lessons/tables.md)."};
   static constexpr bool available = !device::is_host<ExecutionSpace>;
 
   static Work work(const WenoProblem& problem) {

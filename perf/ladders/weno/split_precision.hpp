@@ -15,7 +15,7 @@ class SplitPrecisionRung final : public LibraryRung<ExecutionSpace> {
       "split-precision", "Nonlinear terms in single precision.",
       "On a host this rung loses: conversions and the scaling that keeps products of weights "
       "within the range of a float cost more than narrow operations save. On an H100 at 8192 "
-      "cells, where waiting is the bound, it loses too: 5.80 us, after 5.42 us in double "
+      "cells, where waiting is the bound, it loses too: 5.63 us, after 5.25 us in double "
       "precision (docs/lessons/tables.md). On an H200 it wins from a million cells on "
       "(docs/gas-notebook.md)."};
   static constexpr double tolerance = 1e-5;
