@@ -19,7 +19,7 @@ class PinnedRung : private PinnedValues<ExecutionSpace>, public TransferRung<Exe
   static constexpr RungText text{
       "pinned", "Page-locked memory, which the device reads without a staging copy.",
       "On a host nothing changes but the order in which the rungs are measured: a difference "
-      "here is noise, and a measure of it. On an H100 the prediction holds: 1207 us, after 7467 "
+      "here is noise, and a measure of it. On an H100 the prediction holds: 1207 us, after 6229 "
       "us, where the model has 1238 us (docs/lessons/tables.md)."};
 
   static Work work(const TransferProblem& problem) {
