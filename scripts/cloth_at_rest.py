@@ -23,6 +23,7 @@ DENSITY = 0.2  # kg/m^2
 GRAVITY = 9.81  # m/s^2
 SIZE = 0.5  # m, of the hung sheet
 LENGTH, WIDTH, PULL = 0.4, 0.06, 0.004  # m, of the strip
+BALANCED = 1e-10  # largest force on a vertex of cloth at rest, N
 LARGEST_STEP = 0.02  # m, of a vertex
 REMEMBERED = 40  # steps from which the curvature is estimated
 
@@ -206,7 +207,7 @@ def main():
         cloth, start, free = hung(cells, arguments.modulus or 100.0)
     else:
         cloth, start, free = pulled(arguments.vertices or 200, arguments.modulus or 500.0)
-    position, force = rest(cloth, start, free, 1e-10)
+    position, force = rest(cloth, start, free, BALANCED)
     print(f"vertices {len(cloth.vertices)}, largest force {force:.1e} N")
     print(f"elastic energy {cloth.elastic(position)[0]:.7e} J")
     if arguments.scene == "hung-sheet":
@@ -215,6 +216,9 @@ def main():
         print(f"von Mises stress {cloth.von_mises(position, cloth.nearest((LENGTH / 2, WIDTH / 2))):.7f} N/m")
         edge = cloth.nearest((LENGTH / 2, WIDTH))
         print(f"displacement of the edge along y {position[edge, 1] - cloth.vertices[edge, 1]:.7e} m")
+    if force > BALANCED:
+        print(f"not at rest: a force of {force:.1e} N is left, more than {BALANCED:g} N", file=sys.stderr)
+        return 1
     return 0
 
 

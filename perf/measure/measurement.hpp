@@ -87,8 +87,8 @@ struct Instruments {
   /// sample is one work then. Without it caches are warm: as the work before and the initial state leave
   /// them.
   std::function<void(bool on_device)> empty_caches = {};
-  /// Time, s, after whose samples a case takes no part in later rounds: a table of puts on many meshes would
-  /// otherwise wait for the longest one.
+  /// Time of the samples of a case, s, with what is not timed, after which it takes no part in later rounds:
+  /// a table of puts on many meshes would otherwise wait for the longest one.
   double longest_case = 10.0;
 };
 

@@ -56,7 +56,7 @@ Case pressure_case(const PressureSolve& solve,
   const long pairs = solve.backend == device::Backend::cuda ? std::clamp(100'000'000L / cells, 3L, 100L)
                                                             : std::clamp(1'000'000L / cells, 1L, 50L);
   // Solves alternate between two right-hand sides, of which an iterative solver may need more iterations for
-  // one: its samples alternate too, and half of them belong to each.
+  // one: its samples alternate too.
   const long solves = method.iterates() ? 1 : 2 * pairs;
   const std::string name(device::name(solve.backend));
   const std::string sides = streams::name(solve.sides);

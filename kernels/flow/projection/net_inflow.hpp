@@ -68,7 +68,7 @@ struct NetInflowFunctor {
 /// Enqueues the net inflow. Asynchronous.
 template <class ExecutionSpace>
 void launch_net_inflow(const ExecutionSpace& space, const NetInflowFunctor<ExecutionSpace>& functor) {
-  static_assert(sizeof(functor) <= 4000, "the functor must fit the arguments of a kernel");
+  static_assert(sizeof(functor) <= 3900, "the functor must fit the arguments of a kernel");
   constexpr int threads = device::is_host<ExecutionSpace> ? 1 : 256;
   const typename NetInflowFunctor<ExecutionSpace>::Policy one_team(space, 1, threads);
   // A functor that is no argument of the kernel passes through a buffer that a captured graph cannot hold.

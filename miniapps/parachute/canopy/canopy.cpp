@@ -281,27 +281,28 @@ void stretch_drum(const Canopy& canopy, const CanopyAxes& axes, const RingMesh& 
   }
 }
 
-/// Vent lines as springs from the vertices of the vent to the place where they cross. Where the vent has
-/// fewer vertices than the canopy has gores, each spring stands for the lines of several seams.
+/// Vent lines as springs from the seams at the edge of the vent to the place where they cross. Where the edge
+/// has fewer vertices than the canopy has gores, each spring stands for the lines of several seams.
 void add_vent_lines(const Canopy& canopy, const CanopyAxes& axes, const RingMesh& cloth, CanopyMesh& to) {
   if (!canopy.vent_lines) return;
   fabric::Parameters& p = to.fabric;
-  std::vector<int> edge(static_cast<std::size_t>(cloth.ring_size.front()));
-  std::iota(edge.begin(), edge.end(), cloth.ring_begin.front());
-  const auto ends = static_cast<double>(edge.size());
+  const int vertices = cloth.ring_size.front(), per_seam = std::max(1, vertices / canopy.gores);
+  std::vector<int> seams;
+  for (int k = 0; k < vertices; k += per_seam) seams.push_back(cloth.ring_begin.front() + k);
+  const auto ends = static_cast<double>(seams.size());
   const double mass = 0.5 * canopy.vent_lines->line_density * canopy.gores * 0.5 * canopy.vent;
   Vector centre{};
-  for (const int i : edge) {
+  for (const int i : seams) {
     p.mass[static_cast<std::size_t>(i)] += mass / ends;
     for (std::size_t axis = 0; axis < 3; ++axis)
       centre[axis] += to.positions[static_cast<std::size_t>(i)][axis] / ends;
   }
   const auto first = static_cast<int>(p.mesh.lines.size());
-  for (std::size_t k = 0; k < edge.size(); ++k) to.vent_lines.push_back(first + static_cast<int>(k));
+  for (std::size_t k = 0; k < seams.size(); ++k) to.vent_lines.push_back(first + static_cast<int>(k));
   fabric::add_payload(p,
                       {constructed_place(canopy, axes, PolarPoint{}), mass,
                        canopy.vent_lines->stiffness * canopy.gores / ends},
-                      edge);
+                      seams);
   to.positions.push_back(centre);
 }
 

@@ -225,8 +225,8 @@ void check_initial(const Table& root, const FlowScene& scene) {
   }
 }
 
-/// Gravity in whose field the cloth along one edge, hanging from its end, would double the length of the edge
-/// is a mistake: neither the cloth nor its mesh are meant for it.
+/// Refuses gravity under which an edge of cloth would double its length by its own weight: neither the cloth
+/// nor its mesh are meant for it.
 void check_gravity(const Table& root, const FlowScene& scene) {
   const auto [x, y, z] = scene.gravity;
   const double gravity = std::hypot(x, y, z);

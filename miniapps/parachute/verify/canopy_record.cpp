@@ -62,17 +62,17 @@ double CanopyRecord::mean_square(std::size_t column, double from, double to) con
   return mean_of([&](std::size_t row) { return at(row, column) * at(row, column); }, from, to);
 }
 
-double CanopyRecord::stream(std::size_t canopy, double from, double to) const {
+double CanopyRecord::reference_flow(std::size_t canopy, double from, double to) const {
   const double product = mean_speed(canopy, from, to) * mean_area(canopy, from, to);
   return product > 0.0 ? product : std::numeric_limits<double>::quiet_NaN();
 }
 
 double CanopyRecord::relative_leak(std::size_t canopy, double from, double to) const {
-  return std::abs(mean(first_column + 4 + per_canopy * canopy, from, to)) / stream(canopy, from, to);
+  return std::abs(mean(first_column + 4 + per_canopy * canopy, from, to)) / reference_flow(canopy, from, to);
 }
 
 double CanopyRecord::relative_leak_rms(std::size_t canopy, double from, double to) const {
-  return std::sqrt(mean_square(first_column + 4 + per_canopy * canopy, from, to)) / stream(canopy, from, to);
+  return std::sqrt(mean_square(first_column + 4 + per_canopy * canopy, from, to)) / reference_flow(canopy, from, to);
 }
 
 CanopyRecord::Peak CanopyRecord::peak(std::size_t canopy) const {

@@ -77,7 +77,7 @@ class CanopyRecord {
   template <class Value>
   [[nodiscard]] double mean_of(const Value& value, double from, double to) const;
   /// Mean speed times mean projected area, m^3/s; NaN if zero.
-  [[nodiscard]] double stream(std::size_t canopy, double from, double to) const;
+  [[nodiscard]] double reference_flow(std::size_t canopy, double from, double to) const;
 
   const FlowScene& _scene;
   fabric::Vector _stream{};  ///< velocity of the fluid far upstream, m/s

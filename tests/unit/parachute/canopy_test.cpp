@@ -277,7 +277,7 @@ TEST(Canopy, FixedPayloadIsTheOnlyPinnedVertex) {
   EXPECT_EQ(std::accumulate(mesh.fabric.pinned.begin(), mesh.fabric.pinned.end(), 0), 7);
 }
 
-TEST(Canopy, GuidedPayloadMovesAlongTheStreamAlone) {
+TEST(Canopy, GuidedPayloadMovesAlongZAlone) {
   Canopy canopy = c9(0.5);
   canopy.payload.guided = true;
   const CanopyMesh mesh = make_canopy(canopy);
@@ -297,14 +297,18 @@ TEST(Canopy, VentLinesCrossInTheMiddleOfTheVent) {
     EXPECT_EQ(mesh.positions.size(), canopy.vertices());
     EXPECT_FALSE(mesh::find_defect(mesh.fabric.mesh));
     const auto crossing = static_cast<int>(mesh.cloth_vertices);
-    const auto ring = static_cast<std::size_t>(ring_sizes(canopy).front());
-    ASSERT_EQ(mesh.vent_lines.size(), ring);
+    const int ring = ring_sizes(canopy).front(), per_seam = std::max(1, ring / 28);
+    const auto seams = static_cast<std::size_t>(ring / per_seam);
+    EXPECT_LE(seams, 28U);
+    EXPECT_EQ(edge_length<0.05, per_seam> 1) << "the finest mesh has vertices between the seams";
+    ASSERT_EQ(mesh.vent_lines.size(), seams);
     double stiffness = 0.0;
-    for (std::size_t k = 0; k < ring; ++k) {
+    for (std::size_t k = 0; k < seams; ++k) {
+      const auto seam = k * static_cast<std::size_t>(per_seam);
       const auto line = static_cast<std::size_t>(mesh.vent_lines[k]);
-      EXPECT_EQ(mesh.fabric.mesh.lines[line], (std::array{static_cast<int>(k), crossing}));
+      EXPECT_EQ(mesh.fabric.mesh.lines[line], (std::array{static_cast<int>(seam), crossing}));
       EXPECT_NEAR(mesh::rest_length(mesh.fabric.mesh, line), 0.5 * 0.457, 1e-12);
-      EXPECT_NEAR(distance_of(mesh.positions[k], mesh.positions[mesh.cloth_vertices]), 0.5 * 0.457, 1e-12);
+      EXPECT_NEAR(distance_of(mesh.positions[seam], mesh.positions[mesh.cloth_vertices]), 0.5 * 0.457, 1e-12);
       stiffness += mesh.fabric.mesh.line_stiffness[line];
     }
     EXPECT_NEAR(stiffness, 28 * 5000.0, 1e-8) << "as many half lines as gores";
@@ -327,7 +331,7 @@ TEST(Canopy, VentLinesAreSlackInAPleatedCone) {
       const auto& [edge, crossing] = mesh.fabric.mesh.lines[static_cast<std::size_t>(k)];
       EXPECT_LE(distance_of(mesh.positions[static_cast<std::size_t>(edge)],
                             mesh.positions[static_cast<std::size_t>(crossing)]),
-                0.5 * 0.457 * (1.0 + 1e-12));
+                0.5 * 0.457 * std::min(1.0, closure + 0.12));
     }
   }
 }
