@@ -102,8 +102,6 @@ class CoupledSolver {
   using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
 
   static constexpr std::int64_t block_steps = 16;
-  /// Time of a batch of steps, s, beyond which the next one has fewer: `advance` polls after each of them.
-  static constexpr double longest_batch_s = 0.4;
 
   /// Fluid at rest and cloth at rest in its mesh; set other states by `flow` and `fabric`, then call `start`.
   /// `instance` must outlive the solver. Each rank gives the same parameters. Blocks. Throws
@@ -175,6 +173,8 @@ class CoupledSolver {
     fabric::check_parameters(p.fabric);
     if (p.substeps < 0)
       throw std::invalid_argument("coupled solver: the number of substeps must not be negative");
+    if (!(p.longest_batch > 0.0))
+      throw std::invalid_argument("coupled solver: the time of a batch of steps must be positive");
     if (!(p.flow.fixed_dt > 0.0 || p.flow.max_dt > 0.0))
       throw std::invalid_argument("coupled solver: either fixed_dt or max_dt must be positive");
     if (p.flow.cfl == 0.0) p.flow.cfl = default_cfl;
@@ -369,8 +369,9 @@ void CoupledSolver<ExecutionSpace>::adapt_batch(std::int64_t steps, const device
   std::array<double, 1> seconds = {stopwatch.seconds()};
   _group.sum(seconds);
   const double mean = seconds[0] / _group.size();
-  if (mean > longest_batch_s) _batch = std::max<std::int64_t>(1, _batch / 2);
-  if (mean < 0.25 * longest_batch_s && steps == _batch) _batch = std::min(2 * _batch, block_steps);
+  const double longest = _parameters.longest_batch;
+  if (mean > longest) _batch = std::max<std::int64_t>(1, _batch / 2);
+  if (mean < 0.25 * longest && steps == _batch) _batch = std::min(2 * _batch, block_steps);
 }
 
 template <class ExecutionSpace>

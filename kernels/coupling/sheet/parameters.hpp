@@ -85,6 +85,9 @@ struct Parameters {
   /// Steps of the cloth between resolutions of contact, >= 1 (`fabric::Contact::interval`). Each step of the
   /// flow ends with one.
   int contact_interval = 32;
+  /// Time of the steps that are enqueued at once, s, > 0, beyond which the next ones are fewer: requests to
+  /// stop are answered between them. It changes no result.
+  double longest_batch = 0.4;
   std::vector<LineCut> cuts;  ///< a block of steps ends at the time of each
   /// Tension of each line at the end of a step beyond which the step fails, N; infinite for lines without
   /// limit; or empty.

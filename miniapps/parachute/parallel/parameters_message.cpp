@@ -73,8 +73,10 @@ auto members(IsMaybeConst<coupling::LineCut> auto& cut) {
 }
 
 auto members(IsMaybeConst<coupling::Parameters> auto& parameters) {
-  auto& [flow, fabric, sheet, follow, substeps, contact_interval, cuts, line_strength] = parameters;
-  return std::tie(flow, fabric, sheet, follow, substeps, contact_interval, cuts, line_strength);
+  auto& [flow, fabric, sheet, follow, substeps, contact_interval, longest_batch, cuts, line_strength] =
+      parameters;
+  return std::tie(flow, fabric, sheet, follow, substeps, contact_interval, longest_batch, cuts,
+                  line_strength);
 }
 
 template <class>

@@ -72,7 +72,8 @@ double CanopyRecord::relative_leak(std::size_t canopy, double from, double to) c
 }
 
 double CanopyRecord::relative_leak_rms(std::size_t canopy, double from, double to) const {
-  return std::sqrt(mean_square(first_column + 4 + per_canopy * canopy, from, to)) / reference_flow(canopy, from, to);
+  return std::sqrt(mean_square(first_column + 4 + per_canopy * canopy, from, to)) /
+         reference_flow(canopy, from, to);
 }
 
 CanopyRecord::Peak CanopyRecord::peak(std::size_t canopy) const {
