@@ -83,17 +83,22 @@ void declare_perturbation(Table& table, Perturbation& perturbation) {
       .when([&perturbation] { return perturbation.amplitude > 0.0; }, "with an amplitude", "amplitude");
 }
 
+/// Stiffness of a spring without compression. `of_what`: the middle of the sentence on it.
+void declare_stiffness(Table& table, double& stiffness, const std::string& of_what) {
+  table
+      .value("stiffness", scene::real_codec(stiffness),
+             "Young's modulus times cross-section" + of_what + " no compression")
+      .unit("N")
+      .above(0.0);
+}
+
 void declare_lines(Table& table, SuspensionLines& lines, const std::function<bool()>& with_fluid) {
   table
       .value("length", scene::real_codec(lines.length),
              "Length from the payload to the skirt; longer than the radius of the skirt at rest")
       .unit("m")
       .above(0.0);
-  table
-      .value("stiffness", scene::real_codec(lines.stiffness),
-             "Young's modulus times cross-section of each line; lines carry no compression")
-      .unit("N")
-      .above(0.0);
+  declare_stiffness(table, lines.stiffness, " of each line; lines carry");
   table
       .value("line_density", scene::real_codec(lines.line_density),
              "Mass per length; half of it moves with the skirt, half with the payload")
@@ -135,11 +140,7 @@ void declare_payload(Table& table, CanopyPayload& payload) {
 
 void declare_riser(Table& table, Riser& riser) {
   table.value("length", scene::real_codec(riser.length), "Length").unit("m").above(0.0).required();
-  table
-      .value("stiffness", scene::real_codec(riser.stiffness),
-             "Young's modulus times cross-section; it carries no compression")
-      .unit("N")
-      .above(0.0);
+  declare_stiffness(table, riser.stiffness, "; it carries");
   table.value("mass", scene::real_codec(riser.mass), "Mass, at the point where the lines meet")
       .unit("kg")
       .above(0.0);
@@ -152,11 +153,7 @@ void declare_reefing(Table& table, ReefingLine& reefing) {
       .unit("m")
       .above(0.0)
       .required();
-  table
-      .value("stiffness", scene::real_codec(reefing.stiffness),
-             "Young's modulus times cross-section; it carries no compression")
-      .unit("N")
-      .above(0.0);
+  declare_stiffness(table, reefing.stiffness, "; it carries");
   table.value("cut", scene::real_codec(reefing.cut), "Time at which it is cut")
       .unit("s")
       .above(0.0)
@@ -164,11 +161,7 @@ void declare_reefing(Table& table, ReefingLine& reefing) {
 }
 
 void declare_vent_lines(Table& table, VentLines& lines) {
-  table
-      .value("stiffness", scene::real_codec(lines.stiffness),
-             "Young's modulus times cross-section of each line; lines carry no compression")
-      .unit("N")
-      .above(0.0);
+  declare_stiffness(table, lines.stiffness, " of each line; lines carry");
   table
       .value("line_density", scene::real_codec(lines.line_density),
              "Mass per length; half of it moves with the edge of the vent, half with the crossing")
