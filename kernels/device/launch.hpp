@@ -21,6 +21,16 @@ void launch_each(const ExecutionSpace& space, const char* label, int count, cons
       functor);
 }
 
+/// Calls `functor(member)` in the teams of `policy`, a Kokkos::TeamPolicy. Asynchronous; may be captured into
+/// a CUDA graph. Does not throw, as `launch_each`.
+template <class Policy, class Functor>
+void launch_teams(const char* label, const Policy& policy, const Functor& functor) {
+  static_assert(sizeof(Functor) <= 3900, "a functor of launch_teams must fit the arguments of a kernel");
+  Kokkos::parallel_for(
+      label, Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+      functor);
+}
+
 /// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous; may be captured into a
 /// CUDA graph. Does not throw, as `launch_each`.
 template <class ExecutionSpace, class Functor>

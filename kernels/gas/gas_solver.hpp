@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "kernels/device/captured_graph.hpp"
+#include "kernels/device/launch.hpp"
 #include "kernels/device/relaxed_access.hpp"
 #include "kernels/gas/solver.hpp"
 #include "kernels/gas/stepping/history.hpp"
@@ -387,10 +388,8 @@ void GasSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool l
     for (int stage = 0; stage < _setup.table.stages; ++stage)
       launch_stage<scheme.value>(space, _setup, _parameters.precision, limited, stage);
   });
-  Kokkos::parallel_for(
-      "drogue::gas::finish_step",
-      Kokkos::Experimental::require(Kokkos::TeamPolicy<ExecutionSpace>(space, 1, on_host ? 1 : finish_team),
-                                    Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+  device::launch_teams(
+      "drogue::gas::finish_step", Kokkos::TeamPolicy<ExecutionSpace>(space, 1, on_host ? 1 : finish_team),
       FinishFunctor<ExecutionSpace>{_setup.control, _loop.status_view(), _constants, _setup.table, limited});
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/device/captured_graph.hpp"
+#include "kernels/device/launch.hpp"
 #include "kernels/fabric/contact/broad_phase.hpp"
 #include "kernels/fabric/contact/contact.hpp"
 #include "kernels/fabric/contact/features.hpp"
@@ -213,11 +214,7 @@ template <class Functor>
 void ContactImpl<ExecutionSpace>::launch(const char* label, int count, const Functor& functor) const {
   static_assert(Kokkos::SpaceAccessibility<ExecutionSpace,
                                            typename PointsView<ExecutionSpace>::memory_space>::accessible);
-  Kokkos::parallel_for(
-      label,
-      Kokkos::Experimental::require(Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, count),
-                                    Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      functor);
+  device::launch_each(_instance.space(), label, count, functor);
 }
 
 template <class ExecutionSpace>

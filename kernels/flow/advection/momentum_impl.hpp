@@ -217,16 +217,14 @@ void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionS
     const int slabs = parts(g.n[2], planes);
     auto policy = typename Functor::Policy(space, slabs, 1)
                       .set_scratch_size(1, Kokkos::PerTeam(Functor::scratch_bytes(g)));
-    Kokkos::parallel_for("drogue::flow::momentum", policy, Functor{setup, slabs, planes});
+    device::launch_teams("drogue::flow::momentum", policy, Functor{setup, slabs, planes});
   } else {
     using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth>;
     const int tiles_x = parts(g.n[0], tile_x), tiles_y = parts(g.n[1], setup.rows);
     const int planes = momentum_planes(scheme, tiles_x * tiles_y, g.n[2]);
-    typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes), tile_x * setup.rows);
-    Kokkos::parallel_for(
-        "drogue::flow::momentum",
-        Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-        Functor{setup, tiles_x, tiles_y, planes});
+    const typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes),
+                                          tile_x * setup.rows);
+    device::launch_teams("drogue::flow::momentum", policy, Functor{setup, tiles_x, tiles_y, planes});
   }
 }
 

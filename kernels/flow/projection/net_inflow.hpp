@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "kernels/device/memory.hpp"
+#include "kernels/device/launch.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
 #include "kernels/flow/views.hpp"
 
@@ -68,14 +68,9 @@ struct NetInflowFunctor {
 /// Enqueues the net inflow. Asynchronous.
 template <class ExecutionSpace>
 void launch_net_inflow(const ExecutionSpace& space, const NetInflowFunctor<ExecutionSpace>& functor) {
-  static_assert(sizeof(functor) <= 3900, "the functor must fit the arguments of a kernel");
   constexpr int threads = device::is_host<ExecutionSpace> ? 1 : 256;
-  const typename NetInflowFunctor<ExecutionSpace>::Policy one_team(space, 1, threads);
-  // A functor that is no argument of the kernel passes through a buffer that a captured graph cannot hold.
-  Kokkos::parallel_for(
-      "drogue::flow::net_inflow",
-      Kokkos::Experimental::require(one_team, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      functor);
+  device::launch_teams("drogue::flow::net_inflow",
+                       typename NetInflowFunctor<ExecutionSpace>::Policy(space, 1, threads), functor);
 }
 
 }  // namespace drogue::flow

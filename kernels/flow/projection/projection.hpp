@@ -196,12 +196,10 @@ void launch_correction(const ExecutionSpace& space, const ProjectionSetup<Execut
   const int width = on_host ? n[0] : tile_x, height = on_host ? 1 : setup.rows;
   const int tiles_x = parts(n[0], width), tiles_y = parts(n[1], height);
   const int planes = on_host ? 1 : march_planes(tiles_x * tiles_y, n[2], 16);
-  typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes),
-                                  on_host ? 1 : width * height);
-  Kokkos::parallel_for(
-      "drogue::flow::correction",
-      Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      Functor{setup, width, height, tiles_x, tiles_y, planes});
+  const typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes),
+                                        on_host ? 1 : width * height);
+  device::launch_teams("drogue::flow::correction", policy,
+                       Functor{setup, width, height, tiles_x, tiles_y, planes});
 }
 
 }  // namespace drogue::flow

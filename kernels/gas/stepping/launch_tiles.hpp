@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/device/launch.hpp"
 #include "kernels/gas/stepping/launch.hpp"
 #include "kernels/gas/stepping/persistent_step.hpp"
 #include "kernels/gas/stepping/stage.hpp"
@@ -15,11 +16,7 @@ void launch_tiles(const char* label, const ExecutionSpace& space, const TileShap
   Policy policy(space, static_cast<int>(tiles), team_size);
   policy.set_scratch_size(
       0, Kokkos::PerTeam(static_cast<int>(Tile<ExecutionSpace>::scratch_bytes(shape) + scratch_margin)));
-  // A light-weight functor is passed as a kernel argument. The alternative, constant memory, cannot be
-  // captured in a graph.
-  Kokkos::parallel_for(
-      label, Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      functor);
+  device::launch_teams(label, policy, functor);
 }
 
 template <bool many_slots, class ExecutionSpace, class Functor>

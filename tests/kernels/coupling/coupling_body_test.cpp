@@ -111,6 +111,7 @@ double couette_displacement(int rows, double defect_filter = 0.0) {
   return place - speed / slope;
 }
 
+// ctest-label: no-sanitizer
 TEST(NoSlipSheet, MovesTheFluidToAWallWithALinearProfile) {
   // The delta function acts as a sheet that is nearer to the wall by half of the mean distance of two points
   // spread by it, 0.28 h.
@@ -146,6 +147,7 @@ double stokes_error(int rows) {
   return largest;
 }
 
+// ctest-label: no-sanitizer
 TEST(NoSlipSheet, OscillatesInItsPlaneAsAWall) {
   const double coarse = stokes_error(64), fine = stokes_error(128);
   EXPECT_LT(fine, 0.08);
@@ -236,6 +238,7 @@ TEST(NoSlipSheet, TakesTheMomentumThatThePeriodicFluidLoses) {
   EXPECT_LT(run.force()[0], -0.1);
 }
 
+// ctest-label: no-sanitizer
 TEST(NoSlipSheet, ForceEqualsTheMomentumBalanceOfAControlVolume) {
   constexpr double h = 0.1;
   CoupledCase c(64, 32, h, 0.0125);

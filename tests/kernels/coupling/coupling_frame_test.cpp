@@ -96,6 +96,7 @@ double vortex_error(int n, flow::TimeScheme time) {
   return std::sqrt(sum / (n * n));
 }
 
+// ctest-label: no-sanitizer
 TEST(MovingFrame, DecayingVorticesAreOfSecondOrderInAnAcceleratingFrame) {
   for (const flow::TimeScheme time : {flow::TimeScheme::ab2, flow::TimeScheme::rk3}) {
     // Rates of the old frame would make an error of some dt / 2 times the velocity of the frame: 3e-3 m/s.

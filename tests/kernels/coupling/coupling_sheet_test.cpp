@@ -147,6 +147,7 @@ TEST(FixedSheet, DoesNotLeakIfImpermeable) {
   EXPECT_LE(std::abs(velocity_through_tilted_sheet(100.0, true, 0.5 * h, 200)), 1e-3);
 }
 
+// ctest-label: no-sanitizer
 TEST(FixedSheet, LayersAddTheirPressureDifferences) {
   for (const int layers : {1, 2, 5, 10})
     for (const double gap : {0.05, 0.5}) {
@@ -317,6 +318,7 @@ TEST(FreeSheet, EnergyNeverGrowsWithoutTheFilteredAcceleration) {
   }
 }
 
+// ctest-label: no-sanitizer
 TEST(FreeSheet, NoiseDecaysWithTheFilteredAcceleration) {
   for (const double mass : {0.00373, 0.0373, 0.373})
     for (const bool impermeable : {false, true}) {
