@@ -22,13 +22,18 @@ void launch_each(const ExecutionSpace& space, const char* label, int count, cons
 }
 
 /// Calls `functor(member)` in the teams of `policy`, a Kokkos::TeamPolicy. Asynchronous; may be captured into
-/// a CUDA graph. Does not throw, as `launch_each`.
+/// a CUDA graph. Throws std::runtime_error if a team has more threads or scratch memory than the kernel can
+/// have; the next copy reports a launch that CUDA rejects (`copy_bytes`).
 template <class Policy, class Functor>
 void launch_teams(const char* label, const Policy& policy, const Functor& functor) {
   static_assert(sizeof(Functor) <= 3900, "a functor of launch_teams must fit the arguments of a kernel");
-  Kokkos::parallel_for(
-      label, Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      functor);
+  // A team policy of Kokkos::Serial that gets a property loses its instance, and hosts need no hint.
+  if constexpr (is_host<typename Policy::execution_space>)
+    Kokkos::parallel_for(label, policy, functor);
+  else
+    Kokkos::parallel_for(
+        label, Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+        functor);
 }
 
 /// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous; may be captured into a

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/device/launch.hpp"
 #include "kernels/device/memory.hpp"
 #include "kernels/flow/advection/face_value.hpp"
 #include "kernels/flow/advection/momentum.hpp"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "kernels/device/launch.hpp"
+#include "kernels/device/memory.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
 #include "kernels/flow/views.hpp"
 

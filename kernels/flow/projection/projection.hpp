@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "kernels/device/launch.hpp"
 #include "kernels/device/memory.hpp"
 #include "kernels/device/team_maximum.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
