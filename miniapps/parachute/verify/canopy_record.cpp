@@ -68,18 +68,17 @@ double CanopyRecord::reference_flow(std::size_t canopy, double from, double to) 
 }
 
 double CanopyRecord::relative_leak(std::size_t canopy, double from, double to) const {
-  return std::abs(mean(first_column + 4 + per_canopy * canopy, from, to)) / reference_flow(canopy, from, to);
+  return std::abs(mean(column(Measure::leak, canopy), from, to)) / reference_flow(canopy, from, to);
 }
 
 double CanopyRecord::relative_leak_rms(std::size_t canopy, double from, double to) const {
-  return std::sqrt(mean_square(first_column + 4 + per_canopy * canopy, from, to)) /
-         reference_flow(canopy, from, to);
+  return std::sqrt(mean_square(column(Measure::leak, canopy), from, to)) / reference_flow(canopy, from, to);
 }
 
 CanopyRecord::Peak CanopyRecord::peak(std::size_t canopy) const {
   Peak largest;
   for (std::size_t row = 0; row < rows(); ++row)
-    if (const double force = at(row, first_column + 2 + per_canopy * canopy); force > largest.force)
+    if (const double force = at(row, column(Measure::line_force, canopy)); force > largest.force)
       largest = {force, at(row, 0)};
   return largest;
 }

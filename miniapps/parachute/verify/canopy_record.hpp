@@ -29,17 +29,17 @@ class CanopyRecord {
   /// along U, the velocity of the fluid far upstream relative to the payload; S0 the nominal area. NaN with
   /// fewer than two rows. Does not throw.
   [[nodiscard]] double mean_drag(std::size_t canopy, double from, double to) const {
-    return mean(first_column + per_canopy * canopy, from, to);
+    return mean(column(Measure::drag, canopy), from, to);
   }
 
   /// Mean magnitude of U, m/s, likewise.
   [[nodiscard]] double mean_speed(std::size_t canopy, double from, double to) const {
-    return mean(first_column + 1 + per_canopy * canopy, from, to);
+    return mean(column(Measure::speed, canopy), from, to);
   }
 
   /// Mean projected area, m^2, likewise.
   [[nodiscard]] double mean_area(std::size_t canopy, double from, double to) const {
-    return mean(first_column + 3 + per_canopy * canopy, from, to);
+    return mean(column(Measure::projected_area, canopy), from, to);
   }
 
   /// Magnitude of the mean leak over the mean speed and the mean projected area, likewise. What flows in and
@@ -65,8 +65,13 @@ class CanopyRecord {
   void read(const run::RestartReader& reader);
 
  private:
-  static constexpr std::size_t first_column = 3, per_canopy = 5;  ///< columns
+  /// Columns of a canopy, in this order.
+  enum class Measure : std::size_t { drag, speed, line_force, projected_area, leak, count };
+  static constexpr std::size_t first_column = 3, per_canopy = static_cast<std::size_t>(Measure::count);
 
+  static constexpr std::size_t column(Measure measure, std::size_t canopy) {
+    return first_column + per_canopy * canopy + static_cast<std::size_t>(measure);
+  }
   [[nodiscard]] double largest(std::size_t column) const;
   [[nodiscard]] std::size_t rows() const { return _values.size() / _columns; }
   [[nodiscard]] double at(std::size_t row, std::size_t column) const {
@@ -82,8 +87,7 @@ class CanopyRecord {
   const FlowScene& _scene;
   fabric::Vector _stream{};  ///< velocity of the fluid far upstream, m/s
   std::size_t _columns;
-  /// Row by row: time, balance, intersections; then drag coefficient, speed, line force, projected area
-  /// and leak of each canopy.
+  /// Row by row: time, balance, intersections; then the measures of each canopy.
   std::vector<double> _values;
 };
 
