@@ -16,7 +16,7 @@ using ListView = Kokkos::View<T*, typename ExecutionSpace::memory_space>;
 template <class ExecutionSpace, class T, int columns>
 using TableView = Kokkos::View<T* [columns], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
 
-/// Copies a list to the memory of an execution space. Blocks.
+/// Copy of a list, in any unit, in the memory of an execution space. Blocks. Throws only if memory runs out.
 template <class ExecutionSpace, class T>
 [[nodiscard]] ListView<ExecutionSpace, T> list_view(const ExecutionSpace& space, const std::string& label,
                                                     const std::vector<T>& from) {
@@ -28,7 +28,8 @@ template <class ExecutionSpace, class T>
   return to;
 }
 
-/// Copies columns of equal length to the memory of an execution space. Blocks.
+/// Copy of columns of equal length, in any unit, in the memory of an execution space. Blocks. Throws only
+/// if memory runs out.
 template <class ExecutionSpace, class T, std::size_t columns>
 [[nodiscard]] auto table_view(const ExecutionSpace& space, const std::string& label,
                               const std::array<std::vector<T>, columns>& from) {

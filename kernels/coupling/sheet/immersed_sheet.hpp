@@ -9,6 +9,7 @@
 #include "kernels/coupling/interpolate.hpp"
 #include "kernels/coupling/rank_sum.hpp"
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
+#include "kernels/coupling/sheet/edge_inset.hpp"
 #include "kernels/coupling/sheet/explicit_exchange.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
 #include "kernels/coupling/sheet/parameters.hpp"
@@ -26,6 +27,16 @@ struct BeginSheetStepFunctor {
     spatial::store_vector(air.velocity, i, spatial::load_vector(air.before, i));
     air.impulse(i) = 0.0;
     if (air.is_no_slip(i)) spatial::store_vector(air.no_slip_impulse, i, spatial::Point{0.0, 0.0, 0.0});
+  }
+};
+
+/// Copies the rows of vertices; Views may have more.
+template <class ExecutionSpace>
+struct CopyRowsFunctor {
+  fabric::PointsView<ExecutionSpace> from, to;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    spatial::store_vector(to, i, spatial::load_vector(from, i));
   }
 };
 
@@ -120,6 +131,7 @@ class ImmersedSheet {
         _density(density),
         _surface(space, cloth.mesh),
         _transfer(space, grid, parameters.kernel, _surface.vertices(), own_faces),
+        _inset(space, cloth.mesh, grid, parameters.edge_inset),
         _rank_sum(group, rows(), 2),
         _air{scalars("drogue::coupling::area"),
              vectors("drogue::coupling::normal"),
@@ -136,6 +148,7 @@ class ImmersedSheet {
         _filtered{_air.acceleration, Vectors(), _air.acceleration},
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
+        _present("drogue::coupling::present_positions", _inset.size() > 0 ? rows() : 0),
         _interpolated_force(vectors("drogue::coupling::interpolated_force")) {
     if (parameters.method == CouplingMethod::explicit_) _air.last_force = _force;
     if (parameters.defect_filter > 0.0) {
@@ -187,6 +200,7 @@ class ImmersedSheet {
     freeze_positions(space, _transfer, cloth.positions, cloth.velocities, 0.5 * dt);
     if (_sharp) return _sharp->begin_step(space, velocity);
     fabric::vertex_geometry(space, _surface, _transfer.positions, _air.area, _air.normal);
+    _inset(space, cloth, 0.5 * dt, _transfer.positions);
     spread_row_sums(space, _transfer, _air.area, _density, _air.compliance);
     interpolate(space, _transfer, velocity, _air.before);
     _rank_sum(space, {_air.compliance, _air.before});
@@ -225,15 +239,22 @@ class ImmersedSheet {
                                             1.0 / _density, filter, _parameters.defect_filter});
   }
 
-  /// Enqueues the velocity of the flow, m/s, interpolated to the present positions of all vertices, and
-  /// returns it, (vertices, 3), valid until the next step. `velocity`: as in `begin_step`. The frozen
-  /// positions stay. On several ranks collective; blocks there. Throws as `begin_step`.
+  /// Enqueues the velocity of the flow, m/s, interpolated to where the vertices at their present positions
+  /// exchange forces with it, and returns it, (vertices, 3), valid until the next step. `velocity`: as in
+  /// `begin_step`. The frozen positions stay. On several ranks collective; blocks there. Throws as
+  /// `begin_step`.
   template <class View>
   [[nodiscard]] const Vectors& air_velocity(const ExecutionSpace& space,
                                             const fabric::State<ExecutionSpace>& cloth,
                                             const FaceViews<View>& velocity) const {
     GridTransfer<ExecutionSpace> present = _transfer;
     present.positions = cloth.positions;
+    if (_inset.size() > 0) {
+      device::launch_each(space, "drogue::coupling::present_positions", _transfer.points,
+                          CopyRowsFunctor<ExecutionSpace>{cloth.positions, _present});
+      _inset(space, cloth, 0.0, _present);
+      present.positions = _present;
+    }
     interpolate(space, present, velocity, _after);
     _rank_sum(space, {_after});
     return _after;
@@ -255,6 +276,10 @@ class ImmersedSheet {
       throw std::invalid_argument("immersed sheet: the weight of the defect must be 0 to 0.2");
     if (p.defect_filter > 0.0 && p.method != CouplingMethod::spread)
       throw std::invalid_argument("immersed sheet: the defect is filtered with CouplingMethod::spread alone");
+    if (!(p.edge_inset >= 0.0 && p.edge_inset <= 1.0))
+      throw std::invalid_argument("immersed sheet: the inset of edges must be 0 to 1 cells");
+    if (p.edge_inset > 0.0 && p.method == CouplingMethod::sharp)
+      throw std::invalid_argument("immersed sheet: a sharp sheet has no inset of edges");
   }
 
   static bool has_no_slip(const SheetParameters& p) {
@@ -298,10 +323,13 @@ class ImmersedSheet {
   double _density;  ///< kg/m^3
   fabric::SurfaceViews<ExecutionSpace> _surface;
   GridTransfer<ExecutionSpace> _transfer;
+  EdgeInset<ExecutionSpace> _inset;
   RankSum<ExecutionSpace> _rank_sum;
   LocalAir<ExecutionSpace> _air;
   FilteredAcceleration<ExecutionSpace> _filtered;
-  Vectors _force, _after, _interpolated_force;
+  Vectors _force, _after;
+  Vectors _present;  ///< positions with the inset, m; empty without it
+  Vectors _interpolated_force;
   std::optional<SharpSheet<ExecutionSpace>> _sharp;
 };
 

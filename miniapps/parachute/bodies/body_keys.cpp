@@ -218,6 +218,14 @@ void declare_coupling(Table& table, coupling::SheetParameters& coupling,
       .when([with_fluid,
              &coupling] { return with_fluid() && coupling.method == coupling::CouplingMethod::spread; },
             "with [fluid] and method = \"spread\"", "method");
+  table
+      .value("edge_inset", scene::real_codec(coupling.edge_inset),
+             "Cells by which free edges of sheets lie farther inwards where they exchange forces with the "
+             "fluid; 0.55 makes up for the width of the delta function, which else acts beyond the edges")
+      .range(0.0, 1.0)
+      .when([with_fluid,
+             &coupling] { return with_fluid() && coupling.method != coupling::CouplingMethod::sharp; },
+            "with [fluid] and method = \"spread\" or \"explicit\"", "method");
 }
 
 }  // namespace drogue::parachute_app

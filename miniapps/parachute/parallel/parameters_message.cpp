@@ -63,8 +63,8 @@ auto members(IsMaybeConst<fabric::Parameters> auto& parameters) {
 }
 
 auto members(IsMaybeConst<coupling::SheetParameters> auto& sheet) {
-  auto& [kernel, law, law_of_vertex, filter, defect_filter, method] = sheet;
-  return std::tie(kernel, law, law_of_vertex, filter, defect_filter, method);
+  auto& [kernel, law, law_of_vertex, filter, defect_filter, edge_inset, method] = sheet;
+  return std::tie(kernel, law, law_of_vertex, filter, defect_filter, edge_inset, method);
 }
 
 auto members(IsMaybeConst<coupling::LineCut> auto& cut) {

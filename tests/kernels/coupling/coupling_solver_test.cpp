@@ -8,8 +8,10 @@
 #include <random>
 #include <stdexcept>
 
+#include "kernels/coupling/sheet/edge_inset.hpp"
 #include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "kernels/reference/coupling/edge_inset.hpp"
 #include "kernels/reference/coupling/grid_transfer.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "tests/support/coupled_case.hpp"
@@ -351,21 +353,24 @@ TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
   EXPECT_THROW(run.solver->elastic_forces(few), std::invalid_argument);
 }
 
-TEST(CoupledSolver, ReportsTheVelocityOfTheAirAtTheVertices) {
-  const CoupledCase c = flying_strip();
+/// Velocity of the air where the vertices exchange forces with it: from the solver, and interpolated here.
+void expect_air_velocity(const CoupledCase& c) {
   CoupledRun run(c), other(c);
   ASSERT_TRUE(run.advance(10));
   std::vector<Vector> x(c.x.size()), v(c.x.size()), air(c.x.size());
   run.solver->download_cloth(x, v);
   run.solver->air_velocity(air);
+  const coupling::StaggeredGrid grid = c.grid({false, false, true});
+  if (c.p.sheet.edge_inset > 0.0)
+    x = reference::inset_positions(c.p.fabric.mesh, free_edges(c.p.fabric.mesh, grid),
+                                   c.p.sheet.edge_inset * h, inset_band * h, x);
   reference::FaceField velocity;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const flow::StateField field = flow::state_fields(c.p.flow)[axis];
     velocity[axis].resize(flow::state_size(c.p.flow, field));
     run.solver->download(field, velocity[axis]);
   }
-  const std::vector<Vector> expected =
-      reference::interpolate(c.grid({false, false, true}), c.p.sheet.kernel, velocity, x);
+  const std::vector<Vector> expected = reference::interpolate(grid, c.p.sheet.kernel, velocity, x);
   double largest = 0.0;
   for (const Vector& of_vertex : expected) largest = std::max(largest, std::abs(of_vertex[0]));
   EXPECT_GT(largest, 0.1);
@@ -374,6 +379,13 @@ TEST(CoupledSolver, ReportsTheVelocityOfTheAirAtTheVertices) {
   ASSERT_TRUE(other.advance(10));
   for (CoupledRun* each : {&run, &other}) ASSERT_TRUE(each->advance(10));
   EXPECT_EQ(distance(state_of(c, *run.solver), state_of(c, *other.solver)), 0.0);
+}
+
+TEST(CoupledSolver, ReportsTheVelocityOfTheAirAtTheVertices) {
+  CoupledCase c = flying_strip();
+  expect_air_velocity(c);
+  c.p.sheet.edge_inset = 0.55;
+  expect_air_velocity(c);
 }
 
 TEST(CoupledSolver, StepSizeFollowsTheSpeedOfTheAir) {
@@ -556,6 +568,13 @@ TEST(CoupledSolver, RejectsInvalidParameters) {
   rejects([](Parameters& p) { p.longest_batch = 0.0; });
   rejects([](Parameters& p) { p.sheet.defect_filter = -0.5; });
   rejects([](Parameters& p) { p.sheet.defect_filter = 0.3; });
+  rejects([](Parameters& p) { p.sheet.edge_inset = -0.1; });
+  rejects([](Parameters& p) { p.sheet.edge_inset = 1.1; });
+  rejects([](Parameters& p) {
+    p.sheet.edge_inset = 0.55;
+    p.sheet.method = CouplingMethod::sharp;
+    p.fabric.pinned.assign(p.fabric.mass.size(), 7);
+  });
   rejects([](Parameters& p) { p.fabric.mass.clear(); });
   rejects([](Parameters& p) { p.flow.density = 0.0; });
   rejects([](Parameters& p) { p.cuts = {{1.0, {0}}}; });
@@ -587,15 +606,20 @@ TEST(CoupledCounters, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
   c.p.substeps = 16;
   c.p.longest_batch = 1e9;
   c.p.flow.fixed_dt = 0.002;
-  CoupledRun run(c);
-  static_cast<void>(counted_steps(run, 16));
-  // Blocks of 16 steps and of 4: the difference is that of 12 steps. The first one has a checkpoint of the
-  // cloth.
-  const auto whole = counted_steps(run, 16), part = counted_steps(run, 4);
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
-  // Saving, 8 kernels before the steps of the cloth, 4 that spread its forces, a check, and 4 after the step
-  // of the flow, which is 11 kernels on a host and one graph on a device.
-  EXPECT_EQ(whole[3] - part[3] - 1, 12 * (1 + 8 + on_device(1, c.p.substeps) + 4 + 1 + on_device(1, 11) + 4));
+  for (const double edge_inset : {0.0, 0.55}) {
+    c.p.sheet.edge_inset = edge_inset;
+    CoupledRun run(c);
+    static_cast<void>(counted_steps(run, 16));
+    // Blocks of 16 steps and of 4: the difference is that of 12 steps. The first one has a checkpoint of the
+    // cloth.
+    const auto whole = counted_steps(run, 16), part = counted_steps(run, 4);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
+    // Saving, 8 kernels before the steps of the cloth, 4 that spread its forces, a check, and 4 after the
+    // step of the flow, which is 11 kernels on a host and one graph on a device. An inset of edges is one
+    // more.
+    EXPECT_EQ(whole[3] - part[3] - 1, 12 * (1 + 8 + on_device(1, c.p.substeps) + 4 + 1 + on_device(1, 11) +
+                                            4 + (edge_inset > 0.0 ? 1 : 0)));
+  }
 }
 
 TEST(CoupledCounters, ContactIsResolvedOncePerInterval) {

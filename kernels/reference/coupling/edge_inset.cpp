@@ -1,0 +1,126 @@
+#include "kernels/reference/coupling/edge_inset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace drogue::reference {
+
+namespace {
+
+/// Distance from an edge at which a vertex is an end of it, m.
+constexpr double rounding = 1e-12;
+
+Vector combination(double a, const Vector& u, double b, const Vector& v) {
+  return {a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]};
+}
+
+double product(const Vector& u, const Vector& v) {
+  return std::inner_product(u.begin(), u.end(), v.begin(), 0.0);
+}
+
+double norm(const Vector& v) { return std::sqrt(product(v, v)); }
+
+Vector normalised(const Vector& v) { return combination(1.0 / norm(v), v, 0.0, v); }
+
+/// Part of v that is normal to a unit vector.
+Vector rejected(const Vector& v, const Vector& along) {
+  return combination(1.0, v, -product(v, along), along);
+}
+
+const Vector& at(const std::vector<Vector>& points, int i) { return points[static_cast<std::size_t>(i)]; }
+
+Vector from_to(const std::vector<Vector>& points, int a, int b) {
+  return combination(1.0, at(points, b), -1.0, at(points, a));
+}
+
+/// Vector from the nearest point of edge ab to p.
+Vector from_edge(const std::vector<Vector>& points, const std::array<int, 2>& edge, const Vector& p) {
+  const Vector &a = at(points, edge[0]), along = from_to(points, edge[0], edge[1]);
+  const double part = product(combination(1.0, p, -1.0, a), along) / product(along, along);
+  const Vector foot = combination(1.0, a, std::clamp(part, 0.0, 1.0), along);
+  return combination(1.0, p, -1.0, foot);
+}
+
+/// Weights of the corners at the point of a triangle nearest to p: its foot on the plane by Cramer's rule, or
+/// the nearest point of the boundary.
+std::array<double, 3> nearest_weights(const std::vector<Vector>& points, const std::array<int, 3>& corner,
+                                      const Vector& p) {
+  const Vector u = from_to(points, corner[0], corner[1]), v = from_to(points, corner[0], corner[2]),
+               r = combination(1.0, p, -1.0, at(points, corner[0]));
+  const double uu = product(u, u), uv = product(u, v), vv = product(v, v), ru = product(r, u),
+               rv = product(r, v), determinant = uu * vv - uv * uv;
+  const double second = (ru * vv - rv * uv) / determinant, third = (rv * uu - ru * uv) / determinant;
+  if (second >= 0.0 && third >= 0.0 && second + third <= 1.0) return {1.0 - second - third, second, third};
+  std::array<double, 3> best{};
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const Vector away = from_edge(points, {corner[k], corner[next]}, p),
+                 side = from_to(points, corner[k], corner[next]);
+    if (!(norm(away) < least)) continue;
+    least = norm(away);
+    const Vector foot = combination(1.0, p, -1.0, away);
+    const double part =
+        product(combination(1.0, foot, -1.0, at(points, corner[k])), side) / product(side, side);
+    best = {};
+    best[k] = 1.0 - part, best[next] = part;
+  }
+  return best;
+}
+
+Vector weighted(const std::vector<Vector>& points, const std::array<int, 3>& corner,
+                const std::array<double, 3>& weight) {
+  Vector sum{};
+  for (std::size_t k = 0; k < 3; ++k) sum = combination(1.0, sum, weight[k], at(points, corner[k]));
+  return sum;
+}
+
+/// Sum of the unit normals of the edges that end in a vertex, in their triangles and into these.
+Vector into_surface(const Mesh& mesh, const std::vector<std::array<int, 2>>& edges, int vertex) {
+  Vector sum{};
+  for (const std::array<int, 2>& edge : edges) {
+    if (edge[0] != vertex && edge[1] != vertex) continue;
+    const Vector along = normalised(from_to(mesh.rest, edge[0], edge[1]));
+    for (const auto& corner : mesh.triangles)
+      for (const int other : corner)
+        if (std::ranges::count(corner, edge[0]) == 1 && std::ranges::count(corner, edge[1]) == 1 &&
+            other != edge[0] && other != edge[1])
+          sum = combination(1.0, sum, 1.0, normalised(rejected(from_to(mesh.rest, edge[0], other), along)));
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<Vector> inset_positions(const Mesh& mesh, const std::vector<std::array<int, 2>>& edges,
+                                    double shift, double band, const std::vector<Vector>& x) {
+  std::vector<Vector> moved = x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto has_vertex = [&](const auto& corner) {
+      return std::ranges::find(corner, static_cast<int>(i)) != corner.end();
+    };
+    if (std::ranges::none_of(mesh.triangles, has_vertex)) continue;
+    Vector away{};
+    double distance = std::numeric_limits<double>::infinity();
+    for (const std::array<int, 2>& edge : edges) {
+      const Vector candidate = from_edge(mesh.rest, edge, mesh.rest[i]);
+      if (norm(candidate) < distance) distance = norm(candidate), away = candidate;
+    }
+    if (!(distance < band)) continue;
+    if (distance < rounding) away = into_surface(mesh, edges, static_cast<int>(i));
+    const Vector target = combination(1.0, mesh.rest[i], shift * (1.0 - distance / band), normalised(away));
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& corner : mesh.triangles) {
+      const std::array<double, 3> weight = nearest_weights(mesh.rest, corner, target);
+      const double off = norm(combination(1.0, weighted(mesh.rest, corner, weight), -1.0, target));
+      if (!(off < least)) continue;
+      least = off;
+      moved[i] = weighted(x, corner, weight);
+    }
+  }
+  return moved;
+}
+
+}  // namespace drogue::reference
