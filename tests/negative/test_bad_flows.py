@@ -239,6 +239,9 @@ class BadFlows(parachute_program.FlowTest):
         sharp = 'coupling.method="sharp"'
         self.scene.write_text(bad_bodies.GOOD, encoding="utf-8")
         self.expect(0, self.scene, "--check", sets=[sharp])
+        self.assertIn("coupling.edge_inset", self.refusal(sharp, "coupling.edge_inset=0.55"))
+        self.expect(0, self.scene, "--check", sets=["coupling.edge_inset=0.55"])
+        self.assertIn("coupling.edge_inset", self.refusal("coupling.edge_inset=1.5"))
         self.assertIn('body[0].slip = false: with coupling.method = "sharp" the fluid slips along plates and disks',
                       self.refusal(sharp, "body[0].slip=false"))
         self.scene.write_text(bad_bodies.ROUND, encoding="utf-8")

@@ -1030,9 +1030,9 @@ class Restart(parachute_program.FlowTest):
     def test_interrupted_inflation_equals_uninterrupted_inflation(self):
         self.SETS = ("output.restart_every=5", "verify={force_balance=1e-14,drag=[{from=0.05,to=0.2,value=1,tolerance=10}],"
                      "leak=[{from=0.05,to=0.2,tolerance=1}]}")
-        for coupling in ("contact=false", "contact=true", "defect_filter=0.1"):
+        for coupling in (["contact=false"], ["contact=true"], ["defect_filter=0.1", "edge_inset=0.55"]):
             with self.subTest(coupling):
-                self.compare("serial", ["coupling." + coupling], lambda process: process.send_signal(signal.SIGINT), 130, CANOPY)
+                self.compare("serial", ["coupling." + text for text in coupling], lambda process: process.send_signal(signal.SIGINT), 130, CANOPY)
 
     def test_killed_run_equals_uninterrupted_run(self):
         self.compare(gas_program.threaded(), [], lambda process: process.kill(), -signal.SIGKILL)
