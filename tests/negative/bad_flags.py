@@ -31,6 +31,10 @@ column = "flag_0_tip_y"
 frequency = { value = 0.3, tolerance = 1 }
 """
 
+# The same in three dimensions: it ends within the domain, and its trailing edge has nine vertices.
+WIDE = GOOD.replace("cells = [40, 24, 1]", "cells = [40, 24, 12]").replace("[0, 0.125]]", "[-0.75, 0.75]]").replace(
+    'y = "slip" }', 'y = "slip", z = "slip" }').replace("edge_length = 0.0625\n", "edge_length = 0.0625\nwidth = 0.5\n")
+
 # Replaced line, its new text, the line in the error, and words of the message.
 BAD_LINES = [
     (10, "[[flags]]", 10, ['"flags"', 'did you mean "flag"?']),
@@ -48,6 +52,9 @@ BAD_LINES = [
     (17, "edge_length = 1e-7", 17, ["flag[0].edge_length", "2^20"]),
     (7, "cells = [40, 24, 4]", 9, ["grid.boundary.z"]),
     (8, "domain = [[-1, 4], [-1.5, 1.5], [0, 0]]", 8, ["grid.domain"]),
+    (17, "edge_length = 0.0625\nwidth = 0.5", 10, ["flag[0].width", "one cell along z"]),
+    (17, "edge_length = 0.0625\nmiddle = 0.5", 18, ["flag[0].middle", "with a width"]),
+    (17, "edge_length = 0.0625\nwidth = 0", 18, ["flag[0].width", "> 0"]),
     (19, 'method = "explicit"', 19, ["coupling.method", "[[flag]]"]),
     (19, "gravity = [0, -1e4, 0]", 19, ["coupling.gravity: 1e+04 m/s^2", "an edge of flag[0]", "at most 2.13e+03 m/s^2"]),
     (19, "contact = true", 19, ["coupling.contact", "[[canopy]]"]),

@@ -157,10 +157,14 @@ class BadFlows(parachute_program.FlowTest):
         self.scene.write_text(bad_flags.GOOD, encoding="utf-8")
         self.expect(0, self.scene, "--check")
         self.assert_lines_are_rejected(bad_flags.GOOD, bad_flags.BAD_LINES)
-        for cells, axis in (("[40, 24, 4]", "z"), ("[40, 1, 24]", "y")):
+        for cells, sentence in (("[40, 24, 4]", 'missing key "flag[0].width" (needed with several cells along z)'),
+                                ("[40, 1, 24]", "flag[0] needs a grid with several cells along x and y")):
             flat = bad_flags.GOOD.replace("[40, 24, 1]", cells).replace('y = "slip" }', 'y = "periodic", z = "periodic" }')
             self.scene.write_text(flat, encoding="utf-8")
-            self.assertIn("flag[0] needs a grid with one cell along z", self.refusal())
+            self.assertIn(sentence, self.refusal())
+        self.scene.write_text(bad_flags.WIDE, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assertIn("flag[0] reaches from 0.5 to 1 m along z", self.refusal("flag[0].middle=0.75"))
         plate = '[[body]]\nkind = "plate"\nnormal = "x"\ncentre = [2, 0, 0.0625]\nlengths = [0.5, 0.125]\nedge_length = 0.0625\n'
         self.scene.write_text(bad_flags.GOOD.replace("[coupling]", plate + "[coupling]"), encoding="utf-8")
         self.assertIn("flag[0] cannot be combined with a [[body]] or a [[canopy]]", self.refusal())

@@ -952,30 +952,47 @@ class Canopies(parachute_program.FlowTest):
 class Flags(parachute_program.FlowTest):
     def test_stiff_flag_in_thin_fluid_is_a_pendulum(self):
         """A flag that falls from the horizontal in fluid at rest of little mass is a pendulum: a hinged rod."""
-        pendulum = bad_flags.GOOD.replace("density = 1\n", "density = 1e-6\n", 1).replace("viscosity = 0.005", "viscosity = 0").replace(
+        for scene in (bad_flags.GOOD, bad_flags.WIDE):
+            with self.subTest(wide=scene == bad_flags.WIDE):
+                self.assert_pendulum(scene)
+
+    def assert_pendulum(self, scene):
+        pendulum = scene.replace("density = 1\n", "density = 1e-6\n", 1).replace("viscosity = 0.005", "viscosity = 0").replace(
             "velocity = [1, 0, 0]", "velocity = [0, 0, 0]").replace("angle = 18", "angle = 6").replace("bending_stiffness = 0.0015", "bending_stiffness = 2")
         # A rod: sqrt(3 g / (2 l)) / (2 pi), and its amplitude of sin(6 degrees) lengths.
         exact = math.sqrt(3 * 0.5 / 2) / (2 * math.pi)
         sets = ["run={end_time=26,max_dt=0.04}", "verify={oscillation=[{column='flag_0_tip_y',"
                 f"frequency={{value={exact},tolerance=3e-3}},amplitude={{value={math.sin(math.radians(6))},tolerance=3e-2}}}}]}}"]
-        self.expect(0, self.write(pendulum), *QUIET, sets=sets)
+        self.expect(0, self.write(pendulum), *QUIET, "--overwrite", sets=sets)
         self.expect(5, self.write(pendulum), *QUIET, "--overwrite", sets=[sets[0], sets[1].replace("3e-3", "1e-7")])
 
     def test_forces_on_a_flag_stretch_it_downstream_and_a_run_continues(self):
+        # Vertices of the trailing edge, from the last one on, in whose middle the tip lies.
+        for name, text, tip in (("strip", bad_flags.GOOD, (2, 1)), ("wide", bad_flags.WIDE, (5, 5))):
+            with self.subTest(name):
+                self.assert_runs_and_continues(name, text, tip)
+        places = self.fields("wide").values("/steps/000000/flag/position")
+        for k in range(1, 5):
+            low, high = places[-3 * (10 - k):][:3], places[-3 * k:][:3]
+            self.assertAlmostEqual(low[1], high[1], delta=1e-9, msg="the flag is symmetric")
+            self.assertAlmostEqual(low[2], -high[2], delta=1e-9)
+        self.assertGreater(places[-1] - places[-25], 0.45)
+
+    def assert_runs_and_continues(self, name, text, tip):
         sets = ["run.end_time=1", "output={history_every=1,times=[0.5],fields=['velocity'],restart_every=10}", "verify={}"]
-        scene = self.write(bad_flags.GOOD)
-        self.expect(0, scene, *QUIET, sets=sets)
-        rows = self.history("out")
-        places = self.fields("out").values("/steps/000000/flag/position")
+        scene = self.write(text)
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", name, sets=sets)
+        rows = self.history(name)
+        places = self.fields(name).values("/steps/000000/flag/position")
         (row,) = [k for k, time in enumerate(rows["time"]) if time == 0.5]
-        self.assertEqual(rows["flag_0_tip_y"][row], 0.5 * (places[-5] + places[-2]))
+        self.assertEqual(rows["flag_0_tip_y"][row], 0.5 * (places[1 - 3 * tip[0]] + places[1 - 3 * tip[1]]))
         self.assertGreater(rows["flag_0_force_x"][-1], 0.0)
         self.assertLess(max(rows["flag_0_tip_x"]), 0.01 + 1.02)  # hardly longer than at rest
-        half = self.folder / "half"
+        half = self.folder / f"{name}-half"
         self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, sets=[*sets, "run.end_time=0.5"])
         self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, "--restart", half / "restart.h5", sets=sets)
-        for name in ("flag_0_tip_y", "flag_0_force_y", "kinetic_energy"):
-            self.assertEqual(rows[name][-1], self.history("half")[name][-1], name)
+        for column in ("flag_0_tip_y", "flag_0_force_y", "kinetic_energy"):
+            self.assertEqual(rows[column][-1], self.history(half.name)[column][-1], column)
 
     def test_flag_that_leaves_the_domain_ends_the_run(self):
         run = self.expect(4, self.write(bad_flags.GOOD), *QUIET, sets=[

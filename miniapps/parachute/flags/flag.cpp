@@ -12,47 +12,69 @@ namespace {
 
 constexpr std::uint8_t pin_z = 4, pin_all = 7;
 
-/// Strip of one row of squares, each cut along the same diagonal, along x from the leading edge.
-mesh::Mesh strip_of(const Flag& flag) {
-  mesh::Mesh strip;
-  const int n = static_cast<int>(flag.divisions());
+/// Rectangle of rows of cells along x from the leading edge. The diagonals are mirror images about the
+/// middle.
+mesh::Mesh rectangle_of(const Flag& flag) {
+  mesh::Mesh rectangle;
+  const int n = static_cast<int>(flag.divisions()), across = static_cast<int>(flag.divisions_across());
+  const auto [low, high] = flag.has_width() ? std::array<double, 2>{flag.middle - 0.5 * *flag.width,
+                                                                    flag.middle + 0.5 * *flag.width}
+                                            : flag.span;
   for (int i = 0; i <= n; ++i)
-    for (const double z : flag.span)
-      strip.rest.push_back({flag.leading_edge[0] + flag.length * i / n, flag.leading_edge[1], z});
-  for (int i = 0; i < n; ++i) {
-    const int a = 2 * i;
-    strip.triangles.push_back({a, a + 3, a + 2});
-    strip.triangles.push_back({a, a + 1, a + 3});
-  }
-  return strip;
+    for (int k = 0; k <= across; ++k)
+      rectangle.rest.push_back({flag.leading_edge[0] + flag.length * i / n, flag.leading_edge[1],
+                                k == across ? high : low + (high - low) * k / across});
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < across; ++k) {
+      const int a = (across + 1) * i + k, b = a + 1, c = a + across + 1, d = c + 1;
+      if (2 * k < across) {
+        rectangle.triangles.push_back({a, d, c});
+        rectangle.triangles.push_back({a, b, d});
+      } else {
+        rectangle.triangles.push_back({a, b, c});
+        rectangle.triangles.push_back({b, d, c});
+      }
+    }
+  return rectangle;
+}
+
+/// Least number of equal parts of `length` that are at most `longest` but for rounding.
+double parts_of(double length, double longest) {
+  return std::max(1.0, std::ceil(length / longest * (1.0 - 1e-9)));
 }
 
 }  // namespace
 
-double Flag::divisions() const { return std::max(1.0, std::ceil(length / edge_length * (1.0 - 1e-9))); }
+double Flag::divisions() const { return parts_of(length, edge_length); }
+
+double Flag::divisions_across() const {
+  return has_width() ? 2.0 * parts_of(0.5 * *width, edge_length) : 1.0;
+}
 
 std::vector<FlagRows> append_flags(const std::vector<Flag>& flags, fabric::Parameters& sheets,
                                    std::vector<fabric::Vector>& positions) {
   std::vector<FlagRows> rows;
   for (const Flag& flag : flags) {
-    const mesh::Mesh strip = strip_of(flag);
+    const mesh::Mesh rectangle = rectangle_of(flag);
+    const auto across = static_cast<std::size_t>(flag.divisions_across());
     const std::vector<double> mass =
-        fabric::lumped_masses(strip, flag.area_density, 0.0, fabric::Lumping::area);
+        fabric::lumped_masses(rectangle, flag.area_density, 0.0, fabric::Lumping::area);
     const std::size_t begin = sheets.mesh.rest.size();
     const int first = static_cast<int>(begin);
     const double angle = flag.angle * std::numbers::pi / 180.0;
-    for (std::size_t i = 0; i < strip.rest.size(); ++i) {
-      const fabric::Vector& rest = strip.rest[i];
+    for (std::size_t i = 0; i < rectangle.rest.size(); ++i) {
+      const fabric::Vector& rest = rectangle.rest[i];
       const double along = rest[0] - flag.leading_edge[0];
       sheets.mesh.rest.push_back(rest);
       sheets.mass.push_back(mass[i]);
-      sheets.pinned.push_back(i < 2 ? pin_all : pin_z);
+      sheets.pinned.push_back(i <= across ? pin_all : flag.has_width() ? std::uint8_t{0} : pin_z);
       positions.push_back({flag.leading_edge[0] + along * std::cos(angle),
                            flag.leading_edge[1] + along * std::sin(angle), rest[2]});
     }
-    for (const auto& [a, b, c] : strip.triangles)
+    for (const auto& [a, b, c] : rectangle.triangles)
       sheets.mesh.triangles.push_back({first + a, first + b, first + c});
-    rows.push_back({begin, sheets.mesh.rest.size()});
+    const std::size_t end = sheets.mesh.rest.size();
+    rows.push_back({begin, end, {end - 1 - (across + 1) / 2, end - 1 - across / 2}});
   }
   if (flags.empty()) return rows;
   sheets.material.bending_stiffness = flags.front().bending_stiffness;

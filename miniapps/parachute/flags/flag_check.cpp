@@ -19,7 +19,9 @@ constexpr double most_flag_vertices = 1048576.0;  // 2^20
 /// Checks that a flag resolves its motion on the grid and lies within the domain at the start.
 void check_flag(const Table& root, const flow::Parameters& p, const Flag& flag, const std::string& name) {
   const auto spacing = lattice_of(p, flow::StateField::pressure).spacing;
-  const double width = std::min(spacing[0], spacing[1]), longest = largest_edge_in_cells * width;
+  const double width = flag.has_width() ? std::min({spacing[0], spacing[1], spacing[2]})
+                                        : std::min(spacing[0], spacing[1]),
+               longest = largest_edge_in_cells * width;
   const std::string key = name + ".edge_length";
   if (flag.length / flag.divisions() > (1.0 + 1e-9) * longest)
     contradict(root, key,
@@ -30,13 +32,13 @@ void check_flag(const Table& root, const flow::Parameters& p, const Flag& flag, 
   fabric::Parameters sheets;
   std::vector<fabric::Vector> positions;
   append_flags({flag}, sheets, positions);
-  for (std::size_t axis = 0; axis < 2; ++axis) {
+  for (std::size_t axis = 0; axis < (flag.has_width() ? 3U : 2U); ++axis) {
     if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) continue;
     const auto [low, high] =
         std::ranges::minmax(positions, {}, [axis](const fabric::Vector& x) { return x[axis]; });
     const double least = p.low[axis] + spacing[axis], most = p.high[axis] - spacing[axis];
     if (low[axis] >= least && high[axis] <= most) continue;
-    contradict(root, name + ".leading_edge",
+    contradict(root, name + (axis < 2 ? ".leading_edge" : ".width"),
                name + " reaches from " + real_text(low[axis]) + " to " + real_text(high[axis]) + " m along " +
                    axis_names[axis] +
                    ", beyond the cells beside the sides of the domain: it must lie between " +
@@ -51,8 +53,12 @@ void complete_and_check_flags(const Table& root, FlowScene& scene) {
   for (std::size_t i = 0; i < scene.flags.size(); ++i) {
     Flag& flag = scene.flags[i];
     const std::string name = "flag[" + std::to_string(i) + "]";
-    if (p.cells[2] != 1 || p.cells[0] == 1 || p.cells[1] == 1)
-      contradict(root, name, name + " needs a grid with one cell along z, and along z alone");
+    if (p.cells[0] == 1 || p.cells[1] == 1)
+      contradict(root, name, name + " needs a grid with several cells along x and y");
+    if (flag.has_width() != (p.cells[2] > 1))
+      contradict(root, name,
+                 flag.has_width() ? name + ".width: the flag spans a grid with one cell along z"
+                                  : "missing key \"" + name + ".width\" (needed with several cells along z)");
     if (!scene.bodies.empty() || !scene.canopies.empty())
       contradict(root, name, name + " cannot be combined with a [[body]] or a [[canopy]]");
     if (scene.is_explicit())

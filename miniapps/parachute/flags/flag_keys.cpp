@@ -31,10 +31,19 @@ void declare_flag(scene::Table& table, Flag& flag) {
       .above(0.0);
   table
       .value("edge_length", scene::real_codec(flag.edge_length),
-             "Largest edge along the flag; at most a cell over 1.4, and half a cell for accuracy")
+             "Largest edge along and across the flag; at most a cell over 1.4, and half a cell for accuracy")
       .unit("m")
       .above(0.0)
       .required();
+  table
+      .value("width", scene::real_codec(flag.width),
+             "Extent along z; with a grid of several cells along z, and then required")
+      .unit("m")
+      .above(0.0)
+      .default_text("that of the domain, of one cell along z");
+  table.value("middle", scene::real_codec(flag.middle), "Place of the middle of the width along z")
+      .unit("m")
+      .when([&flag] { return flag.has_width(); }, "with a width", "width");
 }
 
 }  // namespace drogue::parachute_app

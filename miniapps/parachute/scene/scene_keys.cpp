@@ -190,7 +190,7 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
       [of_fluid](Table& table, Canopy& canopy) { declare_canopy(table, canopy, of_fluid); },
       "Parachutes: cloth, suspension lines and a payload");
   root.tables("flag", scene.flags, declare_flag,
-              "Elastic strips in two dimensions, hinged at their leading edge")
+              "Elastic rectangles that are hinged at their leading edge, along z; strips in two dimensions")
       .when(of_fluid, fluid_condition, "fluid");
   root.tables("body", scene.bodies, declare_body, "Rigid sheets in the flow, at rest or in prescribed motion")
       .when(of_fluid, fluid_condition, "fluid");

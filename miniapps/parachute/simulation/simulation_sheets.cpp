@@ -128,7 +128,7 @@ void Simulation::append_flag_values(framework::HistoryRow& row) {
     std::array<double, 2> force{}, tip{};
     for (std::size_t axis = 0; axis < 2; ++axis) {
       for (std::size_t i = flag.begin; i < flag.end; ++i) force[axis] -= state.on_air[i][axis];
-      tip[axis] = 0.5 * (state.positions[flag.end - 2][axis] + state.positions[flag.end - 1][axis]);
+      tip[axis] = 0.5 * (state.positions[flag.tip[0]][axis] + state.positions[flag.tip[1]][axis]);
     }
     row.values.insert(row.values.end(), {force[0], force[1], tip[0], tip[1]});
   }

@@ -55,5 +55,36 @@ TEST(Flags, AreStripsThatSpanTheDomain) {
   EXPECT_FALSE(sheets.material.tension_only);
 }
 
+TEST(Flags, WithAWidthAreSymmetricAndFreeBehindTheirLeadingEdge) {
+  Flag flag = flag_at(1.0, 30.0);
+  flag.width = 0.7;
+  flag.middle = 0.2;
+  fabric::Parameters sheets;
+  std::vector<fabric::Vector> positions;
+  const std::vector<FlagRows> rows = append_flags({flag, flag_at(5.0, 0.0)}, sheets, positions);
+  // Six edges along, and across twice as many as half of the width needs.
+  constexpr std::size_t along = 6, across = 4, vertices = (along + 1) * (across + 1);
+  ASSERT_EQ(rows[0].end, vertices);
+  ASSERT_EQ(rows[1].end, vertices + 14U);
+  EXPECT_FALSE(mesh::find_defect(sheets.mesh));
+  EXPECT_EQ(flag.vertices(), vertices);
+  const std::size_t tip = vertices - 1 - across / 2;
+  EXPECT_EQ(rows[0].tip, (std::array<std::size_t, 2>{tip, tip}));
+  EXPECT_EQ(rows[1].tip, (std::array<std::size_t, 2>{vertices + 12, vertices + 13}));
+  EXPECT_NEAR(positions[tip][0], 1.0 + 1.5 * std::cos(std::numbers::pi / 6.0), 1e-14);
+  EXPECT_EQ(positions[tip][2], 0.2);
+  double mass = 0.0;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    mass += sheets.mass[i];
+    EXPECT_EQ(sheets.pinned[i], i <= across ? 7 : 0) << i;
+    const std::size_t mirrored = i / (across + 1) * (across + 1) + across - i % (across + 1);
+    EXPECT_NEAR(positions[i][2] + positions[mirrored][2], 0.4, 1e-14);
+    EXPECT_NEAR(sheets.mass[i], sheets.mass[mirrored], 1e-15) << "the diagonals are mirror images";
+  }
+  EXPECT_NEAR(mass, 0.8 * 1.5 * 0.7, 1e-14);
+  EXPECT_EQ(positions[0][2], 0.2 - 0.35);
+  EXPECT_EQ(positions[across][2], 0.2 + 0.35);
+}
+
 }  // namespace
 }  // namespace drogue::parachute_app
