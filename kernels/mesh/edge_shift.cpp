@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "kernels/mesh/edge_vector.hpp"
 #include "kernels/mesh/incidence.hpp"
@@ -74,54 +75,43 @@ class Surface {
   VertexTriangles _around;
 };
 
-/// Nearest edge of a vertex, and the direction away from it.
-struct Nearest {
-  double distance = std::numeric_limits<double>::infinity();  ///< m
-  Point away{0.0, 0.0, 0.0};  ///< of unit length; of a vertex of an edge, the sum of those into the triangles
-};
+/// Cosine of the largest angle between directions that belong to the same edge of a sheet.
+constexpr double same_direction = 0.5;
+
+Point point(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 Point unit(const Point& v) {
   const double size = stable_norm(v);
   return size > 0.0 ? (1.0 / size) * v : v;
 }
 
-/// Unit vector in the triangle of edge ab, normal to the edge, into the triangle.
-Point into_triangle(const Surface& surface, const Edge& edge) {
-  const Point a = surface.at(edge[0]), along = unit(surface.at(edge[1]) - a);
-  Point inward{0.0, 0.0, 0.0};
-  surface.for_each_triangle(edge[0], [&](const std::array<int, 3>& triangle) {
-    if (std::ranges::find(triangle, edge[1]) == triangle.end()) return;
-    for (const int i : triangle)
-      if (i != edge[0] && i != edge[1]) {
-        const Point r = surface.at(i) - a;
-        inward = unit(r - dot(r, along) * along);
-      }
-  });
-  return inward;
-}
+/// Nearest edge of a vertex.
+struct Nearest {
+  double distance = std::numeric_limits<double>::infinity();
+  Point away{0.0, 0.0, 0.0};  ///< unit vector from the edge into the surface
+};
 
-/// Lets the vertices within `band` of an edge, as far as they connect to it, take it if none is nearer.
-class Spread {
+/// Calls `visit(vertex, distance, away)` for the vertices within `band` of an edge, as far as they connect to
+/// it.
+class Flood {
  public:
-  explicit Spread(std::size_t vertices) : _seen_by(vertices, -1) {}
+  explicit Flood(std::size_t vertices) : _seen_by(vertices, -1) {}
 
-  void operator()(const Surface& surface, const Edge& edge, double band, std::vector<Nearest>& nearest) {
-    const Point a = surface.at(edge[0]), b = surface.at(edge[1]);
+  template <class Visit>
+  void operator()(const Surface& surface, const OpenEdge& edge, double band, const Visit& visit) {
+    const auto& [first, second] = edge.ends;
+    const Point a = surface.at(first), b = surface.at(second);
     ++_edge;
-    _front.assign(edge.begin(), edge.end());
-    for (const int i : edge) _seen_by[static_cast<std::size_t>(i)] = _edge;
+    _front.assign({first, second});
+    for (const int i : edge.ends) _seen_by[static_cast<std::size_t>(i)] = _edge;
     while (!_front.empty()) {
       const int i = _front.back();
       _front.pop_back();
       const Point x = surface.at(i), foot = a + spatial::closest_on_segment(x, a, b) * (b - a);
-      const double distance = i == edge[0] || i == edge[1] ? 0.0 : stable_norm(x - foot);
+      const bool is_end = i == first || i == second;
+      const double distance = is_end ? 0.0 : stable_norm(x - foot);
       if (!(distance < band)) continue;
-      Nearest& so_far = nearest[static_cast<std::size_t>(i)];
-      if (distance == 0.0)
-        so_far = {0.0, (so_far.distance == 0.0 ? so_far.away : Point{0.0, 0.0, 0.0}) +
-                           into_triangle(surface, edge)};
-      else if (distance < so_far.distance)
-        so_far = {distance, unit(x - foot)};
+      visit(static_cast<std::size_t>(i), distance, is_end ? point(edge.inward) : unit(x - foot));
       surface.for_each_triangle(i, [&](const std::array<int, 3>& triangle) {
         for (const int next : triangle) {
           int& seen = _seen_by[static_cast<std::size_t>(next)];
@@ -139,35 +129,58 @@ class Spread {
   int _edge = -1;
 };
 
+/// Unit vector in the triangle of edge ab, normal to the edge, into the triangle with the third corner c.
+Vector inward_of(const Mesh& mesh, int a, int b, int c) {
+  const Point along = unit(edge_vector(mesh, a, b)), r = edge_vector(mesh, a, c),
+              inward = unit(r - dot(r, along) * along);
+  return {inward.x, inward.y, inward.z};
+}
+
 }  // namespace
 
-std::vector<Edge> open_edges(const Mesh& mesh) {
-  std::vector<Edge> edges;
+std::vector<OpenEdge> open_edges(const Mesh& mesh) {
+  std::vector<std::pair<Edge, int>> sides;  // with the third corner
   for (const auto& triangle : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) edges.push_back(opposite_edge(triangle, k));
-  std::ranges::sort(edges);
-  std::vector<Edge> open;
-  for (std::size_t n = 0; n < edges.size(); ++n) {
-    const bool repeats = n > 0 && edges[n] == edges[n - 1];
-    const bool is_repeated = n + 1 < edges.size() && edges[n] == edges[n + 1];
-    if (!repeats && !is_repeated) open.push_back(edges[n]);
+    for (std::size_t k = 0; k < 3; ++k) sides.emplace_back(opposite_edge(triangle, k), triangle[k]);
+  std::ranges::sort(sides);
+  std::vector<OpenEdge> open;
+  for (std::size_t n = 0; n < sides.size(); ++n) {
+    const auto& [ends, corner] = sides[n];
+    const bool repeats = n > 0 && ends == sides[n - 1].first;
+    const bool is_repeated = n + 1 < sides.size() && ends == sides[n + 1].first;
+    if (!repeats && !is_repeated) open.push_back({ends, inward_of(mesh, ends[0], ends[1], corner)});
   }
   return open;
 }
 
-std::vector<SurfacePoint> shifted_from_edges(const Mesh& mesh, const std::vector<Edge>& edges, double shift,
-                                             double band) {
+std::vector<SurfacePoint> shifted_from_edges(const Mesh& mesh, const std::vector<OpenEdge>& edges,
+                                             double shift, double band) {
   const Surface surface(mesh);
-  std::vector<Nearest> nearest(mesh.rest.size());
-  Spread spread(mesh.rest.size());
-  for (const Edge& edge : edges) spread(surface, edge, band, nearest);
+  std::vector<Nearest> nearest(mesh.rest.size()), other(mesh.rest.size());
+  Flood flood(mesh.rest.size());
+  for (const OpenEdge& edge : edges)
+    flood(surface, edge, band, [&](std::size_t i, double distance, const Point& away) {
+      Nearest& so_far = nearest[i];
+      const bool meet = distance == 0.0 && so_far.distance == 0.0;
+      if (distance < so_far.distance) so_far = {distance, away};
+      if (meet && dot(away, so_far.away) >= same_direction) so_far.away = unit(so_far.away + away);
+    });
+  // Normals of edges: the way from an edge beside a vertex of the same rim goes along the rim.
+  for (const OpenEdge& edge : edges) {
+    const Point inward = point(edge.inward);
+    flood(surface, edge, band, [&](std::size_t i, double distance, const Point&) {
+      if (dot(inward, nearest[i].away) < same_direction && distance < other[i].distance)
+        other[i] = {distance, inward};
+    });
+  }
   std::vector<SurfacePoint> points;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
-    const auto& [distance, away] = nearest[i];
-    if (!(distance < band)) continue;
+    if (!(nearest[i].distance < band)) continue;
     const int vertex = static_cast<int>(i);
-    const double way = shift * (1.0 - distance / band);
-    points.push_back(surface.closest(vertex, surface.at(vertex) + way * unit(away)));
+    Point target = surface.at(vertex);
+    for (const Nearest& each : {nearest[i], other[i]})
+      if (each.distance < band) target = target + shift * (1.0 - each.distance / band) * each.away;
+    points.push_back(surface.closest(vertex, target));
   }
   return points;
 }

@@ -15,15 +15,25 @@ struct SurfacePoint {
   std::array<double, 3> weight;  ///< barycentric coordinates
 };
 
-/// Edges that belong to a single triangle, in ascending order. Throws only std::bad_alloc.
-[[nodiscard]] std::vector<Edge> open_edges(const Mesh& mesh);
+/// Edge of a single triangle.
+struct OpenEdge {
+  Edge ends;
+  Vector inward;  ///< unit vector in the triangle at rest, normal to the edge, into the triangle
+};
 
-/// Points of the surface at rest that lie farther from some of its open edges than the vertices do: a vertex
-/// at the distance d moves by shift (1 - d / band) away from the nearest of `edges`, into the surface, as
-/// far as that reaches. Vertices beyond `band` > shift, m, do not move and are left out; the others come in
-/// ascending order. Distances are straight, from edges that vertices within `band` connect to. Does not
-/// throw but std::bad_alloc.
-[[nodiscard]] std::vector<SurfacePoint> shifted_from_edges(const Mesh& mesh, const std::vector<Edge>& edges,
-                                                           double shift, double band);
+/// All edges of single triangles at rest, in ascending order of their ends. Lengths in any unit. Throws only
+/// std::bad_alloc.
+[[nodiscard]] std::vector<OpenEdge> open_edges(const Mesh& mesh);
+
+/// Points of the surface at rest that lie farther from some of its open edges than the vertices do. A vertex
+/// at the distance d from the nearest of `edges` moves by shift (1 - d / band) away from it, and likewise
+/// away from the nearest one of those that lie in another direction, by more than 60 degrees: from both edges
+/// of a corner, and by the difference from the two of a narrow strip, so that points keep their order for
+/// shifts up to half of `band`. They stay in the surface. Vertices at `band` or farther do not move and are
+/// left out; the others come in ascending order. Distances are straight, to edges to which vertices within
+/// `band` connect; lengths have the unit of the mesh. Throws only std::bad_alloc.
+[[nodiscard]] std::vector<SurfacePoint> shifted_from_edges(const Mesh& mesh,
+                                                           const std::vector<OpenEdge>& edges, double shift,
+                                                           double band);
 
 }  // namespace drogue::mesh

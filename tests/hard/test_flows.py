@@ -43,6 +43,18 @@ class Shipped(parachute_program.FlowTest):
         left_out = MANY_SMALL_STEPS | OTHER_PARACHUTES
         self.assert_all_pass("openmp", [name for name in parachute_program.SMALL_SCENES if name not in left_out])
 
+    def test_inset_of_the_edge_gives_a_disk_of_six_cells_its_drag(self):
+        """Against 1.56, to which finer cells converge with the inset as without it (docs/coupling.md)."""
+        steady = ["fluid.viscosity=0.01", "grid.cells=[36,24,24]", "grid.domain=[[-2,4],[-2,2],[-2,2]]",
+                  "initial.velocity=[0,0,0]", "body[0].edge_length=0.08333333", "run.end_time=12", "run.max_dt=0.05",
+                  "output={history_every=4}",
+                  "verify={mean_force=[{body=0,axis='x',from=11,reference=0.3926990817,value=1.56,tolerance=0.04}]}"]
+        self.expect(0, "disk-normal", "--quiet", "--backend", "serial", "--out", "with", sets=steady)
+        self.expect(5, "disk-normal", "--quiet", "--backend", "serial", "--out", "without",
+                    sets=[*steady, "coupling.edge_inset=0"])
+        (without,) = self.result("without")["checks"]
+        self.assertGreater(without["value"], 0.38)
+
     def test_full_scenes_are_valid(self):
         for name in set(parachute_program.SCENES) - set(parachute_program.SMALL_SCENES):
             self.assertIn(name.removesuffix("-full"), parachute_program.SMALL_SCENES)

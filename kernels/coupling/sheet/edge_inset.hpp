@@ -12,19 +12,15 @@
 
 namespace drogue::coupling {
 
-/// Cells from a free edge within which vertices move inwards for the exchange with the air; more than the
-/// largest `SheetParameters::edge_inset`, so that they stay in order.
+/// Cells from a free edge within which vertices move inwards for the exchange with the air: twice the largest
+/// `SheetParameters::edge_inset`, so that they stay in order.
 inline constexpr double inset_band = 2.0;
 
-/// Open edges of a sheet at rest that end in the fluid: all but those that lie along a side of the grid,
-/// within half a cell, as the edges of a plate that closes a channel and those of a strip in two dimensions.
-/// Throws only std::bad_alloc.
-[[nodiscard]] std::vector<mesh::Edge> free_edges(const mesh::Mesh& mesh, const StaggeredGrid& grid);
-
 /// Points at which the vertices near free edges exchange forces with the air: those of
-/// `mesh::shifted_from_edges` with `inset` cells as shift and `inset_band` cells as band. Cells of
-/// different spacings count as the largest, an axis of one cell aside. None if `inset` is 0. Throws only
-/// std::bad_alloc.
+/// `mesh::shifted_from_edges` with `inset` as shift and `inset_band` as band, all in cells, of which the axes
+/// may have different spacings. Free are all edges of single triangles but those at which the sheet ends at a
+/// side of the grid, within half a cell of it: of a plate that closes a channel, and the long ones of a strip
+/// in two dimensions. None if `inset` is 0. Throws only std::bad_alloc.
 [[nodiscard]] std::vector<mesh::SurfacePoint> inset_points(const mesh::Mesh& mesh, const StaggeredGrid& grid,
                                                            double inset);
 

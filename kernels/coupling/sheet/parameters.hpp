@@ -43,8 +43,8 @@ struct SheetParameters {
   /// alone.
   double defect_filter = 0.0;
   /// Cells by which free edges lie farther inwards where the sheet exchanges forces with the air, 0 to 1:
-  /// `EdgeInset`. With 0.55 and `DeltaKernel::cbs43` the error of drag is of second order in the cells; with
-  /// 0 it is of first order. Not for `CouplingMethod::sharp`.
+  /// `EdgeInset`. With `DeltaKernel::cbs43`, 0.55 takes most of the error of drag away, which is of first
+  /// order in the cells with 0. Not for `CouplingMethod::sharp`.
   double edge_inset = 0.0;
   CouplingMethod method = CouplingMethod::spread;
 };

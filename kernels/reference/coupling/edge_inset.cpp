@@ -77,25 +77,33 @@ Vector weighted(const std::vector<Vector>& points, const std::array<int, 3>& cor
   return sum;
 }
 
-/// Sum of the unit normals of the edges that end in a vertex, in their triangles and into these.
-Vector into_surface(const Mesh& mesh, const std::vector<std::array<int, 2>>& edges, int vertex) {
-  Vector sum{};
-  for (const std::array<int, 2>& edge : edges) {
-    if (edge[0] != vertex && edge[1] != vertex) continue;
-    const Vector along = normalised(from_to(mesh.rest, edge[0], edge[1]));
-    for (const auto& corner : mesh.triangles)
-      for (const int other : corner)
-        if (std::ranges::count(corner, edge[0]) == 1 && std::ranges::count(corner, edge[1]) == 1 &&
-            other != edge[0] && other != edge[1])
-          sum = combination(1.0, sum, 1.0, normalised(rejected(from_to(mesh.rest, edge[0], other), along)));
-  }
-  return sum;
+struct Side {
+  std::array<int, 2> ends;
+  Vector inward;  ///< of unit length
+};
+
+/// Edges that no other triangle has.
+std::vector<Side> open_sides(const Mesh& mesh) {
+  std::vector<Side> sides;
+  for (const auto& corner : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = corner[k], b = corner[(k + 1) % 3], c = corner[(k + 2) % 3];
+      const auto holds_both = [&](const auto& other) {
+        return std::ranges::count(other, a) == 1 && std::ranges::count(other, b) == 1;
+      };
+      if (std::ranges::count_if(mesh.triangles, holds_both) > 1) continue;
+      const Vector along = normalised(from_to(mesh.rest, a, b));
+      sides.push_back({{a, b}, normalised(rejected(from_to(mesh.rest, a, c), along))});
+    }
+  return sides;
 }
 
 }  // namespace
 
-std::vector<Vector> inset_positions(const Mesh& mesh, const std::vector<std::array<int, 2>>& edges,
+std::vector<Vector> inset_positions(const Mesh& mesh, const std::function<bool(const Vector&)>& is_left_out,
                                     double shift, double band, const std::vector<Vector>& x) {
+  std::vector<Side> sides = open_sides(mesh);
+  std::erase_if(sides, [&](const Side& side) { return is_left_out(side.inward); });
   std::vector<Vector> moved = x;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto has_vertex = [&](const auto& corner) {
@@ -104,13 +112,25 @@ std::vector<Vector> inset_positions(const Mesh& mesh, const std::vector<std::arr
     if (std::ranges::none_of(mesh.triangles, has_vertex)) continue;
     Vector away{};
     double distance = std::numeric_limits<double>::infinity();
-    for (const std::array<int, 2>& edge : edges) {
-      const Vector candidate = from_edge(mesh.rest, edge, mesh.rest[i]);
-      if (norm(candidate) < distance) distance = norm(candidate), away = candidate;
+    for (const Side& side : sides) {
+      const Vector candidate = from_edge(mesh.rest, side.ends, mesh.rest[i]);
+      if (norm(candidate) < rounding) {
+        const bool agrees = distance == 0.0 && product(away, side.inward) >= 0.5;
+        if (distance > 0.0 || agrees)
+          away = agrees ? normalised(combination(1.0, away, 1.0, side.inward)) : side.inward;
+        distance = 0.0;
+      } else if (norm(candidate) < distance) {
+        distance = norm(candidate), away = normalised(candidate);
+      }
     }
     if (!(distance < band)) continue;
-    if (distance < rounding) away = into_surface(mesh, edges, static_cast<int>(i));
-    const Vector target = combination(1.0, mesh.rest[i], shift * (1.0 - distance / band), normalised(away));
+    Vector target = combination(1.0, mesh.rest[i], shift * (1.0 - distance / band), away), second{};
+    double next = band;
+    for (const Side& side : sides) {
+      const double there = norm(from_edge(mesh.rest, side.ends, mesh.rest[i]));
+      if (product(side.inward, away) < 0.5 && there < next) next = there, second = side.inward;
+    }
+    if (next < band) target = combination(1.0, target, shift * (1.0 - next / band), second);
     double least = std::numeric_limits<double>::infinity();
     for (const auto& corner : mesh.triangles) {
       const std::array<double, 3> weight = nearest_weights(mesh.rest, corner, target);

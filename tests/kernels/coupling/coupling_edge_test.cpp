@@ -64,8 +64,9 @@ TEST(EdgeInset, MovesPointsAsTheReference) {
     std::vector<Vector> after = x;
     for (std::size_t i = 0; i < x.size(); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) after[i][axis] += 0.01 * v[i][axis];
-    const std::vector<Vector> expected = reference::inset_positions(mesh, mesh::open_edges(mesh),
-                                                                    inset * cell, inset_band * cell, after),
+    const std::vector<Vector> expected = reference::inset_positions(
+                                  mesh, [](const Vector&) { return false; }, inset * cell, inset_band * cell,
+                                  after),
                               found = moved(mesh, x, v, 0.01, inset);
     std::size_t changed = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -123,31 +124,85 @@ Mesh strip(double length, int segments) {
   return mesh;
 }
 
-TEST(EdgeInset, LeavesClosedSurfacesAndEdgesAlongSides) {
+TEST(EdgeInset, LeavesClosedSurfacesAndEndsAtSides) {
   EXPECT_TRUE(inset_points(mesh::sphere(2.0, 8), box(16, 16), inset).empty());
   EXPECT_FALSE(inset_points(mesh::hemisphere(2.0, 8), box(16, 16), inset).empty());
   // A strip in two dimensions ends at its tips, unless these lie at sides as well.
-  const Mesh free = strip(4.0, 32);
-  EXPECT_EQ(free_edges(free, box(16, 1)).size(), 8U) << "two tips of four edges";
-  const auto places = before_and_after(free, box(16, 1), inset);
-  EXPECT_FALSE(places.empty());
+  const auto places = before_and_after(strip(4.0, 32), box(16, 1), inset);
+  EXPECT_EQ(places.size(), 2U * 8U * 5U) << "eight lines within two cells of each tip";
   for (const auto& [before, after] : places) {
     EXPECT_LT(std::abs(after[1]), std::abs(before[1])) << "along the strip";
     EXPECT_NEAR(after[2], before[2], 1e-12);
   }
-  EXPECT_TRUE(free_edges(strip(8.0, 64), box(16, 1)).empty()) << "it closes the channel";
+  EXPECT_TRUE(inset_points(strip(8.0, 64), box(16, 1), inset).empty()) << "it closes the channel";
 }
 
-TEST(EdgeInset, KeepsTheOrderOfPoints) {
-  // With the largest inset, points come nearer by the half.
+TEST(EdgeInset, TakesASheetAlongASideAsElsewhere) {
+  const auto places_at = [](double height) {
+    Mesh mesh = mesh::disk(2.0, 10);
+    for (Vector& point : mesh.rest) point[2] += height;
+    auto places = before_and_after(mesh, box(16, 16), inset);
+    for (auto& [before, after] : places) before[2] -= height, after[2] -= height;
+    return places;
+  };
+  const auto inside = places_at(0.0), beside = places_at(-4.0);
+  ASSERT_EQ(inside.size(), beside.size());
+  EXPECT_GT(inside.size(), 60U);
+  for (std::size_t k = 0; k < inside.size(); ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(inside[k].second[axis], beside[k].second[axis], 1e-12);
+}
+
+TEST(EdgeInset, CountsCellsAlongItsDirection) {
+  // A grid and a mesh that are stretched together.
+  constexpr std::array<double, 3> stretch{3.0, 0.7, 2.0};
+  Mesh mesh = mesh::disk(2.0, 10);
+  mesh.rest = shaken(mesh.rest, 0.02, 2);
+  const auto expected = before_and_after(mesh, box(16, 16), inset);
+  StaggeredGrid grid = box(16, 16);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grid.spacing[axis] *= stretch[axis];
+    grid.origin[axis] *= stretch[axis];
+    for (Vector& point : mesh.rest) point[axis] *= stretch[axis];
+  }
+  const auto found = before_and_after(mesh, grid, inset);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(found[k].second[axis], stretch[axis] * expected[k].second[axis], 1e-12);
+}
+
+TEST(EdgeInset, KeepsTheOrderOfPointsOfWideAndNarrowStrips) {
   constexpr double apart = 0.05;
-  auto places = before_and_after(strip(6.0, 120), box(16, 1), 1.0);
-  std::erase_if(places, [](const auto& pair) { return pair.first[2] != 0.0 || pair.first[1] < 0.0; });
-  std::ranges::sort(places);
-  ASSERT_EQ(places.size(), 20U) << "the distances of 0 to 0.95 m";
-  EXPECT_NEAR(places.back().second[1], 3.0 - cell, 1e-12);
-  for (std::size_t k = 1; k < places.size(); ++k)
-    EXPECT_NEAR(places[k].second[1] - places[k - 1].second[1], 0.5 * apart, 1e-12) << k;
+  // Half of their widths, m. With the largest inset, points of a wide strip come nearer by the half.
+  for (const double half : {3.0, 1.0, 0.75, 0.5, 0.25, 0.1}) {
+    const Mesh mesh = strip(2.0 * half, static_cast<int>(std::lround(2.0 * half / apart)));
+    std::vector<std::pair<double, double>> line;
+    for (const auto& [before, after] : before_and_after(mesh, box(64, 1), 1.0))
+      if (before[2] == 0.0) line.emplace_back(before[1], after[1]);
+    std::ranges::sort(line);
+    ASSERT_GT(line.size(), 3U);
+    for (std::size_t k = 1; k < line.size(); ++k) {
+      EXPECT_GE(line[k].second - line[k - 1].second, -1e-12) << half << ' ' << k;
+      EXPECT_NEAR(line[k].second, -line[line.size() - 1 - k].second, 1e-12) << "symmetric";
+    }
+    // The opposite tip takes a part of the shift back.
+    const double back = std::max(0.0, 1.0 - 2.0 * half / (inset_band * cell));
+    EXPECT_NEAR(line.back().second, half - cell * (1.0 - back), 1e-12) << half;
+  }
+}
+
+TEST(EdgeInset, MovesCornersAwayFromBothEdges) {
+  const Mesh mesh = mesh::rectangle(4.0, 4.0, 40, 40);
+  int corners = 0;
+  for (const auto& [before, after] : before_and_after(mesh, box(64, 64), inset)) {
+    const bool is_corner = (before[0] == 0.0 || before[0] == 4.0) && (before[1] == 0.0 || before[1] == 4.0);
+    if (!is_corner) continue;
+    ++corners;
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      EXPECT_NEAR(std::abs(after[axis] - before[axis]), inset * cell, 1e-12);
+  }
+  EXPECT_EQ(corners, 4);
 }
 
 }  // namespace
