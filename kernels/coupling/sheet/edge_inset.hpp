@@ -45,11 +45,10 @@ struct EdgeInsetFunctor {
   }
 };
 
-/// Inset of the free edges of a sheet. The delta function lets a sheet act on the air up to half a cell
-/// beyond its edges, so that drag and added mass are too large to first order in the cells. With the inset,
-/// vertices near an edge exchange forces with the air nearer to the middle of the sheet, and its edge in the
-/// air lies where that of the cloth does. Both directions of the transfer use the same points, so that all
-/// its guarantees hold.
+/// Inset of the free edges of a sheet. The delta function lets a sheet act on the air beyond its edges, so
+/// that drag and added mass are too large to first order in the cells. With the inset, vertices near an edge
+/// exchange forces with the air nearer to the middle of the sheet, and its edge in the air lies nearer to
+/// that of the cloth. Both directions of the transfer use the same points, so that all its guarantees hold.
 template <class ExecutionSpace>
 class EdgeInset {
  public:
