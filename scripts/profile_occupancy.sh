@@ -29,6 +29,7 @@ parachute-inflow drogue-parachute uniform run.end_time=0.2 grid.boundary.x="infl
 parachute-outputs drogue-parachute taylor-green-2d run.end_time=0.02 output={fields=["pressure"],times=[0]}
 parachute-sharp drogue-parachute porous-channel-sharp run.end_time=0.1
 parachute-moving-grid drogue-parachute c9-drop run.end_time=0.2
+parachute-inset drogue-parachute c9-guided run.end_time=0.2
 parachute-explicit drogue-parachute c9-heavy run.end_time=0.05
 parachute-cluster drogue-parachute cluster-3 run.end_time=0.05
 parachute-drop drogue-parachute cloth-drop run.end_time=0.02
