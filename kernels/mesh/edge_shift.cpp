@@ -75,9 +75,6 @@ class Surface {
   VertexTriangles _around;
 };
 
-/// Cosine of the largest angle between directions that belong to the same edge of a sheet.
-constexpr double same_direction = 0.5;
-
 Point point(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 Point unit(const Point& v) {
@@ -88,7 +85,7 @@ Point unit(const Point& v) {
 /// Nearest edge of a vertex.
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
-  Point away{0.0, 0.0, 0.0};  ///< unit vector from the edge into the surface
+  Point away{0.0, 0.0, 0.0};  ///< unit vector from the edge; of its ends, the sum of those into the surface
 };
 
 /// Calls `visit(vertex, distance, away)` for the vertices within `band` of an edge, as far as they connect to
@@ -129,6 +126,32 @@ class Flood {
   int _edge = -1;
 };
 
+/// Largest distance from an edge, at most `band`, in the part of the mesh that hangs together with each
+/// vertex.
+std::vector<double> largest_distances(const Surface& surface, const std::vector<Nearest>& nearest,
+                                      double band) {
+  std::vector<double> largest(nearest.size(), -1.0);
+  for (std::size_t first = 0; first < nearest.size(); ++first) {
+    if (largest[first] >= 0.0) continue;
+    std::vector<std::size_t> part{first};
+    largest[first] = 0.0;
+    double found = 0.0;
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      found = std::max(found, std::min(nearest[part[k]].distance, band));
+      surface.for_each_triangle(static_cast<int>(part[k]), [&](const std::array<int, 3>& triangle) {
+        for (const int i : triangle) {
+          const auto next = static_cast<std::size_t>(i);
+          if (largest[next] >= 0.0) continue;
+          largest[next] = 0.0;
+          part.push_back(next);
+        }
+      });
+    }
+    for (const std::size_t i : part) largest[i] = found;
+  }
+  return largest;
+}
+
 /// Unit vector in the triangle of edge ab, normal to the edge, into the triangle with the third corner c.
 Vector inward_of(const Mesh& mesh, int a, int b, int c) {
   const Point along = unit(edge_vector(mesh, a, b)), r = edge_vector(mesh, a, c),
@@ -156,31 +179,25 @@ std::vector<OpenEdge> open_edges(const Mesh& mesh) {
 std::vector<SurfacePoint> shifted_from_edges(const Mesh& mesh, const std::vector<OpenEdge>& edges,
                                              double shift, double band) {
   const Surface surface(mesh);
-  std::vector<Nearest> nearest(mesh.rest.size()), other(mesh.rest.size());
+  std::vector<Nearest> nearest(mesh.rest.size());
   Flood flood(mesh.rest.size());
   for (const OpenEdge& edge : edges)
     flood(surface, edge, band, [&](std::size_t i, double distance, const Point& away) {
       Nearest& so_far = nearest[i];
-      const bool meet = distance == 0.0 && so_far.distance == 0.0;
-      if (distance < so_far.distance) so_far = {distance, away};
-      if (meet && dot(away, so_far.away) >= same_direction) so_far.away = unit(so_far.away + away);
+      if (distance == 0.0 && so_far.distance == 0.0) {
+        so_far.away = so_far.away + away;
+      } else if (distance < so_far.distance) {
+        so_far = {distance, away};
+      }
     });
-  // Normals of edges: the way from an edge beside a vertex of the same rim goes along the rim.
-  for (const OpenEdge& edge : edges) {
-    const Point inward = point(edge.inward);
-    flood(surface, edge, band, [&](std::size_t i, double distance, const Point&) {
-      if (dot(inward, nearest[i].away) < same_direction && distance < other[i].distance)
-        other[i] = {distance, inward};
-    });
-  }
+  const std::vector<double> widths = largest_distances(surface, nearest, band);
   std::vector<SurfacePoint> points;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
-    if (!(nearest[i].distance < band)) continue;
+    const auto& [distance, away] = nearest[i];
+    if (!(distance < widths[i])) continue;
     const int vertex = static_cast<int>(i);
-    Point target = surface.at(vertex);
-    for (const Nearest& each : {nearest[i], other[i]})
-      if (each.distance < band) target = target + shift * (1.0 - each.distance / band) * each.away;
-    points.push_back(surface.closest(vertex, target));
+    const double way = std::min(shift, 0.5 * widths[i]) * (1.0 - distance / widths[i]);
+    points.push_back(surface.closest(vertex, surface.at(vertex) + way * unit(away)));
   }
   return points;
 }

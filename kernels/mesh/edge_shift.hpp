@@ -25,13 +25,13 @@ struct OpenEdge {
 /// std::bad_alloc.
 [[nodiscard]] std::vector<OpenEdge> open_edges(const Mesh& mesh);
 
-/// Points of the surface at rest that lie farther from some of its open edges than the vertices do. A vertex
-/// at the distance d from the nearest of `edges` moves by shift (1 - d / band) away from it, and likewise
-/// away from the nearest one of those that lie in another direction, by more than 60 degrees: from both edges
-/// of a corner, and by the difference from the two of a narrow strip, so that points keep their order for
-/// shifts up to half of `band`. They stay in the surface. Vertices at `band` or farther do not move and are
-/// left out; the others come in ascending order. Distances are straight, to edges to which vertices within
-/// `band` connect; lengths have the unit of the mesh. Throws only std::bad_alloc.
+/// Points of the surface at rest that lie farther from some of its open edges than the vertices do: a vertex
+/// at the distance d from the nearest of `edges` moves by s (1 - d / b) away from it, on the surface. b is
+/// `band`, or the largest such distance in the part of the mesh that hangs together, if it is less; s is
+/// `shift`, or b / 2 if that is less. So points keep their order, narrow parts move less, and only beside
+/// corners, where the nearest edge changes, do points change sides. Vertices at b or farther do not move and
+/// are left out; the others come in ascending order. Distances are straight, to edges to which vertices
+/// within `band` connect; lengths have the unit of the mesh. Throws only std::bad_alloc.
 [[nodiscard]] std::vector<SurfacePoint> shifted_from_edges(const Mesh& mesh,
                                                            const std::vector<OpenEdge>& edges, double shift,
                                                            double band);

@@ -52,7 +52,7 @@ BAD_LINES = [
     (17, "edge_length = 1e-7", 17, ["flag[0].edge_length", "2^20"]),
     (7, "cells = [40, 24, 4]", 9, ["grid.boundary.z"]),
     (8, "domain = [[-1, 4], [-1.5, 1.5], [0, 0]]", 8, ["grid.domain"]),
-    (17, "edge_length = 0.0625\nwidth = 0.5", 10, ["flag[0].width", "one cell along z"]),
+    (17, "edge_length = 0.0625\nwidth = 0.5", 18, ["flag[0].width", "several cells along z"]),
     (17, "edge_length = 0.0625\nmiddle = 0.5", 18, ["flag[0].middle", "with a width"]),
     (17, "edge_length = 0.0625\nwidth = 0", 18, ["flag[0].width", "> 0"]),
     (19, 'method = "explicit"', 19, ["coupling.method", "[[flag]]"]),

@@ -165,6 +165,10 @@ class BadFlows(parachute_program.FlowTest):
         self.scene.write_text(bad_flags.WIDE, encoding="utf-8")
         self.expect(0, self.scene, "--check")
         self.assertIn("flag[0] reaches from 0.5 to 1.0 m along z", self.refusal("flag[0].middle=0.75"))
+        self.assertIn("flag[0].edge_length = 0.09 m is too coarse", self.refusal("flag[0].edge_length=0.09", "flag[0].width=0.9"))
+        self.expect(0, self.scene, "--check", sets=["flag[0].edge_length=0.09", "flag[0].width=0.7"])
+        self.assertIn("flag[0].width = 1.3 m: the flag meets itself",
+                      self.refusal('grid.boundary.z="periodic"', "flag[0].width=1.3"))
         plate = '[[body]]\nkind = "plate"\nnormal = "x"\ncentre = [2, 0, 0.0625]\nlengths = [0.5, 0.125]\nedge_length = 0.0625\n'
         self.scene.write_text(bad_flags.GOOD.replace("[coupling]", plate + "[coupling]"), encoding="utf-8")
         self.assertIn("flag[0] cannot be combined with a [[body]] or a [[canopy]]", self.refusal())

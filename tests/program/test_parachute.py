@@ -968,7 +968,8 @@ class Flags(parachute_program.FlowTest):
 
     def test_forces_on_a_flag_stretch_it_downstream_and_a_run_continues(self):
         # Vertices of the trailing edge, from the last one on, in whose middle the tip lies.
-        for name, text, tip in (("strip", bad_flags.GOOD, (2, 1)), ("wide", bad_flags.WIDE, (5, 5))):
+        inset = bad_flags.WIDE.replace("[coupling]\n", "[coupling]\nedge_inset = 0.55\n")
+        for name, text, tip in (("strip", bad_flags.GOOD, (2, 1)), ("wide", inset, (5, 5))):
             with self.subTest(name):
                 self.assert_runs_and_continues(name, text, tip)
         places = self.fields("wide").values("/steps/000000/flag/position")

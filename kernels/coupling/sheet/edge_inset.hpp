@@ -13,7 +13,7 @@
 namespace drogue::coupling {
 
 /// Cells from a free edge within which vertices move inwards for the exchange with the air: twice the largest
-/// `SheetParameters::edge_inset`, so that they stay in order.
+/// `SheetParameters::edge_inset`.
 inline constexpr double inset_band = 2.0;
 
 /// Points at which the vertices near free edges exchange forces with the air: those of

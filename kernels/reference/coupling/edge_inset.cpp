@@ -104,33 +104,29 @@ std::vector<Vector> inset_positions(const Mesh& mesh, const std::function<bool(c
                                     double shift, double band, const std::vector<Vector>& x) {
   std::vector<Side> sides = open_sides(mesh);
   std::erase_if(sides, [&](const Side& side) { return is_left_out(side.inward); });
-  std::vector<Vector> moved = x;
+  std::vector<Vector> away(x.size());
+  std::vector<double> distance(x.size(), -1.0);  // negative without triangles
+  double width = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto has_vertex = [&](const auto& corner) {
       return std::ranges::find(corner, static_cast<int>(i)) != corner.end();
     };
     if (std::ranges::none_of(mesh.triangles, has_vertex)) continue;
-    Vector away{};
-    double distance = std::numeric_limits<double>::infinity();
+    distance[i] = std::numeric_limits<double>::infinity();
+    Vector inward{};
     for (const Side& side : sides) {
       const Vector candidate = from_edge(mesh.rest, side.ends, mesh.rest[i]);
-      if (norm(candidate) < rounding) {
-        const bool agrees = distance == 0.0 && product(away, side.inward) >= 0.5;
-        if (distance > 0.0 || agrees)
-          away = agrees ? normalised(combination(1.0, away, 1.0, side.inward)) : side.inward;
-        distance = 0.0;
-      } else if (norm(candidate) < distance) {
-        distance = norm(candidate), away = normalised(candidate);
-      }
+      if (norm(candidate) < rounding) inward = combination(1.0, inward, 1.0, side.inward);
+      if (norm(candidate) < distance[i]) distance[i] = norm(candidate), away[i] = candidate;
     }
-    if (!(distance < band)) continue;
-    Vector target = combination(1.0, mesh.rest[i], shift * (1.0 - distance / band), away), second{};
-    double next = band;
-    for (const Side& side : sides) {
-      const double there = norm(from_edge(mesh.rest, side.ends, mesh.rest[i]));
-      if (product(side.inward, away) < 0.5 && there < next) next = there, second = side.inward;
-    }
-    if (next < band) target = combination(1.0, target, shift * (1.0 - next / band), second);
+    if (distance[i] < rounding) distance[i] = 0.0, away[i] = inward;
+    width = std::max(width, std::min(distance[i], band));
+  }
+  std::vector<Vector> moved = x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (distance[i] < 0.0 || !(distance[i] < width)) continue;
+    const double way = std::min(shift, 0.5 * width) * (1.0 - distance[i] / width);
+    const Vector target = combination(1.0, mesh.rest[i], way, normalised(away[i]));
     double least = std::numeric_limits<double>::infinity();
     for (const auto& corner : mesh.triangles) {
       const std::array<double, 3> weight = nearest_weights(mesh.rest, corner, target);

@@ -23,7 +23,9 @@ void check_flag(const Table& root, const flow::Parameters& p, const Flag& flag, 
                                         : std::min(spacing[0], spacing[1]),
                longest = largest_edge_in_cells * width;
   const std::string key = name + ".edge_length";
-  if (flag.length / flag.divisions() > (1.0 + 1e-9) * longest)
+  const double along = flag.length / flag.divisions(),
+               across = flag.has_width() ? *flag.width / flag.divisions_across() : 0.0;
+  if (std::max(along, across) > (1.0 + 1e-9) * longest)
     contradict(root, key,
                key + " = " + real_text(flag.edge_length) + " m is too coarse: the flag leaks on cells of " +
                    real_text(width) + " m; at most " + real_text(longest) + " m");
@@ -33,16 +35,29 @@ void check_flag(const Table& root, const flow::Parameters& p, const Flag& flag, 
   std::vector<fabric::Vector> positions;
   append_flags({flag}, sheets, positions);
   for (std::size_t axis = 0; axis < (flag.has_width() ? 3U : 2U); ++axis) {
-    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) continue;
+    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) {
+      const double most = p.high[axis] - p.low[axis] - 2.0 * spacing[axis];
+      if (axis == 2 && *flag.width > most)
+        contradict(root, name + ".width",
+                   name + ".width = " + real_text(*flag.width) +
+                       " m: the flag meets itself across the periodic sides; at most " + real_text(most) +
+                       " m");
+      continue;
+    }
     const auto [low, high] =
         std::ranges::minmax(positions, {}, [axis](const fabric::Vector& x) { return x[axis]; });
     const double least = p.low[axis] + spacing[axis], most = p.high[axis] - spacing[axis];
     if (low[axis] >= least && high[axis] <= most) continue;
-    contradict(root, name + (axis < 2 ? ".leading_edge" : ".width"),
+    const bool fits = axis < 2 || *flag.width <= most - least;
+    contradict(root,
+               name + (axis < 2 ? ".leading_edge"
+                       : fits   ? ".middle"
+                                : ".width"),
                name + " reaches from " + real_text(low[axis]) + " to " + real_text(high[axis]) + " m along " +
                    axis_names[axis] +
                    ", beyond the cells beside the sides of the domain: it must lie between " +
-                   real_text(least) + " and " + real_text(most) + " m");
+                   real_text(least) + " and " + real_text(most) + " m" +
+                   (axis == 2 ? ", by its width and middle" : ""));
   }
 }
 
@@ -56,9 +71,10 @@ void complete_and_check_flags(const Table& root, FlowScene& scene) {
     if (p.cells[0] == 1 || p.cells[1] == 1)
       contradict(root, name, name + " needs a grid with several cells along x and y");
     if (flag.has_width() != (p.cells[2] > 1))
-      contradict(root, name,
-                 flag.has_width() ? name + ".width: the flag spans a grid with one cell along z"
-                                  : "missing key \"" + name + ".width\" (needed with several cells along z)");
+      contradict(root, flag.has_width() ? name + ".width" : name,
+                 flag.has_width()
+                     ? name + ".width is for several cells along z; without it, the flag spans the domain"
+                     : "missing key \"" + name + ".width\" (needed with several cells along z)");
     if (!scene.bodies.empty() || !scene.canopies.empty())
       contradict(root, name, name + " cannot be combined with a [[body]] or a [[canopy]]");
     if (scene.is_explicit())

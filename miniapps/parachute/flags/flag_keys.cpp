@@ -37,7 +37,7 @@ void declare_flag(scene::Table& table, Flag& flag) {
       .required();
   table
       .value("width", scene::real_codec(flag.width),
-             "Extent along z; with a grid of several cells along z, and then required")
+             "Extent along z; required where the grid has several cells along z, else not allowed")
       .unit("m")
       .above(0.0)
       .default_text("that of the domain, of one cell along z");
