@@ -15,15 +15,14 @@ namespace {
 
 using spatial::Point;
 
+Point point(const Vector& v) { return {v[0], v[1], v[2]}; }
+
 /// Surface at rest with the triangles around each vertex.
 class Surface {
  public:
   explicit Surface(const Mesh& mesh) : _mesh(mesh), _around(vertex_triangles(mesh)) {}
 
-  [[nodiscard]] Point at(int i) const {
-    const Vector& x = _mesh.rest[static_cast<std::size_t>(i)];
-    return {x[0], x[1], x[2]};
-  }
+  [[nodiscard]] Point at(int i) const { return point(_mesh.rest[static_cast<std::size_t>(i)]); }
 
   /// Calls `visit(triangle)` for each triangle around a vertex.
   template <class Visit>
@@ -74,8 +73,6 @@ class Surface {
   const Mesh& _mesh;
   VertexTriangles _around;
 };
-
-Point point(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 Point unit(const Point& v) {
   const double size = stable_norm(v);

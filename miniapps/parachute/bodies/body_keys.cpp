@@ -222,7 +222,7 @@ void declare_coupling(Table& table, coupling::SheetParameters& coupling,
       .value("edge_inset", scene::real_codec(coupling.edge_inset),
              "Cells by which free edges of sheets lie farther inwards where they exchange forces with the "
              "fluid; 0.55 makes up for the width of the delta function, which else acts beyond the edges; "
-             "sheets that touch each other come apart")
+             "the fluid passes between sheets that touch")
       .range(0.0, 1.0)
       .when([with_fluid,
              &coupling] { return with_fluid() && coupling.method != coupling::CouplingMethod::sharp; },
