@@ -35,7 +35,7 @@ parachute-cluster drogue-parachute cluster-3 run.end_time=0.05
 parachute-drop drogue-parachute cloth-drop run.end_time=0.02
 parachute-strength drogue-parachute c9-flat run.end_time=0.1 canopy[0].lines.strength=1e5'
 # Their kernels; without this choice the launches of a step would use up the number that is profiled.
-rare='(Add|Boundary|Check|Copy|Count|Crossing|Damping|Dirichlet|EndSharp|EndVertex|External|Flush|Force|Gather|Guide|Impose|Initial|Largest|Level|LoadStiff|Mean|Motion|NetInflow|Outflow|Publish|Restore|Rings|Row|RungeKutta|Sample|SaveFaces|Shift|Stress|Sum|Symplectic|Totals|Triangle)\w*Functor'
+rare='(Add|Boundary|Check|Copy|Count|Crossing|Damping|Dirichlet|EdgeInset|EndSharp|EndVertex|External|Flush|Force|Gather|Guide|Impose|Initial|Largest|Level|LoadStiff|Mean|Motion|NetInflow|Outflow|Publish|Restore|Rings|Row|RungeKutta|Sample|SaveFaces|Shift|Stress|Sum|Symplectic|Totals|Triangle)\w*Functor'
 
 mkdir -p "$folder"
 nvcc="$(find_nvcc)"

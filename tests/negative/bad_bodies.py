@@ -124,7 +124,11 @@ BAD_ROUND_LINES = [
     (11, "radius = 0", 11, ["body[0].radius", "> 0"]),
     (13, 'motion = { x = "0.1*sin(x)" }', 13, ["body[0].motion.x", "x"]),
     (13, 'motion = { w = "t" }', 13, ["body[0].motion.w", "x"]),
+    (9, 'kind = "disk"\nnormal = "x"\nretraction = 0.3', 11, ["body[0].retraction", '"sphere" or "cylinder" or "cup"']),
     (14, 'slip = "no"', 14, ["body[0].slip", "true or false"]),
+    (12, "edge_length = 0.05\nretraction = 1.5", 13, ["body[0].retraction", "0 .. 1"]),
+    (12, "edge_length = 0.05\nretraction = -0.3", 13, ["body[0].retraction", "0 .. 1"]),
+    (11, "radius = 0.1\nretraction = 0.6", 12, ["body[0].retraction: 0.06", "along x", "more than half of the 0.1 m"]),
     (22, 'ends = "shut"', 22, ["body[1].ends", '"closed"']),
     (28, 'opening = "left"', 28, ["body[2].opening", '"low"']),
     # porosity

@@ -255,6 +255,8 @@ class BadFlows(parachute_program.FlowTest):
         self.scene.write_text(bad_bodies.ROUND, encoding="utf-8")
         self.expect(0, self.scene, "--check", sets=[sharp, "body[0].slip=false"])
         self.assertIn("body[0].slip = true", self.refusal(sharp))
+        self.assertIn('body[0].retraction: coupling.method = "sharp" has no delta function',
+                      self.refusal(sharp, "body[0].slip=false", "body[0].retraction=0.3"))
         self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
         self.assertIn("takes a [[body]] and no [[canopy]]", self.refusal(sharp))
         shipped = parachute_program.gas_program.SOURCE / "miniapps/parachute/scenes/piston.toml"

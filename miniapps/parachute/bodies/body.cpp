@@ -151,6 +151,11 @@ double Body::largest_edge() const {
   return largest;
 }
 
+void Body::set_retreat(const std::array<double, 3>& spacing) {
+  for (std::size_t k = 0; k < 3; ++k) retreat[k] = retraction * spacing[k];
+  if (kind == BodyKind::cylinder && !has_ends) retreat[static_cast<std::size_t>(axis)] = 0.0;
+}
+
 std::array<std::array<double, 2>, 3> Body::extents() const {
   const auto along = static_cast<std::size_t>(axis);
   std::array<std::array<double, 2>, 3> result{};
@@ -189,9 +194,13 @@ std::size_t vertices_of(const std::vector<Body>& bodies) {
 
 mesh::Mesh mesh_of(const Body& body) {
   mesh::Mesh mesh = local_mesh(body);
+  mesh::Vector scale{1.0, 1.0, 1.0};
+  if (body.retraction > 0.0)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      scale[axis] -= body.retreat[axis] / std::ranges::max(body.extents()[axis]);
   for (mesh::Vector& x : mesh.rest) {
     x = turned(body, x);
-    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] += body.centre[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] = body.centre[axis] + scale[axis] * x[axis];
   }
   // The axes x, z along a plate are in the order of a left-handed system with y.
   if (body.kind == BodyKind::plate && body.axis == 1)

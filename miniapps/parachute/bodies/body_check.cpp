@@ -1,5 +1,6 @@
 #include "miniapps/parachute/bodies/body_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -141,6 +142,20 @@ void check_places(const Table& root, const FlowScene& scene, const Body& body, c
   }
 }
 
+/// Checks that the retraction leaves a body, and that there is a delta function to make up for.
+void check_retraction(const Table& root, const FlowScene& scene, const Body& body, const std::string& name) {
+  if (body.retraction == 0.0) return;
+  const std::string key = name + ".retraction";
+  if (scene.coupling.method == coupling::CouplingMethod::sharp)
+    contradict(root, key,
+               key + ": coupling.method = \"sharp\" has no delta function, whose width it makes up for");
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (const double half = std::ranges::max(body.extents()[axis]); body.retreat[axis] > 0.5 * half)
+      contradict(root, key,
+                 key + ": " + real_text(body.retreat[axis]) + " m along " + axis_names[axis] +
+                     " are more than half of the " + real_text(half) + " m from the centre to the surface");
+}
+
 void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
   const Body& body = scene.bodies[index];
   const std::string name = "body[" + std::to_string(index) + "]";
@@ -148,6 +163,7 @@ void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
   check_porosity(root, scene, name, body.porosity);
   check_edges(root, scene.parameters, body, name);
   check_mount(root, scene, body, name);
+  check_retraction(root, scene, body, name);
   check_places(root, scene, body, name);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string key = name + ".motion." + axis_names[axis];
@@ -202,6 +218,8 @@ void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   if (scene.bodies.empty()) return;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     scene.bodies[i].slip = scene.bodies[i].slips();
+    const flow::Parameters& p = scene.parameters;
+    scene.bodies[i].set_retreat({spacing(p, 0), spacing(p, 1), spacing(p, 2)});
     read_surface(root, scene, i);
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);

@@ -172,6 +172,11 @@ void declare_body(Table& table, Body& body) {
       .unit("m")
       .above(0.0)
       .required();
+  declare_for(table, "retraction", scene::real_codec(body.retraction),
+              "Cells by which the triangles lie inside of the body; 0.3 makes up for the width of the delta "
+              "function along surfaces without slip",
+              {body, {sphere, cylinder, cup}})
+      .range(0.0, 1.0);
   table.table(
       "motion",
       [&](Table& motion) {

@@ -102,6 +102,31 @@ TEST(Bodies, ClosedBodiesHaveOutwardNormals) {
   }
 }
 
+TEST(Bodies, RetractionShortensTheAxesByPartsOfACell) {
+  constexpr fabric::Vector spacing = {0.1, 0.05, 0.08};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool has_ends : {false, true}) {
+      Body sphere = body_of(BodyKind::sphere, axis), cylinder = body_of(BodyKind::cylinder, axis),
+           cup = body_of(BodyKind::cup, axis);
+      cylinder.has_ends = cup.opens_to_high = has_ends;
+      for (Body body : {sphere, cylinder, cup}) {
+        const mesh::Mesh whole = mesh_of(body);
+        body.retraction = 0.3;
+        body.set_retreat(spacing);
+        const mesh::Mesh mesh = mesh_of(body);
+        ASSERT_EQ(mesh.rest.size(), whole.rest.size());
+        EXPECT_EQ(mesh.triangles, whole.triangles);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const bool along = body.kind == BodyKind::cylinder && static_cast<int>(k) == axis;
+          const double half = along ? 0.55 : 0.4, retreat = along && !has_ends ? 0.0 : 0.3 * spacing[k];
+          for (std::size_t i = 0; i < mesh.rest.size(); ++i)
+            ASSERT_NEAR(mesh.rest[i][k] - body.centre[k],
+                        (whole.rest[i][k] - body.centre[k]) * (half - retreat) / half, 1e-14);
+        }
+      }
+    }
+}
+
 TEST(Bodies, CupsOpenToTheGivenSide) {
   for (int axis = 0; axis < 3; ++axis)
     for (const bool high : {false, true}) {
