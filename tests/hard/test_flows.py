@@ -56,11 +56,12 @@ class Shipped(parachute_program.FlowTest):
         self.assertGreater(without["value"], 0.38)
 
     def test_retraction_gives_a_sphere_of_six_cells_its_drag(self):
-        """As the shipped scenes show on eight cells; without it a sphere of six has a quarter too much (docs/coupling.md)."""
+        """Without it the drag is a quarter too large (docs/coupling.md)."""
         coarse = ["grid.cells=[54,36,36]", "body[0].edge_length=0.08333333", "run.max_dt=0.05",
                   "verify={mean_force=[{body=0,axis='x',from=12,reference=0.3926990817,value=1.09,tolerance=0.08}]}"]
         self.expect(0, "sphere", "--quiet", "--backend", "serial", "--out", "with", sets=coarse)
-        self.expect(5, "sphere", "--quiet", "--backend", "serial", "--out", "without", sets=[*coarse, "body[0].retraction=0"])
+        self.expect(5, "sphere", "--quiet", "--backend", "serial", "--out", "without",
+                    sets=[*coarse, "body[0].retraction=0"])
         (without,) = self.result("without")["checks"]
         self.assertGreater(without["value"], 0.2)
 

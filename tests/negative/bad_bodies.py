@@ -55,6 +55,7 @@ BAD_LINES = [
     (16, "filter = 1.5", 16, ["coupling.filter", "0 .. 1"]),
     # contradictions
     (14, 'porosity = { law = "none", alpha = 10 }', 14, ["body[0].porosity.alpha", "forchheimer"]),
+    (14, "retraction = 0.3", 14, ["body[0].retraction", '"sphere" or "cylinder" or "cup"']),
     (11, "centre = [1.55, 0.4, 0.4]", 11, ["body[0]", "1.55", "along x", "1.5"]),
     (12, "lengths = [0.7, 0.8]", 12, ["body[0]", "along y", "between 0.1 and 0.7"]),
     (12, "lengths = [0.4, 0.9]", 12, ["body[0]", "along z", "between 0.0 and 0.8"]),

@@ -263,6 +263,12 @@ class BadFlows(parachute_program.FlowTest):
         self.scene.write_text(shipped.read_text(encoding="utf-8"), encoding="utf-8")
         self.assertIn('body[0].mount: coupling.method = "sharp" needs bodies at rest', self.refusal(sharp))
 
+    def test_rejects_a_retraction_that_contact_would_feel(self):
+        shipped = parachute_program.gas_program.SOURCE / "miniapps/parachute/scenes/sphere-drop.toml"
+        self.scene.write_text(shipped.read_text(encoding="utf-8"), encoding="utf-8")
+        self.assertIn("body[0].retraction: with coupling.contact", self.refusal("body[0].retraction=0.3"))
+        self.expect(0, self.scene, "--check", sets=["body[0].retraction=0"])
+
     def test_rejects_motion_along_an_axis_with_one_cell(self):
         flat = bad_bodies.GOOD.replace("[16, 8, 8]", "[16, 8, 1]")
         self.scene.write_text(flat, encoding="utf-8")

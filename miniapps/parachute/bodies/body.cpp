@@ -151,9 +151,9 @@ double Body::largest_edge() const {
   return largest;
 }
 
-void Body::set_retreat(const std::array<double, 3>& spacing) {
-  for (std::size_t k = 0; k < 3; ++k) retreat[k] = retraction * spacing[k];
-  if (kind == BodyKind::cylinder && !has_ends) retreat[static_cast<std::size_t>(axis)] = 0.0;
+double Body::shortened_by(std::size_t along) const {
+  const bool is_open_end = kind == BodyKind::cylinder && !has_ends && along == static_cast<std::size_t>(axis);
+  return is_open_end ? 0.0 : retraction * spacing[along];
 }
 
 std::array<std::array<double, 2>, 3> Body::extents() const {
@@ -197,7 +197,7 @@ mesh::Mesh mesh_of(const Body& body) {
   mesh::Vector scale{1.0, 1.0, 1.0};
   if (body.retraction > 0.0)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      scale[axis] -= body.retreat[axis] / std::ranges::max(body.extents()[axis]);
+      scale[axis] -= body.shortened_by(axis) / std::ranges::max(body.extents()[axis]);
   for (mesh::Vector& x : mesh.rest) {
     x = turned(body, x);
     for (std::size_t axis = 0; axis < 3; ++axis) x[axis] = body.centre[axis] + scale[axis] * x[axis];

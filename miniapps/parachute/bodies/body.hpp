@@ -61,7 +61,7 @@ struct Body {
   bool opens_to_high = false;         ///< a cup is open towards the high side of its axis
   double edge_length = 0.0;           ///< m, of the triangles
   double retraction = 0.0;            ///< cells by which a sphere, cylinder or cup is smaller
-  std::array<double, 3> retreat{};    ///< the same along each axis, m: `set_retreat`
+  std::array<double, 3> spacing{};    ///< m, of the cells, in which a retraction is measured
   std::string file;                   ///< Wavefront OBJ
   double scale = 1.0;                 ///< m per unit of length of the file
   mesh::Mesh surface;                 ///< of the file, m; its origin is at `centre`
@@ -83,8 +83,9 @@ struct Body {
   /// Largest edge, m: the given one, or that of the file. Does not throw.
   [[nodiscard]] double largest_edge() const;
 
-  /// Sets `retreat` on cells of the given lengths, m. That along an open cylinder is 0. Does not throw.
-  void set_retreat(const std::array<double, 3>& spacing);
+  /// Distance by which the retraction shortens the body along an axis from its centre, m; 0 along an open
+  /// cylinder. Does not throw.
+  [[nodiscard]] double shortened_by(std::size_t along) const;
 
   /// Largest distances from the centre along each axis to the low and the high side, m, of the body without
   /// its retraction. Does not throw.
@@ -102,9 +103,9 @@ inline constexpr double largest_edge_in_cells = 1.0 / 1.4;
 /// Number of vertices of all bodies. Does not throw.
 [[nodiscard]] std::size_t vertices_of(const std::vector<Body>& bodies);
 
-/// Triangles of a body at time 0 without its motion. Those of a sphere, cylinder or cup lie inside of it by
-/// `retreat`: a sheet of smoothed delta functions acts on the fluid as one farther outwards (Breugem, J.
-/// Comput. Phys. 231:4469, 2012, section 3.2). Throws only std::bad_alloc.
+/// Triangles of a body at time 0 without its motion, inside of it by its retraction: a sheet of smoothed
+/// delta functions acts on the fluid as one farther outwards (Breugem, J. Comput. Phys. 231:4469, 2012).
+/// Throws only std::bad_alloc.
 [[nodiscard]] mesh::Mesh mesh_of(const Body& body);
 
 /// The bodies as one cloth with their motions, then the fixed ends of springs. All vertices are pinned, those

@@ -142,17 +142,19 @@ void check_places(const Table& root, const FlowScene& scene, const Body& body, c
   }
 }
 
-/// Checks that the retraction leaves a body, and that there is a delta function to make up for.
+/// Checks that a retraction leaves a body, which only the fluid feels, by a delta function.
 void check_retraction(const Table& root, const FlowScene& scene, const Body& body, const std::string& name) {
   if (body.retraction == 0.0) return;
   const std::string key = name + ".retraction";
   if (scene.coupling.method == coupling::CouplingMethod::sharp)
     contradict(root, key,
                key + ": coupling.method = \"sharp\" has no delta function, whose width it makes up for");
+  if (scene.contact)
+    contradict(root, key, key + ": with coupling.contact, cloth would lie on the smaller body");
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (const double half = std::ranges::max(body.extents()[axis]); body.retreat[axis] > 0.5 * half)
+    if (const double half = std::ranges::max(body.extents()[axis]); body.shortened_by(axis) > 0.5 * half)
       contradict(root, key,
-                 key + ": " + real_text(body.retreat[axis]) + " m along " + axis_names[axis] +
+                 key + ": " + real_text(body.shortened_by(axis)) + " m along " + axis_names[axis] +
                      " are more than half of the " + real_text(half) + " m from the centre to the surface");
 }
 
@@ -219,7 +221,7 @@ void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     scene.bodies[i].slip = scene.bodies[i].slips();
     const flow::Parameters& p = scene.parameters;
-    scene.bodies[i].set_retreat({spacing(p, 0), spacing(p, 1), spacing(p, 2)});
+    scene.bodies[i].spacing = {spacing(p, 0), spacing(p, 1), spacing(p, 2)};
     read_surface(root, scene, i);
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);

@@ -172,10 +172,12 @@ void declare_body(Table& table, Body& body) {
       .unit("m")
       .above(0.0)
       .required();
-  declare_for(table, "retraction", scene::real_codec(body.retraction),
-              "Cells by which the triangles lie inside of the body; 0.3 makes up for the width of the delta "
-              "function along surfaces without slip",
-              {body, {sphere, cylinder, cup}})
+  declare_for(
+      table, "retraction", scene::real_codec(body.retraction),
+      "Cells by which the triangles lie inside of the body along each axis; 0.3 for spheres and 0.2 for "
+      "cylinders make up for the width of the delta function, where the fluid inside is at rest; not "
+      "with contact or method = \"sharp\"",
+      {body, {sphere, cylinder, cup}})
       .range(0.0, 1.0);
   table.table(
       "motion",

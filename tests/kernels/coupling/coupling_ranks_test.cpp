@@ -246,7 +246,7 @@ TEST_F(CoupledRanks, TakeTheStepsOfOneRank) {
       SharedRun single(each, {}), shared(each, group);
       single.start(each);
       shared.start(each);
-      for (const int step : {1, 20}) {
+      for (const int step : {1, 50}) {
         EXPECT_EQ(Stop::pause, single->advance(endless, step, {})) << what;
         EXPECT_EQ(Stop::pause, shared->advance(endless, step, {})) << what;
         const State expected = single.state();

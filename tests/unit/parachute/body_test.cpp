@@ -112,7 +112,7 @@ TEST(Bodies, RetractionShortensTheAxesByPartsOfACell) {
       for (Body body : {sphere, cylinder, cup}) {
         const mesh::Mesh whole = mesh_of(body);
         body.retraction = 0.3;
-        body.set_retreat(spacing);
+        body.spacing = spacing;
         const mesh::Mesh mesh = mesh_of(body);
         ASSERT_EQ(mesh.rest.size(), whole.rest.size());
         EXPECT_EQ(mesh.triangles, whole.triangles);
