@@ -218,15 +218,14 @@ void check_slip(const Table& root, const FlowScene& scene) {
 
 void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   if (scene.bodies.empty()) return;
+  const flow::Parameters& p = scene.parameters;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     scene.bodies[i].slip = scene.bodies[i].slips();
-    const flow::Parameters& p = scene.parameters;
     scene.bodies[i].spacing = {spacing(p, 0), spacing(p, 1), spacing(p, 2)};
     read_surface(root, scene, i);
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);
   check_slip(root, scene);
-  const flow::Parameters& p = scene.parameters;
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
     contradict(root, "run",
                "missing key \"run.max_dt\" (needed with a [[body]] and dt = \"auto\"): fluid at rest does "
