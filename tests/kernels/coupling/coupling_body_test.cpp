@@ -35,7 +35,8 @@ device::ExpressionProgram sine(double amplitude, double omega) {
 /// Array of the state.
 std::vector<double> values(const CoupledCase& c, CoupledRun& run, StateField field) {
   const std::array<int, 3> n = extents(c.p.flow, field);
-  std::vector<double> result(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]));
+  std::vector<double> result(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) *
+                             static_cast<std::size_t>(n[2]));
   run.solver->download(field, result);
   return result;
 }
@@ -154,17 +155,24 @@ TEST(NoSlipSheet, OscillatesInItsPlaneAsAWall) {
   EXPECT_NEAR(coarse / fine, 2.0, 0.4);
 }
 
-/// Adds a circle without slip.
-void add_circle(CoupledCase& c, double x, double y, double radius, int vertices) {
-  const mesh::Mesh tube = mesh::tube(radius, c.width(), vertices, 1);
-  c.p.fabric.mesh = tube;
-  for (Vector& place : c.p.fabric.mesh.rest) place = {place[0] + x, place[1] + y, place[2] + 0.5 * c.width()};
+/// Adds a rigid sheet without slip and without flow through it, each vertex of the mesh at its `place`.
+template <class Place>
+void add_rigid(CoupledCase& c, const mesh::Mesh& sheet, const Place& place) {
+  c.p.fabric.mesh = sheet;
+  for (Vector& at : c.p.fabric.mesh.rest) at = place(at);
   c.x = c.p.fabric.mesh.rest;
   c.v.assign(c.x.size(), Vector{});
   c.p.fabric.pinned.assign(c.x.size(), 7);
   c.set_mass(1.0);
   c.p.sheet.law = {0.0, 0.0, true, true};
   c.p.substeps = 1;
+}
+
+/// Adds a circle without slip.
+void add_circle(CoupledCase& c, double x, double y, double radius, int vertices) {
+  add_rigid(c, mesh::tube(radius, c.width(), vertices, 1), [&](const Vector& at) {
+    return Vector{at[0] + x, at[1] + y, at[2] + 0.5 * c.width()};
+  });
 }
 
 TEST(NoSlipSheet, MovesThroughFluidAtRestAsItStandsInAStream) {
@@ -238,43 +246,87 @@ TEST(NoSlipSheet, TakesTheMomentumThatThePeriodicFluidLoses) {
   EXPECT_LT(run.force()[0], -0.1);
 }
 
+/// Puts a case into a channel: a stream of 1 m/s along x at Reynolds number 40 by 0.8 m, sides without
+/// friction.
+void set_channel(CoupledCase& c) {
+  c.p.flow.viscosity = 0.024;
+  c.p.flow.boundary[0] = {BoundaryKind::inflow, {1.0, 0.0, 0.0}, {}};
+  c.p.flow.boundary[1].kind = BoundaryKind::outflow;
+  for (std::size_t side = 2; side < 2 * (c.p.flow.cells[2] > 1 ? 3 : 2); ++side)
+    c.p.flow.boundary[side].kind = BoundaryKind::slip;
+}
+
+/// Drag of a rigid sheet in a channel, by its vertices and by the balance of momentum between two planes
+/// across the channel, N, after some steps.
+struct ChannelDrag {
+  double vertices = 0.0, balance = 0.0;
+
+  ChannelDrag(const CoupledCase& c, std::int64_t steps, const std::array<std::size_t, 2>& planes) {
+    CoupledRun run(c);
+    const flow::Parameters& p = c.p.flow;
+    const auto nx = static_cast<std::size_t>(p.cells[0]);
+    const auto rows = static_cast<std::size_t>(p.cells[1]) * static_cast<std::size_t>(p.cells[2]);
+    const double h = p.high[0] / p.cells[0], area = p.high[1] * p.high[2] / static_cast<double>(rows);
+    // Momentum between the planes, and what advection and viscosity carry through them.
+    const auto contents = [&] {
+      const std::vector<double> u = values(c, run, StateField::velocity_x);
+      std::array<double, 2> sum{};
+      for (std::size_t row = 0; row < rows; ++row) {
+        const double* at = &u[(nx + 1) * row];
+        for (std::size_t i = planes[0]; i <= planes[1]; ++i)
+          sum[0] += (i == planes[0] || i == planes[1] ? 0.5 : 1.0) * at[i] * p.density * area * h;
+        for (const std::size_t i : planes)
+          sum[1] += (i == planes[0] ? area : -area) *
+                    (p.density * at[i] * at[i] - 2.0 * p.viscosity * (at[i + 1] - at[i - 1]) / (2.0 * h));
+      }
+      return sum;
+    };
+    EXPECT_TRUE(run.advance(steps));
+    const std::array<double, 2> before = contents();
+    EXPECT_TRUE(run.advance(1));
+    const std::array<double, 2> after = contents();
+    const std::vector<double> q = values(c, run, StateField::pressure);
+    for (std::size_t row = 0; row < rows; ++row)
+      for (const std::size_t i : planes)
+        balance += (i == planes[0] ? 0.5 : -0.5) * p.density * area * (q[i - 1 + nx * row] + q[i + nx * row]);
+    balance += 0.5 * (before[1] + after[1]) - (after[0] - before[0]) / p.fixed_dt;
+    vertices = -run.force()[0];
+  }
+};
+
 // ctest-label: no-sanitizer
 TEST(NoSlipSheet, ForceEqualsTheMomentumBalanceOfAControlVolume) {
-  constexpr double h = 0.1;
-  CoupledCase c(64, 32, h, 0.0125);
-  flow::Parameters& p = c.p.flow;
-  p.viscosity = 0.024;
-  p.boundary[0] = {BoundaryKind::inflow, {1.0, 0.0, 0.0}, {}};
-  p.boundary[1].kind = BoundaryKind::outflow;
-  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::slip;
+  CoupledCase c(64, 32, 0.1, 0.0125);
+  set_channel(c);
   add_circle(c, 2.0, 1.6, 0.4, 50);
-  CoupledRun run(c);
-  ASSERT_TRUE(run.advance(1000));
-  constexpr std::size_t planes[2] = {8, 50}, nx = 64, ny = 32;  // faces normal to x
-  const double area = h * c.width(), mu = p.viscosity;
-  const auto momentum = [&] {
-    const std::vector<double> u = values(c, run, StateField::velocity_x);
-    double sum = 0.0;
-    for (std::size_t j = 0; j < ny; ++j)
-      for (std::size_t i = planes[0]; i <= planes[1]; ++i)
-        sum += (i == planes[0] || i == planes[1] ? 0.5 : 1.0) * u[i + (nx + 1) * j];
-    return p.density * area * h * sum;
-  };
-  const double before = momentum();
-  ASSERT_TRUE(run.advance(1));
-  double flux[2] = {};
-  const std::vector<double> u = values(c, run, StateField::velocity_x),
-                            q = values(c, run, StateField::pressure);
-  for (int k = 0; k < 2; ++k)
-    for (std::size_t j = 0; j < ny; ++j) {
-      const std::size_t i = planes[k], face = i + (nx + 1) * j, cell = i + nx * j;
-      flux[k] += area * (p.density * (u[face] * u[face] + 0.5 * (q[cell - 1] + q[cell])) -
-                         2.0 * mu * (u[face + 1] - u[face - 1]) / (2.0 * h));
-    }
-  const double rate = (momentum() - before) / p.fixed_dt;
-  const double drag = -run.force()[0], balance = flux[0] - flux[1] - rate;
-  EXPECT_GT(drag, 0.01);
-  EXPECT_NEAR(balance / drag, 1.0, 1e-3);
+  const ChannelDrag drag(c, 1000, {8, 50});
+  EXPECT_GT(drag.vertices, 0.01);
+  EXPECT_NEAR(drag.balance / drag.vertices, 1.0, 1e-3);
+}
+
+/// Channel of three dimensions with a rigid sheet 0.8 m wide, whose axis of symmetry turns from z to x.
+CoupledCase channel_with(const mesh::Mesh& sheet, bool no_slip) {
+  CoupledCase c(40, 20, 0.1, 0.0125);
+  c.p.flow.cells[2] = c.p.flow.cells[1];
+  c.p.flow.high[2] = c.p.flow.high[1];
+  set_channel(c);
+  add_rigid(c, sheet, [](const Vector& at) { return Vector{at[2] + 1.4, at[0] + 1.0, at[1] + 1.0}; });
+  c.p.sheet.law.no_slip = no_slip;
+  return c;
+}
+
+// ctest-label: no-sanitizer
+TEST(NoSlipSheet, ForcesOnASphereAndADiskEqualTheBalanceOfAControlVolume) {
+  const ChannelDrag sphere(channel_with(mesh::sphere(0.4, 11), true), 320, {6, 33});
+  EXPECT_GT(sphere.vertices, 0.4);
+  EXPECT_NEAR(sphere.balance / sphere.vertices, 1.0, 2e-3);
+  CoupledCase c = channel_with(mesh::disk(0.4, 13), false);
+  for (const double inset : {0.0, 0.55}) {
+    c.p.sheet.edge_inset = inset;
+    const ChannelDrag disk(c, 320, {6, 33});
+    EXPECT_GT(disk.vertices, 0.4);
+    EXPECT_NEAR(disk.balance / disk.vertices, 1.0, 2e-3) << inset;
+  }
 }
 
 }  // namespace
