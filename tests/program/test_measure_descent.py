@@ -34,7 +34,8 @@ def rows(force=900.0, down=4.0, across=3.0, breathing=0.5, end=40.0, trend=None)
         speed = down + breathing * math.sin(2 * math.pi * time / PERIOD)
         factor = 1.0 if trend is None else trend(math.floor(time / PERIOD))
         yield {"time [s]": time, "step": step, "canopy_0_force_x [N]": 7.0, "canopy_0_force_y [N]": 0.0,
-               "canopy_0_force_z [N]": factor * force, "canopy_0_payload_velocity_x [m/s]": across,
+               "canopy_0_force_z [N]": factor * force, "canopy_0_line_force_x [N]": 0.0, "canopy_0_line_force_y [N]": 300.0,
+               "canopy_0_line_force_z [N]": 400.0, "canopy_0_payload_velocity_x [m/s]": across,
                "canopy_0_payload_velocity_y [m/s]": 0.0, "canopy_0_payload_velocity_z [m/s]": 5.0 - speed}
 
 
@@ -69,10 +70,11 @@ class Descent(unittest.TestCase):
         return [[float(part) for part in cell.split("±")] for cell in line.strip("| ").split("|")[1:]]
 
     def test_corrects_speeds_and_coefficients_for_blockage(self):
-        cells, section, periods, down, across, glide, drag, by_speed, ratio, free_down, free_drag, free_by_speed = (
+        cells, section, periods, down, across, glide, lean, drag, by_speed, ratio, free_down, free_drag, free_by_speed = (
             self.numbers(self.run_of(history=rows(breathing=0.0)), "--blockage", "2"))
         self.assertEqual(([0.75], [400.0], [14.0]), (cells, section, periods))
         self.assertEqual(([4.0, 0.0], [3.0, 0.0], [0.75, 0.0]), (down, across, glide))
+        self.assertEqual([round(math.degrees(math.atan2(3, 4)), 1), 0.0], lean)
         # 2 F / (rho S0) over 4^2 and 5^2; the stream has 1 + 2 * 2 F / (rho 5^2 A) times its dynamic pressure.
         unit = 2 * 900 / (1.25 * math.pi * 16)
         self.assertAlmostEqual(unit / 16, drag[0], delta=6e-4)
@@ -101,7 +103,7 @@ class Descent(unittest.TestCase):
 
     def test_errors_are_those_of_means_over_periods(self):
         found = self.numbers(self.run_of(history=rows(breathing=0.0, trend=lambda block: 1.1 if block % 2 else 0.9)))
-        count, drag = found[2][0], found[6]
+        count, drag = found[2][0], found[7]
         # Fourteen means of 0.9 and 1.1 times the whole have the standard deviation 0.1 sqrt(14 / 13).
         self.assertEqual(14, count)
         self.assertAlmostEqual(0.1 / math.sqrt(13) * drag[0], drag[1], delta=2e-3)
@@ -110,12 +112,12 @@ class Descent(unittest.TestCase):
         history = [{**row, "canopy_0_payload_velocity_x [m/s]": 0.0, "canopy_0_payload_velocity_z [m/s]": 0.0} for row in rows()]
         found = self.numbers(self.run_of(text=scene(gravity="[0, 0, 0]"), history=history))
         self.assertEqual(([5.0, 0.0], [0.0, 0.0]), (found[3], found[4]))
-        self.assertEqual(found[6], found[7])
-        self.assertAlmostEqual(2 * 900 / (DENSITY * AREA * 25), found[6][0], delta=6e-4)
+        self.assertEqual(found[7], found[8])
+        self.assertAlmostEqual(2 * 900 / (DENSITY * AREA * 25), found[7][0], delta=6e-4)
 
     def test_skirts_count_in_the_nominal_area(self):
         text = scene(skirt="skirt = { length = 1.0, diameter = 7.0 }")
-        ratio = self.numbers(self.run_of("with", text))[6][0] / self.numbers(self.run_of("without"))[6][0]
+        ratio = self.numbers(self.run_of("with", text))[7][0] / self.numbers(self.run_of("without"))[7][0]
         self.assertAlmostEqual(AREA / (AREA + math.pi * 7.5), ratio, delta=1e-3)
 
     def test_limit_is_that_of_the_line_through_the_grids(self):
