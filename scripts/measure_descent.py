@@ -9,7 +9,8 @@ payload relative to the fluid far away. With the mean force F of the air on the 
 
     C_D0 down    2 F / (rho v^2 S0), v the mean speed down: what rates of descent and wind tunnels give
     C by speed   2 F / (rho U^2 S0), U the mean of the speed abs(U)
-    lean         mean angle of the force of the lines on the payload from "up", degrees
+    lean         angle of the force of the lines on the payload from "up", degrees, by the means of its parts
+                 across and "up": slack lines do not count; 0 without lines
 
 In a section of area A normal to "down", a bluff body has the drag of a stream of 1 + K 2 F / (rho U^2 A) times the dynamic
 pressure (Maskell 1963). K = --blockage; 1.85 is the value of single parachutes (Macha and Buffington 1990). "in free air"
@@ -66,12 +67,11 @@ class Setting:
         self.area = nominal_area(scene["canopy"][0])
 
     def sample(self, row):
-        """Speed down, speed across and speed of the payload relative to the fluid, m/s; force against "down", N; lean, degrees."""
+        """Speed down, speed across and speed of the payload relative to the fluid, m/s; force against "down", N; force of the lines across and "up", N."""
         velocity = [row[f"canopy_0_payload_velocity_{name}"] - self.stream[axis] for axis, name in enumerate(AXES)]
         lines = [row[f"canopy_0_line_force_{name}"] for name in AXES]
         return (self.sign * velocity[self.axis], self.across(velocity), math.hypot(*velocity),
-                -self.sign * row[f"canopy_0_force_{AXES[self.axis]}"],
-                math.degrees(math.atan2(self.across(lines), -self.sign * lines[self.axis])))
+                -self.sign * row[f"canopy_0_force_{AXES[self.axis]}"], self.across(lines), -self.sign * lines[self.axis])
 
     def across(self, vector):
         """Magnitude of the part of a vector normal to "down"."""
@@ -82,7 +82,7 @@ def block_means(rows, sample, start, end, period):
     """Means of the samples over whole periods from `start` on, by the trapezoidal rule."""
     # Round-off of the times must not take the last period away.
     count = math.floor((end - start) / period + 1e-9)
-    integrals = [[0.0] * 5 for _ in range(count)]
+    integrals = [[0.0] * 6 for _ in range(count)]
     lengths = [0.0] * count
     for before, after in zip(rows, rows[1:]):
         block = math.floor((0.5 * (before["time"] + after["time"]) - start) / period)
@@ -98,12 +98,13 @@ def block_means(rows, sample, start, end, period):
 
 
 def measures(means, setting, blockage):
-    """Speeds, glide ratio, coefficients and lean by mean speeds, m/s, a mean force, N, and a mean lean, degrees."""
-    down, across, speed, force, lean = means
+    """Speeds, glide ratio, coefficients and lean by mean speeds, m/s, and mean forces, N."""
+    down, across, speed, force, lines_across, lines_up = means
     unit = 2.0 * force / (setting.density * setting.area)
     ratio = 1.0 + blockage * unit * setting.area / (speed**2 * setting.section)
-    return {"down": down, "across": across, "glide": across / down, "lean": lean, "drag": unit / down**2, "drag_by_speed": unit / speed**2,
-            "ratio": ratio, "free_down": down * math.sqrt(ratio), "free_drag": unit / down**2 / ratio,
+    return {"down": down, "across": across, "glide": across / down,
+            "lean": math.degrees(math.atan2(lines_across, lines_up)) if lines_across or lines_up else 0.0,
+            "drag": unit / down**2, "drag_by_speed": unit / speed**2, "ratio": ratio, "free_down": down * math.sqrt(ratio), "free_drag": unit / down**2 / ratio,
             "free_drag_by_speed": unit / speed**2 / ratio}
 
 
@@ -143,8 +144,8 @@ def measure_run(folder, options):
     return setting, len(blocks), with_errors(blocks, lambda means: measures(means, setting, options.blockage))
 
 
-COLUMNS = (("m/s down", "down", 2), ("m/s across", "across", 2), ("glide ratio", "glide", 2), ("lean", "lean", 1), ("C_D0 down", "drag", 3),
-           ("C by speed", "drag_by_speed", 3), ("dynamic pressure", "ratio", 3), ("in free air: m/s down", "free_down", 2),
+COLUMNS = (("m/s down", "down", 2), ("m/s across", "across", 2), ("glide ratio", "glide", 2), ("lean, degrees", "lean", 1),
+           ("C_D0 down", "drag", 3), ("C by speed", "drag_by_speed", 3), ("dynamic pressure", "ratio", 3), ("in free air: m/s down", "free_down", 2),
            ("C_D0 down", "free_drag", 3), ("C by speed", "free_drag_by_speed", 3))
 
 

@@ -70,6 +70,17 @@ using stepping::Driver;
 /// each step with central derivatives. Does not throw.
 [[nodiscard]] constexpr double stable_cfl(TimeScheme scheme) { return scheme == TimeScheme::rk3 ? 1.4 : 0.7; }
 
+/// Dimensionless constant of a turbulence model unless `Parameters::turbulence_constant` is given. Does not
+/// throw.
+[[nodiscard]] constexpr double default_constant(Turbulence model) {
+  return model == Turbulence::smagorinsky ? 0.17 : 0.07;
+}
+
+/// Dimensionless CFL number of a time scheme unless `Parameters::cfl` is given. Does not throw.
+[[nodiscard]] constexpr double default_cfl(TimeScheme scheme) {
+  return scheme == TimeScheme::rk3 ? 1.0 : 0.5;
+}
+
 /// Parameters of a flow solver, apart from the initial state. The fluid has constant density.
 struct Parameters {
   std::array<int, 3> cells = {64, 64, 64};      ///< number of cells per axis; 1: no variation along this axis
@@ -85,11 +96,11 @@ struct Parameters {
   TimeScheme time_scheme = TimeScheme::rk3;
   Diffusion diffusion = Diffusion::explicit_;
   Turbulence turbulence = Turbulence::none;
-  double turbulence_constant = 0.0;  ///< C of the model; 0: 0.17 for Smagorinsky, 0.07 for Vreman
+  double turbulence_constant = 0.0;  ///< C of the model; 0: `default_constant`
   PressureSolver pressure_solver = PressureSolver::automatic;
   double pressure_tolerance = 1e-10;  ///< of an iterative solver: relative residual
   bool external_force = false;  ///< the solver has a force field that other kernels add to before each step
-  /// 1/dt = max(|u|/hx + |v|/hy + |w|/hz) / cfl + 1/dt of explicit diffusion. 0: 1 for RK3, 0.5 for AB2.
+  /// 1/dt = max(|u|/hx + |v|/hy + |w|/hz) / cfl + 1/dt of explicit diffusion. 0: `default_cfl`.
   /// At most `stable_cfl`.
   double cfl = 0.0;
   /// s; a positive value replaces the CFL condition. A run fails where it exceeds the stability limit: the dt

@@ -27,7 +27,7 @@ inline StepConstants step_constants(const Parameters& parameters, const MacGrid&
   // viscous term is 4 nu times the sum of the squares.
   const double interval = is_rk3 ? 2.5 : 1.0;
   StepConstants constants{};
-  constants.cfl = parameters.cfl > 0.0 ? parameters.cfl : is_rk3 ? 1.0 : 0.5;
+  constants.cfl = parameters.cfl > 0.0 ? parameters.cfl : default_cfl(parameters.time_scheme);
   constants.fixed_dt = parameters.fixed_dt;
   constants.max_dt = parameters.max_dt;
   constants.diffusive_dt = limits ? interval / (4.0 * nu * squares) : infinite;

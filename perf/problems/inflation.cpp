@@ -47,7 +47,7 @@ void restore(coupling::Solver& solver, const coupling::Parameters& p, const Stat
   coupling::upload_restart_state(solver, state.sheets);
 }
 
-/// Puts the flat cloth into the uniform stream.
+/// Puts the cloth into the uniform stream.
 void start(coupling::Solver& solver, const Problem& problem) {
   const std::vector<double> stream(flow::state_size(problem.parameters.flow, flow::StateField::velocity_z),
                                    speed);
@@ -61,9 +61,8 @@ void fly_to(coupling::Solver& solver, double time) {
     throw Failure(ExitCode::numerical_failure, "a step of the parachute benchmark failed");
 }
 
-}  // namespace
-
-Problem problem(const Discretization& d) {
+/// The canopy in the stream, with a fixed payload and edges of the discretization.
+Problem with_canopy(const Discretization& d, parachute_app::Canopy canopy) {
   Problem result;
   coupling::Parameters& p = result.parameters;
   p.flow.cells = d.cells;
@@ -78,16 +77,43 @@ Problem problem(const Discretization& d) {
   p.flow.time_scheme = d.time_scheme;
   p.flow.cfl = d.cfl;
   p.flow.max_dt = 0.01;
-  parachute_app::Canopy c9;
-  c9.edge_length = d.edge * (p.flow.high[0] - p.flow.low[0]) / d.cells[0];
-  c9.payload.fixed = true;
-  parachute_app::Sheets canopy = parachute_app::make_all_sheets({}, {c9}, p.flow.density, p.flow.viscosity);
-  p.fabric = std::move(canopy.fabric);
-  p.sheet.law_of_vertex = std::move(canopy.laws);
+  canopy.edge_length = d.edge * (p.flow.high[0] - p.flow.low[0]) / d.cells[0];
+  canopy.payload.fixed = true;
+  parachute_app::Sheets sheets =
+      parachute_app::make_all_sheets({}, {canopy}, p.flow.density, p.flow.viscosity);
+  p.fabric = std::move(sheets.fabric);
+  p.sheet.law_of_vertex = std::move(sheets.laws);
   p.sheet.kernel = d.kernel;
+  p.sheet.edge_inset = d.edge_inset;
+  p.sheet.defect_filter = d.defect_filter;
   p.fabric.contact.self = d.with_contact;
-  result.positions = std::move(canopy.positions);
+  result.positions = std::move(sheets.positions);
   return result;
+}
+
+/// Integral, s times their unit, of values at equal intervals by the trapezoidal rule, from the first one to
+/// each.
+std::vector<double> integrals(const std::vector<double>& values, double interval) {
+  std::vector<double> result = {0.0};
+  for (std::size_t k = 1; k < values.size(); ++k)
+    result.push_back(result.back() + 0.5 * interval * (values[k - 1] + values[k]));
+  return result;
+}
+
+}  // namespace
+
+Problem problem(const Discretization& d) { return with_canopy(d, {}); }
+
+Problem porous_problem(const Discretization& d) {
+  // Shape and cloth of the scene porous-c9.
+  parachute_app::Canopy canopy;
+  canopy.shape = parachute_app::CanopyShape::partly_closed;
+  canopy.closure = 0.7;
+  canopy.porosity.law = parachute_app::PorosityLaw::ergun;
+  canopy.porosity.void_fraction = 0.6;
+  canopy.porosity.thickness = 3e-4;
+  canopy.porosity.grain = 1e-4;
+  return with_canopy(d, canopy);
 }
 
 Sample flight(const Problem& problem, coupling::Solver& solver, double lead, long milliseconds) {
@@ -135,29 +161,36 @@ Sample copied_steps(const Problem& problem, coupling::Solver& solver, double lea
           [=] { return run->parts; }};
 }
 
-std::optional<Opening> opening(const Problem& problem, coupling::Solver& solver, double end_time) {
+double Forces::impulse() const { return integrals(values, interval).back(); }
+
+double Forces::half_time() const {
+  const std::vector<double> given = integrals(values, interval);
+  const double half = 0.5 * given.back();
+  const auto after = std::ranges::find_if(given, [&](double value) { return value >= half; });
+  if (after == given.begin() || after == given.end()) return 0.0;
+  return interval * (static_cast<double>(after - given.begin()) - (*after - half) / (*after - *(after - 1)));
+}
+
+double Forces::late_mean() const {
+  const std::vector<double> given = integrals(values, interval);
+  const std::size_t middle = (given.size() - 1) / 2;
+  return (given.back() - given[middle]) / (interval * static_cast<double>(given.size() - 1 - middle));
+}
+
+std::optional<Forces> forces(const Problem& problem, coupling::Solver& solver, double end_time) {
   constexpr int intervals = 50;
-  const double dt = end_time / intervals;
   start(solver, problem);
-  Opening result;
-  std::vector<double> given = {0.0};  // momentum, N s, after each interval
-  double before = 0.0;
+  Forces result;
+  result.interval = end_time / intervals;
+  result.values = {0.0};
   const auto begin = std::chrono::steady_clock::now();
   for (int k = 1; k <= intervals; ++k) {
     if (interrupted()) return {};
-    fly_to(solver, k * dt);
-    const double force = -solver.total_force_on_air()[2];
-    given.push_back(given.back() + 0.5 * dt * (before + force));
-    before = force;
+    fly_to(solver, k * result.interval);
+    result.values.push_back(-solver.total_force_on_air()[2]);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.steps = solver.progress().step;
-  result.impulse = given.back();
-  const double half = 0.5 * result.impulse;
-  const auto after = std::ranges::find_if(given, [&](double value) { return value >= half; });
-  if (after != given.begin() && after != given.end())
-    result.half_time =
-        dt * (static_cast<double>(after - given.begin()) - (*after - half) / (*after - *(after - 1)));
   return result;
 }
 

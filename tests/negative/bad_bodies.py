@@ -41,7 +41,6 @@ BAD_LINES = [
     (11, "", 8, ['missing key "body[0].centre"']),
     (12, "", 8, ['missing key "body[0].lengths"']),
     (13, "", 8, ['missing key "body[0].edge_length"']),
-    (19, "", 17, ['missing key "run.max_dt"', "[[body]]"]),
     # types and ranges
     (8, "[body]", 8, ["body", "array"]),
     (11, "centre = [0.8, 0.4]", 11, ["body[0].centre", "array of 3"]),

@@ -58,6 +58,5 @@ BAD_LINES = [
     (19, 'method = "explicit"', 19, ["coupling.method", "[[flag]]"]),
     (19, "gravity = [0, -1e4, 0]", 19, ["coupling.gravity: 1e+04 m/s^2", "an edge of flag[0]", "at most 2.13e+03 m/s^2"]),
     (19, "contact = true", 19, ["coupling.contact", "[[canopy]]"]),
-    (22, "", 20, ['missing key "run.max_dt"', "[[flag]]"]),
     (27, 'column = "flag_0_tip_z"', 27, ["verify.oscillation[0].column", 'did you mean "flag_0_tip_']),
 ]

@@ -67,6 +67,7 @@ BAD_LINES = [
     (25, 'dt = "fast"', 25, ["run.dt", '"auto"', '"fast"']),
     # ranges
     (4, "density = 0", 4, ["fluid.density = 0", "> 0"]),
+    (4, "density = 1e200", 4, ["fluid.density = 1e+200", "<= 1e+100"]),
     (5, "viscosity = -1", 5, ["fluid.viscosity", ">= 0"]),
     (8, "cells = [0, 6, 4]", 8, ["grid.cells[0]", "1 .. "]),
     (8, "cells = [8, 3, 4]", 8, ["grid.cells[1] = 3", "at least 4"]),

@@ -51,7 +51,7 @@ class BadFlows(parachute_program.FlowTest):
 
     def test_rejects_grids_that_cannot_follow_a_payload(self):
         follow = 'grid.frame="follow"'
-        self.assertIn('grid.frame applies only with a [[canopy]]', self.refusal(follow))
+        self.assertIn('grid.frame = "follow" applies only with a [[canopy]]', self.refusal(follow))
         free = bad_canopies.GOOD[:bad_canopies.GOOD.index("[verify]")].replace("fixed = true", "fixed = false")
         self.scene.write_text(free, encoding="utf-8")
         self.expect(0, self.scene, "--check", sets=[follow])

@@ -473,14 +473,15 @@ def flights(machine=H200):
 
 
 def openings(machine=H200):
-    """An opening parachute with errors of 2 / n on n cells across; fine cloth costs twice as much."""
+    """Parachutes with errors of 2 / n on n cells across; fine cloth costs twice as much, an inset nothing."""
     found = []
-    for problem, edge, n in itertools.product(("opening-impulse", "opening-time"), ("0.7", "0.35"), (15, 30, 60)):
+    problems, schemes = ("opening-impulse", "opening-time", "porous-drag"), ("cbs43", "cbs43 inset 0.55")
+    for problem, kernel, edge, n in itertools.product(problems, schemes, ("0.7", "0.35"), (15, 30, 60)):
         facts = {
-            "problem": problem, "backend": "cuda", "kernel": "cbs43", "time": "ab2 0.25", "edge": edge, "cells": n,
+            "problem": problem, "backend": "cuda", "kernel": kernel, "time": "ab2 0.25", "edge": edge, "cells": n,
             "steps": n, "status": "ok", "message": "",
         }  # fmt: skip
-        case = f"parachute-solution/{problem}/cuda/cbs43 ab2 0.25 edge {edge}/{n}"
+        case = f"parachute-solution/{problem}/cuda/{kernel} ab2 0.25 edge {edge}/{n}"
         seconds = 1e-5 * n**3 * (2.0 if edge == "0.35" else 1.0)
         found.append(record(case, seconds, machine, facts, error=2.0 / n))
     return found

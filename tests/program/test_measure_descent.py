@@ -34,8 +34,8 @@ def rows(force=900.0, down=4.0, across=3.0, breathing=0.5, end=40.0, trend=None)
         speed = down + breathing * math.sin(2 * math.pi * time / PERIOD)
         factor = 1.0 if trend is None else trend(math.floor(time / PERIOD))
         yield {"time [s]": time, "step": step, "canopy_0_force_x [N]": 7.0, "canopy_0_force_y [N]": 0.0,
-               "canopy_0_force_z [N]": factor * force, "canopy_0_line_force_x [N]": 0.0, "canopy_0_line_force_y [N]": 300.0,
-               "canopy_0_line_force_z [N]": 400.0, "canopy_0_payload_velocity_x [m/s]": across,
+               "canopy_0_force_z [N]": factor * force, "canopy_0_line_force_x [N]": 0.0, "canopy_0_line_force_y [N]": 250.0,
+               "canopy_0_line_force_z [N]": 600.0, "canopy_0_payload_velocity_x [m/s]": across,
                "canopy_0_payload_velocity_y [m/s]": 0.0, "canopy_0_payload_velocity_z [m/s]": 5.0 - speed}
 
 
@@ -74,7 +74,7 @@ class Descent(unittest.TestCase):
             self.numbers(self.run_of(history=rows(breathing=0.0)), "--blockage", "2"))
         self.assertEqual(([0.75], [400.0], [14.0]), (cells, section, periods))
         self.assertEqual(([4.0, 0.0], [3.0, 0.0], [0.75, 0.0]), (down, across, glide))
-        self.assertEqual([round(math.degrees(math.atan2(3, 4)), 1), 0.0], lean)
+        self.assertEqual([22.6, 0.0], lean)  # tan 250 / 600
         # 2 F / (rho S0) over 4^2 and 5^2; the stream has 1 + 2 * 2 F / (rho 5^2 A) times its dynamic pressure.
         unit = 2 * 900 / (1.25 * math.pi * 16)
         self.assertAlmostEqual(unit / 16, drag[0], delta=6e-4)
@@ -114,6 +114,17 @@ class Descent(unittest.TestCase):
         self.assertEqual(([5.0, 0.0], [0.0, 0.0]), (found[3], found[4]))
         self.assertEqual(found[7], found[8])
         self.assertAlmostEqual(2 * 900 / (DENSITY * AREA * 25), found[7][0], delta=6e-4)
+
+    def test_slack_lines_do_not_lean(self):
+        def lean(name, up, taut):
+            """With lines that pull in the steps that are `taut`, "up" along z in the direction of `up`."""
+            history = [{**row, "canopy_0_line_force_y [N]": 250.0 * taut(row["step"]),
+                        "canopy_0_line_force_z [N]": up * 600.0 * taut(row["step"])} for row in rows()]
+            return self.numbers(self.run_of(name, scene(gravity=f"[0, 0, {-9.81 * up}]"), history))[6][0]
+
+        for up in (1, -1):
+            self.assertEqual(0.0, lean(f"slack {up}", up, lambda step: 0.0))
+            self.assertEqual(22.6, lean(f"jerks {up}", up, lambda step: float(step % 4 == 0)))
 
     def test_skirts_count_in_the_nominal_area(self):
         text = scene(skirt="skirt = { length = 1.0, diameter = 7.0 }")

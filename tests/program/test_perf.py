@@ -592,19 +592,20 @@ class WorkPrecisionOfCanopies(perf_program.PerfTest):
     def test_records_are_valid(self):
         self.expect(0, "work-precision", "--app", "parachute", "--quick", "--backend", "serial", "--out", "runs.jsonl")
         records = self.records("runs.jsonl")
-        self.assertEqual(12, len(records))
+        self.assertEqual(18, len(records))
         errors = {}
         for record in records:
             facts = record["facts"]
             self.assertEqual(("passed", "ok", "s per solution"), (record["check"], facts["status"], record["unit"]))
             self.assertEqual(f"parachute-solution/{facts['problem']}/serial", record["case"].rsplit("/", 2)[0])
             errors[facts["problem"], facts["kernel"], facts["time"], facts["edge"], facts["cells"]] = record["error"]
-        self.assertEqual(12, len(errors))
+        self.assertEqual(18, len(errors))
         for (problem, *scheme, cells), error in errors.items():
-            self.assertTrue(0.0 < error < 0.5, (problem, scheme, cells))
+            # The cloth is widened by its delta functions, which raises the drag.
+            self.assertTrue(0.0 < error < (0.6 if problem == "porous-drag" else 0.5), (problem, scheme, cells))
             # Cloth much finer than its air converges less regularly.
             if scheme[2] == "0.7" and cells == 12:
-                self.assertLess(2.0 * error, errors[problem, *scheme, 8])
+                self.assertLess((1.5 if problem == "porous-drag" else 2.0) * error, errors[problem, *scheme, 8])
 
 
 class WorkPrecisionOfFlow(perf_program.PerfTest):

@@ -19,7 +19,7 @@ struct EddyModel {
 
 /// Model with the default constant unless `parameters` has another one. Does not throw.
 inline EddyModel make_eddy_model(const Parameters& parameters, const MacGrid& grid) {
-  const double standard = parameters.turbulence == Turbulence::smagorinsky ? 0.17 : 0.07;
+  const double standard = default_constant(parameters.turbulence);
   EddyModel model{parameters.turbulence,
                   parameters.turbulence_constant > 0.0 ? parameters.turbulence_constant : standard,
                   {0.0, 0.0, 0.0},

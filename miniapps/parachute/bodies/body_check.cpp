@@ -18,10 +18,6 @@ using scene::Table;
 
 constexpr double most_vertices = 1048576.0;  // 2^20
 
-double spacing(const flow::Parameters& p, std::size_t axis) {
-  return lattice_of(p, flow::StateField::pressure).spacing[axis];
-}
-
 bool is_bounded(const flow::Parameters& p, std::size_t axis) {
   return p.cells[axis] > 1 && p.boundary[2 * axis].kind != flow::BoundaryKind::periodic;
 }
@@ -31,7 +27,7 @@ bool is_bounded(const flow::Parameters& p, std::size_t axis) {
 void check_extent(const Table& root, const flow::Parameters& p, const std::string& key,
                   const std::string& place, std::size_t axis, double low, double high,
                   const std::string& at) {
-  const double margin = is_bounded(p, axis) ? spacing(p, axis) : 0.0;
+  const double margin = is_bounded(p, axis) ? cell_width(p, axis) : 0.0;
   const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
   if (low >= p.low[axis] + margin - rounding && high <= p.high[axis] - margin + rounding) return;
   contradict(root, key,
@@ -109,7 +105,7 @@ void check_edges(const Table& root, const flow::Parameters& p, const Body& body,
       const std::size_t k = axis == body.axes()[0] ? 0 : 1;
       edge = body.lengths[k] / body.divisions()[k];
     }
-    const double h = spacing(p, axis);
+    const double h = cell_width(p, axis);
     if (edge > (1.0 + 1e-9) * largest_edge_in_cells * h)
       contradict(root, key,
                  key + ": edges of " + real_text(edge) + " m along " + axis_names[axis] +
@@ -221,15 +217,11 @@ void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     scene.bodies[i].slip = scene.bodies[i].slips();
-    scene.bodies[i].spacing = {spacing(p, 0), spacing(p, 1), spacing(p, 2)};
+    scene.bodies[i].spacing = {cell_width(p, 0), cell_width(p, 1), cell_width(p, 2)};
     read_surface(root, scene, i);
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);
   check_slip(root, scene);
-  if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
-    contradict(root, "run",
-               "missing key \"run.max_dt\" (needed with a [[body]] and dt = \"auto\"): fluid at rest does "
-               "not limit dt");
 }
 
 void check_porosity(const Table& root, const FlowScene& scene, const std::string& name,

@@ -31,11 +31,6 @@ std::string place_key(const Canopy& canopy, const std::string& name) {
   return name + (canopy.payload.shared ? ".payload.shared" : ".centre");
 }
 
-/// Width of the cells along an axis, m.
-double cell_width(const flow::Parameters& p, std::size_t axis) {
-  return lattice_of(p, flow::StateField::pressure).spacing[axis];
-}
-
 void check_measures(const Table& root, const Canopy& canopy, const std::string& name) {
   if (canopy.vent == 0.0 && canopy.reinforcement.vent > 0.0)
     contradict(root, name + ".reinforcement.vent", name + ".reinforcement.vent: this canopy has no vent");
@@ -151,8 +146,7 @@ double first_dt(const FlowScene& scene) {
     if (!speed) return 0.0;
     rate += std::abs(*speed) / cell_width(p, axis);
   }
-  const double cfl = p.cfl > 0.0 ? p.cfl : coupling::default_cfl;
-  return rate > 0.0 ? std::min(p.max_dt, cfl / rate) : p.max_dt;
+  return rate > 0.0 ? std::min(p.max_dt, scene.cfl() / rate) : p.max_dt;
 }
 
 /// Signals are answered between steps of the flow: one must not hold more steps of the cloth than pass within
@@ -164,9 +158,10 @@ void check_stiffness(const Table& root, const FlowScene& scene, const Canopy& ca
   if (steps <= static_cast<double>(coupling::most_substeps)) return;
   std::ostringstream text;
   text.precision(3);
-  text << name << "." << part.key << ": " << part.stiffness << " " << part.unit << " needs some " << steps
+  text << name << "." << part.key << ": " << part.value << " " << part.unit << " needs some " << steps
        << " steps of the cloth in each step of the flow, of " << dt << " s; at most "
-       << coupling::most_substeps << ", with a lower stiffness, a larger edge_length or a smaller "
+       << coupling::most_substeps << ", with " << part.remedy << " " << part.key
+       << ", a larger edge_length or a smaller "
        << (scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.max_dt");
   contradict(root, name + "." + part.key, text.str());
 }
@@ -312,7 +307,11 @@ void check_and_place_canopies(const Table& root, std::vector<Canopy>& canopies) 
 }
 
 void check_canopies(const Table& root, const FlowScene& scene) {
-  if (scene.canopies.empty()) return;
+  if (scene.canopies.empty()) {
+    if (scene.frame == Frame::follow)
+      contradict(root, "grid.frame", "grid.frame = \"follow\" applies only with a [[canopy]]");
+    return;
+  }
   const flow::Parameters& p = scene.parameters;
   std::vector<std::vector<Vector>> cloths, bodies;
   for (const Body& body : scene.bodies) bodies.push_back(sorted_by_x(mesh_of(body).rest));
@@ -347,10 +346,6 @@ void check_canopies(const Table& root, const FlowScene& scene) {
   if (!scene.has_fluid()) return;
   check_frame(root, scene);
   check_method(root, scene);
-  if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
-    contradict(root, "run",
-               "missing key \"run.max_dt\" (needed with a [[canopy]] and dt = \"auto\"): fluid at rest does "
-               "not limit dt");
 }
 
 }  // namespace drogue::parachute_app

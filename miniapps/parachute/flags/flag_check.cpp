@@ -89,10 +89,6 @@ void complete_and_check_flags(const Table& root, FlowScene& scene) {
     flag.span = {p.low[2], p.high[2]};
     check_flag(root, p, flag, name);
   }
-  if (!scene.flags.empty() && p.fixed_dt == 0.0 && p.max_dt == 0.0)
-    contradict(root, "run",
-               "missing key \"run.max_dt\" (needed with a [[flag]] and dt = \"auto\"): fluid at rest does "
-               "not limit dt");
 }
 
 }  // namespace drogue::parachute_app

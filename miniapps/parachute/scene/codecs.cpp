@@ -273,4 +273,11 @@ Codec absent_if_zero(Codec codec, const double& value) {
   return codec;
 }
 
+Codec standard_if_zero(Codec codec, const double& value, std::function<double()> standard) {
+  codec.print = [print = std::move(codec.print), &value, standard = std::move(standard)] {
+    return value == 0.0 ? scene::toml_text(standard()) : print();
+  };
+  return codec;
+}
+
 }  // namespace drogue::parachute_app

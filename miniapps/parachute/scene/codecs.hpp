@@ -45,4 +45,7 @@ scene::Codec time_step_codec(double& dt);
 /// Treats the value 0 as absent. Does not throw.
 scene::Codec absent_if_zero(scene::Codec codec, const double& value);
 
+/// Prints `standard()` for the value 0, which stands for it. Does not throw.
+scene::Codec standard_if_zero(scene::Codec codec, const double& value, std::function<double()> standard);
+
 }  // namespace drogue::parachute_app

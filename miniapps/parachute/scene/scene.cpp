@@ -7,6 +7,7 @@
 #include "miniapps/framework/mini_app.hpp"
 #include "miniapps/framework/obj_file.hpp"
 #include "miniapps/framework/typed_scene.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
 #include "miniapps/parachute/scene/scene_keys.hpp"
 
@@ -78,6 +79,10 @@ std::array<bool, 3> FlowScene::open_axes() const {
   std::array<bool, 3> axes{};
   for (std::size_t axis = 0; axis < 3; ++axis) axes[axis] = is_open(2 * axis) && is_open(2 * axis + 1);
   return axes;
+}
+
+double cell_width(const flow::Parameters& p, std::size_t axis) {
+  return lattice_of(p, flow::StateField::pressure).spacing[axis];
 }
 
 std::string print_flow_scene(const FlowScene& scene) {

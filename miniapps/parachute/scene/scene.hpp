@@ -217,6 +217,11 @@ struct FlowScene {
   /// True if a sheet moves by the forces of the fluid. Does not throw.
   [[nodiscard]] bool has_free_sheets() const;
   [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty() || !flags.empty(); }
+  /// Courant number, the default one if none is given. Does not throw.
+  [[nodiscard]] double cfl() const {
+    if (parameters.cfl > 0.0) return parameters.cfl;
+    return has_sheets() ? coupling::default_cfl : flow::default_cfl(parameters.time_scheme);
+  }
   /// Axes along which the grid can move: fluid flows in or out at both sides. Does not throw.
   [[nodiscard]] std::array<bool, 3> open_axes() const;
   [[nodiscard]] const VectorExpression& initial_velocity() const {
@@ -238,6 +243,9 @@ const std::vector<std::string>& field_names();
 
 /// Condition that `with_fluid` puts on a key.
 inline constexpr const char* fluid_condition = "with [fluid]";
+
+/// Width of the cells along an axis, m. Does not throw.
+double cell_width(const flow::Parameters& p, std::size_t axis);
 
 /// True for fields of canopies. Does not throw.
 bool is_canopy_field(const std::string& name);

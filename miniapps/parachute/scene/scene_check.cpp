@@ -225,6 +225,20 @@ void check_initial(const Table& root, const FlowScene& scene) {
   }
 }
 
+/// Gives run.max_dt its default. Fluid at rest would leave dt without a bound, while sheets that move, or a
+/// stream that begins, need one.
+void complete_time_step(FlowScene& scene) {
+  flow::Parameters& p = scene.parameters;
+  if (!scene.has_sheets() || p.fixed_dt > 0.0 || p.max_dt > 0.0) return;
+  double least_width = std::numeric_limits<double>::infinity(), speed = 1.0;  // m, m/s
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (p.cells[axis] > 1) least_width = std::min(least_width, cell_width(p, axis));
+    const auto known = SpaceTimeFunction(scene.velocity[axis]).constant();
+    if (known) speed = std::max(speed, std::abs(*known));
+  }
+  p.max_dt = scene.cfl() * least_width / speed;
+}
+
 /// Refuses gravity under which an edge of cloth would double its length by its own weight: neither the cloth
 /// nor its mesh are meant for it.
 void check_gravity(const Table& root, const FlowScene& scene) {
@@ -281,6 +295,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
                                                : flow::Advection::weno_z;
   check_scheme(root, p);
   complete_velocities(root, scene);
+  complete_time_step(scene);
   check_net_inflow(root, scene);
   check_solver(root, p);
   complete_and_check_bodies(root, scene);

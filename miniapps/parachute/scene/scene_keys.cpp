@@ -36,7 +36,10 @@ const std::vector<std::string> place = {"x", "y", "z"};
 const std::vector<std::string> place_and_time = {"x", "y", "z", "t"};
 
 void declare_fluid(Table& table, FlowScene& scene) {
-  table.value("density", scene::real_codec(scene.parameters.density), "Density").unit("kg/m^3").above(0.0);
+  table.value("density", scene::real_codec(scene.parameters.density), "Density")
+      .unit("kg/m^3")
+      .above(0.0)
+      .at_most(1e100);
   table.value("viscosity", scene::real_codec(scene.parameters.viscosity), "Dynamic viscosity")
       .unit("Pa s")
       .at_least(0.0);
@@ -56,11 +59,9 @@ void declare_grid(Table& table, FlowScene& scene) {
   table.value("domain", domain_codec(parameters.low, parameters.high), "Ends of the domain along x, y, z")
       .unit("m")
       .required();
-  table
-      .value("frame", scene::choice_codec(scene.frame, frame_choices),
-             "The grid is at rest, or moves with the payload of the first canopy along axes with inflow or "
-             "outflow sides")
-      .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
+  table.value("frame", scene::choice_codec(scene.frame, frame_choices),
+              "The grid is at rest, or moves with the payload of the first canopy along axes with inflow or "
+              "outflow sides");
   table.table(
       "boundary",
       [&](Table& sides) {
@@ -113,7 +114,8 @@ void declare_flow(Table& table, FlowScene& scene) {
   table
       .value(
           "turbulence_constant",
-          absent_if_zero(scene::real_codec(parameters.turbulence_constant), parameters.turbulence_constant),
+          standard_if_zero(scene::real_codec(parameters.turbulence_constant), parameters.turbulence_constant,
+                           [&parameters] { return flow::default_constant(parameters.turbulence); }),
           "Constant of the model")
       .above(0.0)
       .at_most(1.0)
@@ -141,19 +143,23 @@ void declare_run(Table& table, FlowScene& scene) {
       .unit("s")
       .above(0.0);
   table
-      .value("cfl", absent_if_zero(scene::real_codec(parameters.cfl), parameters.cfl),
+      .value("cfl",
+             standard_if_zero(scene::real_codec(parameters.cfl), parameters.cfl,
+                              [&scene] { return scene.cfl(); }),
              "Courant number: dt times the largest sum of speeds over cell widths along the axes; at most "
              "0.7 with ab2")
       .above(0.0)
       .at_most(flow::stable_cfl(flow::TimeScheme::rk3))
       .when(free_step, free_step_condition, "dt")
-      .default_text("1 for rk3, 0.5 for ab2 and with a [[body]] or a [[canopy]]");
+      .default_text("1 for rk3, 0.5 for ab2 and with a [[body]], [[canopy]] or [[flag]]");
   table
       .value("max_dt", absent_if_zero(scene::real_codec(parameters.max_dt), parameters.max_dt),
              "Upper bound of dt, say for a fluid at rest")
       .unit("s")
       .above(0.0)
-      .default_text("none")
+      .default_text(
+          "with a [[body]], [[canopy]] or [[flag]] `cfl` times the least width of a cell over 1 m/s "
+          "or, if it is larger, the largest number in fluid.velocity; else none")
       .when(free_step, free_step_condition, "dt");
   table
       .value("max_steps", scene::integer_codec(parameters.max_steps),

@@ -59,9 +59,12 @@ std::string Simulation::flow_failure_text() {
          << scene::real_text(_scene.parameters.pressure_tolerance);
   }
   if (failure.reason == flow::FailureReason::not_finite && !is_initial)
-    text << (fixed_dt > 0.0 ? "; a smaller run.dt" : "; a smaller run.cfl") << " may save the run";
+    text << "; a smaller " << step_key() << " may save the run";
   return text.str();
 }
+
+/// Key that shortens the steps of the flow.
+const char* Simulation::step_key() const { return _scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.cfl"; }
 
 /// End of the message of a failure for which explicit coupling of light cloth is the likely cause.
 std::string Simulation::light_cloth_text() const {
@@ -95,7 +98,9 @@ std::string Simulation::stiff_cloth_text() {
     stiffest = part;
     canopy = "canopy[" + std::to_string(i) + "].";
   }
-  if (stiffest) text << "; a smaller " << canopy << stiffest->key << " or run.cfl may save the run";
+  if (stiffest)
+    text << "; " << stiffest->remedy << " " << canopy << stiffest->key << " or a smaller " << step_key()
+         << " may save the run";
   return text.str();
 }
 
@@ -170,7 +175,7 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
     case coupling::FailureReason::cloth: {
       const auto failure = _coupled->cloth_failure().value_or(fabric::StepFailure{});
       text << cloth_failure_text(failure.reason) << " at " << vertex_text(failure.index)
-           << " after t = " << now().time << " s; a smaller run.cfl may save the run";
+           << " after t = " << now().time << " s; a smaller " << step_key() << " may save the run";
       return text.str();
     }
     case coupling::FailureReason::too_stiff:

@@ -7,9 +7,11 @@
 
 #include "kernels/mesh/edges.hpp"
 #include "kernels/mesh/topology.hpp"
+#include "kernels/reference/fabric/frequency.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "kernels/reference/fabric/membrane.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
+#include "miniapps/parachute/canopy/stiffness.hpp"
 
 // Meshes of canopies: cloth, lines and payload.
 
@@ -549,6 +551,32 @@ TEST(Canopy, PerturbationsDisplaceTheClothAlongItsAxisAlone) {
   EXPECT_GT(largest, 0.019);
   EXPECT_LE(largest, 0.02);
   EXPECT_LT(std::abs(sum) / static_cast<double>(one.cloth_vertices), 0.002);
+}
+
+TEST(Canopy, StiffestPartBoundsTheFrequenciesOfTheCloth) {
+  Canopy canopy;
+  canopy.edge_length = 0.6;
+  // So soft that the cloth sets the frequency.
+  canopy.lines.stiffness = 1.0;
+  canopy.poisson = 0.2;
+  const auto expect_bound = [&](const char* key) {
+    const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+    const fabric::Parameters& p = sheets.fabric;
+    const double largest = reference::largest_frequency(p.material, p.mesh, p.mass, p.pinned, p.mesh.rest);
+    const StiffPart part = stiffest_part(canopy, make_canopy(canopy));
+    EXPECT_GT(part.frequency, largest) << key;
+    EXPECT_LT(part.frequency, 2.05 * largest) << key;
+    EXPECT_EQ(part.key, key);
+  };
+  expect_bound("membrane_modulus");
+  canopy.vent = 0.02;
+  expect_bound("vent");
+  canopy.vent = 0.5;
+  canopy.kind = CanopyKind::extended_skirt;
+  canopy.skirt = {1.0, 8.0};
+  expect_bound("membrane_modulus");
+  canopy.lines.stiffness = 1e9;
+  EXPECT_EQ(stiffest_part(canopy, make_canopy(canopy)).key, "lines.stiffness");
 }
 
 }  // namespace

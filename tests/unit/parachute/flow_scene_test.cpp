@@ -122,14 +122,37 @@ TEST(FlowScene, OmitsInapplicableKeys) {
                           "[tuning]", "[initial]"})
     EXPECT_FALSE(contains(printed, key)) << key;
   EXPECT_TRUE(contains(printed, "weno = \"z\"\n"));
-  // The CFL number follows from the time scheme.
+  EXPECT_TRUE(contains(printed, "frame = \"fixed\"\n"));
   EXPECT_TRUE(contains(printed, "time = \"rk3\"\n"));
   EXPECT_TRUE(contains(printed, "dt = \"auto\"\n"));
-  EXPECT_FALSE(contains(printed, "cfl"));
   EXPECT_TRUE(contains(print_flow_scene(read_text(least, {"run.cfl=0.4"})), "cfl = 0.4\n"));
   const std::string central = print_flow_scene(read_text(least, {"flow.advection=central", "run.dt=0.01"}));
   EXPECT_FALSE(contains(central, "weno"));
   EXPECT_FALSE(contains(central, "cfl"));
+}
+
+TEST(FlowScene, PrintsDefaultsThatFollowFromOtherKeys) {
+  EXPECT_TRUE(contains(print_flow_scene(read_text(least)), "cfl = 1.0\n"));
+  EXPECT_TRUE(contains(print_flow_scene(read_text(least, {"flow.time=ab2"})), "cfl = 0.5\n"));
+  for (const auto& [model, constant] : {std::pair{"smagorinsky", "0.17"}, std::pair{"vreman", "0.07"}})
+    EXPECT_TRUE(contains(print_flow_scene(read_text(least, {std::string("flow.turbulence=") + model})),
+                         std::string("turbulence_constant = ") + constant + "\n"));
+}
+
+TEST(FlowScene, SheetsBoundTheTimeStepOfFluidAtRest) {
+  // Half of the least width, 1/6 m, over 1 m/s, or over the largest component of the stream.
+  const std::string body = "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1}]";
+  const auto max_dt = [&](const char* velocity) {
+    return read_text(least, {body, std::string("fluid.velocity=") + velocity}).parameters.max_dt;
+  };
+  EXPECT_DOUBLE_EQ(max_dt("[0,0,0]"), 0.5 / 6.0);
+  EXPECT_DOUBLE_EQ(max_dt("[0,-5,2]"), 0.1 / 6.0);
+  EXPECT_DOUBLE_EQ(max_dt("[\"3*t\",0,0]"), 0.5 / 6.0);
+  const FlowScene scene = read_text(least, {body});
+  EXPECT_TRUE(contains(print_flow_scene(scene), "cfl = 0.5\nmax_dt = 0.083333"));
+  EXPECT_EQ(read_text(least, {body, "run.max_dt=0.01"}).parameters.max_dt, 0.01);
+  EXPECT_EQ(read_text(least, {body, "run.dt=0.01"}).parameters.max_dt, 0.0);
+  EXPECT_EQ(fingerprint_of(scene), fingerprint_of(read_text(least, {body, "run.max_dt=0.01"})));
 }
 
 TEST(FlowScene, SceneWithoutFluidIsClothAlone) {
