@@ -102,7 +102,7 @@ framework::SceneIdentity scene_identity(FlowScene scene) {
   keep(&flow::Parameters::driver);
   keep(&flow::Parameters::block);
   scene.contact_block = 0;
-  keep(&flow::Parameters::cfl);
+  scene.parameters.cfl = 0.5;  // its default follows from the time scheme
   keep(&flow::Parameters::fixed_dt);
   keep(&flow::Parameters::max_dt);
   for (Canopy& canopy : scene.canopies) {
