@@ -79,6 +79,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::string leaving_vertex_text();
   [[nodiscard]] std::string leaving_part_text(std::size_t vertex) const;
   [[nodiscard]] std::string vertex_text(std::int64_t vertex) const;
+  [[nodiscard]] std::string now_text();
   [[nodiscard]] const char* step_key() const;
   [[nodiscard]] std::string light_cloth_text() const;
   void write_coupling(run::RestartWriter& writer);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -18,14 +19,20 @@ namespace {
 
 using fabric::Vector;
 
+std::string place_text(const std::array<double, 3>& place) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "(" << place[0] << ", " << place[1] << ", " << place[2] << ") m";
+  return text.str();
+}
+
 /// Cell of an index whose x varies fastest, and its centre.
 std::string cell_text(const flow::Parameters& p, std::int64_t index) {
   const Lattice cells = lattice_of(p, flow::StateField::pressure);
   const auto centre = cells.place(static_cast<std::size_t>(index));
   std::ostringstream text;
   text << "cell (" << index % cells.n[0] << ", " << index / cells.n[0] % cells.n[1] << ", "
-       << index / cells.n[0] / cells.n[1] << ") at (" << centre[0] << ", " << centre[1] << ", " << centre[2]
-       << ") m";
+       << index / cells.n[0] / cells.n[1] << ") at " << place_text(centre);
   return text.str();
 }
 
@@ -63,6 +70,14 @@ std::string Simulation::flow_failure_text() {
   return text.str();
 }
 
+/// Last step that was taken, and its time.
+std::string Simulation::now_text() {
+  std::ostringstream text;
+  text.precision(9);
+  text << "step " << now().step << ", t = " << now().time << " s";
+  return text.str();
+}
+
 /// Key that shortens the steps of the flow.
 const char* Simulation::step_key() const { return _scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.cfl"; }
 
@@ -88,8 +103,8 @@ std::string Simulation::vertex_text(std::int64_t vertex) const {
 std::string Simulation::stiff_cloth_text() {
   std::ostringstream text;
   text.precision(9);
-  text << "the cloth needs more than " << coupling::most_substeps
-       << " steps in the step of the flow after t = " << now().time << " s";
+  text << "the cloth needs more than " << coupling::most_substeps << " steps in the step of the flow after "
+       << now_text();
   std::optional<StiffPart> stiffest;
   std::string canopy;
   for (std::size_t i = 0; i < _scene.canopies.size(); ++i) {
@@ -109,13 +124,18 @@ std::string Simulation::broken_line_text() {
   std::ostringstream text;
   text.precision(9);
   const int line = _coupled->failed_line();
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  _coupled->download_cloth(positions, velocities);
+  const Vector& skirt =
+      positions[static_cast<std::size_t>(_sheets.fabric.mesh.lines[static_cast<std::size_t>(line)][0])];
   for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
     const std::vector<int>& lines = _sheets.canopies[i].suspension;
     const auto found = std::ranges::find(lines, line);
     if (found == lines.end()) continue;
-    text << "line " << found - lines.begin() << " of canopy[" << i << "] breaks: it carries more than "
-         << "canopy[" << i << "].lines.strength = " << _scene.canopies[i].lines.strength.value_or(0.0)
-         << " N in the step after t = " << now().time << " s";
+    text << "line " << found - lines.begin() << " of canopy[" << i << "] breaks at " << place_text(skirt)
+         << ": it carries more than canopy[" << i
+         << "].lines.strength = " << _scene.canopies[i].lines.strength.value_or(0.0)
+         << " N in the step after " << now_text();
   }
   return text.str();
 }
@@ -156,13 +176,9 @@ std::string Simulation::leaving_vertex_text() {
           spacing[axis];
       if (distance < least) least = distance, vertex = i, closest = side;
     }
-  std::ostringstream text;
-  text.precision(9);
-  text << leaving_part_text(vertex) << " at (" << positions[vertex][0] << ", " << positions[vertex][1] << ", "
-       << positions[vertex][2] << ") m comes closer than a cell to the side " << side_names[closest]
-       << " after t = " << now().time
-       << " s; a larger grid.domain or a shorter run.end_time may save the run";
-  return text.str();
+  return leaving_part_text(vertex) + " at " + place_text(positions[vertex]) +
+         " comes closer than a cell to the side " + side_names[closest] + " after " + now_text() +
+         "; a larger grid.domain or a shorter run.end_time may save the run";
 }
 
 std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
@@ -170,12 +186,12 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
   text.precision(9);
   switch (reason) {
     case coupling::FailureReason::not_spread:
-      text << "a force on a sheet is not finite at t = " << now().time << " s";
+      text << "a force on a sheet is not finite after " << now_text();
       return text.str();
     case coupling::FailureReason::cloth: {
       const auto failure = _coupled->cloth_failure().value_or(fabric::StepFailure{});
-      text << cloth_failure_text(failure.reason) << " at " << vertex_text(failure.index)
-           << " after t = " << now().time << " s; a smaller " << step_key() << " may save the run";
+      text << cloth_failure_text(failure.reason) << " at " << vertex_text(failure.index) << " after "
+           << now_text() << "; a smaller " << step_key() << " may save the run";
       return text.str();
     }
     case coupling::FailureReason::too_stiff:
