@@ -411,6 +411,11 @@ class Bodies(parachute_program.FlowTest):
         self.assertEqual((3 * (9 * 13 + 7 * 13), 6 * (8 * 12 + 6 * 12)),
                          (len(fields.values("/mesh/body/vertices")), len(triangles)))
         self.assertEqual(set(range(9 * 13 + 7 * 13)), set(triangles))
+        edges = array.array("q", fields.datasets["/mesh/body/edges"])
+        pairs = set(zip(edges[::2], edges[1::2]))
+        sides = {tuple(sorted((triangles[3 * k + i], triangles[3 * k + (i + 1) % 3]))) for k in range(len(triangles) // 3)
+                 for i in range(3)}
+        self.assertEqual(sides, {tuple(sorted(pair)) for pair in pairs})
         self.assertEqual({0.6}, set(fields.values("/mesh/body/vertices")[:3 * 9 * 13:3]))
         self.assertEqual({0.4}, set(fields.values("/mesh/body/vertices")[3 * 9 * 13 + 1::3]))
         self.assertEqual([], [name for name in fields.datasets if name.startswith("/steps/") and "/body" in name])

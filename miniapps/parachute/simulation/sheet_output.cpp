@@ -20,14 +20,14 @@ run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
   };
 }
 
-/// Elements whose first vertex is in a range, as numbered from its beginning.
+/// Elements whose vertices are all in a range, as numbered from its beginning.
 template <std::size_t n>
 std::vector<std::array<int, n>> elements_between(const std::vector<std::array<int, n>>& parts,
                                                  std::size_t begin, std::size_t end) {
   const auto first = static_cast<int>(begin), last = static_cast<int>(end);
   std::vector<std::array<int, n>> result;
   for (std::array<int, n> part : parts) {
-    if (part[0] < first || part[0] >= last) continue;
+    if (std::ranges::any_of(part, [&](int i) { return i < first || i >= last; })) continue;
     for (int& i : part) i -= first;
     result.push_back(part);
   }
@@ -40,6 +40,14 @@ void add_triangles(const fabric::Mesh& mesh, std::size_t begin, std::size_t end,
   const auto triangles = elements_between(mesh.triangles, begin, end);
   fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
                   source_of(triangles));
+}
+
+/// Adds the edges and lines of a range of vertices. Springs of mounts lead out of it.
+void add_edges(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
+               run::FieldSink& fields) {
+  const auto edges = elements_between(mesh::edges_of(mesh), begin, end);
+  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line", grid},
+                  source_of(edges));
 }
 
 /// Adds the vertices at rest in a range. Add them last: they complete fields.xdmf.
@@ -119,12 +127,10 @@ run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name
 void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
   const std::size_t first = sheets.canopies.front().begin, end = mesh.rest.size();
-  const auto edges = elements_between(mesh::edges_of(mesh), first, end);
   const auto strings = elements_between(mesh.lines, first, end);
   const std::string grid = "canopy";
   add_triangles(mesh, first, end, grid, fields);
-  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line", grid},
-                  source_of(edges));
+  add_edges(mesh, first, end, grid, fields);
   fields.add_mesh(
       {"strings", {strings.size(), 2}, "1", "edge", "vertices of every reinforcement and line", grid},
       source_of(strings));
@@ -161,7 +167,8 @@ run::DatasetSpec position_spec(const SheetGrid& grid) {
 void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSink& fields) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
   add_triangles(mesh, grid.begin, grid.end, grid.name, fields);
-  // A grid of triangles has strings too; springs of mounts lead to points that are no part of it.
+  add_edges(mesh, grid.begin, grid.end, grid.name, fields);
+  // A grid of triangles has strings too.
   const std::vector<std::array<int, 2>> strings;
   fields.add_mesh({"strings", {0, 2}, "1", "edge", "vertices of every line", grid.name}, source_of(strings));
   add_vertices(mesh, grid.begin, grid.end, grid.name, fields);
