@@ -45,7 +45,8 @@ LineReader::LineReader(std::filesystem::path file) : _file(std::move(file)), _bu
 LineReader::~LineReader() { close(_descriptor); }
 
 double LineReader::share() const {
-  return _size > 0 ? std::min(1.0, static_cast<double>(_read) / static_cast<double>(_size)) : 1.0;
+  const auto done = static_cast<double>(_read - static_cast<std::int64_t>(_end - _begin));
+  return _size > 0 ? std::min(1.0, done / static_cast<double>(_size)) : 1.0;
 }
 
 /// Moves unread bytes to the front and reads more behind them; false at the end of the file.

@@ -31,7 +31,7 @@ class LineReader {
 
   [[nodiscard]] const std::filesystem::path& file() const { return _file; }
 
-  /// Fraction of the file that has been read, 0 to 1.
+  /// Fraction of the bytes of the file up to the end of the last line that was returned, 0 to 1.
   [[nodiscard]] double share() const;
 
  private:

@@ -146,14 +146,26 @@ std::string with_dots(std::string path) {
   return path;
 }
 
+/// True if every bracket of a path encloses an index behind a name, as in `a[0].b` and `a[0][1]`.
+bool has_whole_indices(std::string_view path) {
+  constexpr auto none = std::string_view::npos;
+  for (auto open = path.find_first_of("[]"); open != none; open = path.find_first_of("[]", open)) {
+    const auto close = path.find_first_not_of("0123456789", open + 1);
+    if (path[open] == ']' || close == none || close == open + 1 || path[close] != ']') return false;
+    open = close + 1;
+    if (open < path.size() && path[open] != '.' && path[open] != '[') return false;
+  }
+  return true;
+}
+
 std::vector<std::string> split_path(const std::string& path, const std::string& place) {
   std::vector<std::string> parts;
   std::istringstream stream(with_dots(path));
   for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
   const bool empty_part =
       std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.empty(); });
-  if (parts.empty() || empty_part || path.back() == '.') {
-    throw Failure(ExitCode::invalid_scene, place + ": the key is not of the form table.key");
+  if (parts.empty() || empty_part || path.back() == '.' || !has_whole_indices(path)) {
+    throw Failure(ExitCode::invalid_scene, place + ": the key is not of the form table.key or array[0].key");
   }
   return parts;
 }

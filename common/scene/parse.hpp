@@ -15,8 +15,9 @@ Node parse_file(const std::filesystem::path& file);
 /// Parses a text; `name` replaces the file name in errors.
 Node parse_text(std::string_view text, const std::string& name);
 
-/// Applies `key.path=value` to the document; a path may index an array (`part.0.radius`). The value
-/// is TOML; a bare word is a string. Throws `Failure` (invalid_scene) with `--set key.path=value: ...`.
+/// Applies `key.path=value` to the document; a path may index an array (`part[0].radius` or
+/// `part.0.radius`). The value is TOML; a bare word is a string. Throws `Failure` (invalid_scene) with `--set
+/// key.path=value: ...`.
 void apply_set(Node& document, const std::string& assignment);
 
 }  // namespace drogue::scene

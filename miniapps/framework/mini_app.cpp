@@ -72,7 +72,8 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
   const std::filesystem::path file = scene::find_scene(options.scene, folder);
   if (options.check || options.print_scene) {
     const std::unique_ptr<Scene> scene = app.read(file, options.set, options.baseline);
-    std::cout << (options.print_scene ? scene->print() : scene->check_report());
+    if (options.print_scene) std::cout << scene->print();
+    if (options.check && !options.quiet) std::cout << scene->check_report();
     return ExitCode::ok;
   }
   install_signal_handlers();

@@ -1,12 +1,30 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "common/program/signals.hpp"
 #include "perf/bisect/bisection.hpp"
+#include "perf/cases/cases.hpp"
 #include "perf/command/command.hpp"
+#include "perf/command/filter.hpp"
+#include "perf/profile/kernel_profile.hpp"
 
 namespace drogue::perf {
+namespace {
+
+/// Throws Failure(usage) with the nearest name for a case that this program does not have. Of a backend that
+/// cannot run here it has no cases, while the built programs may: then the kind alone is checked.
+void require_known(const std::string& name) {
+  if (missing_backend(name))
+    return require_name("kind of cases", name.substr(0, name.find('/')), case_kinds());
+  std::vector<Case> cases = all_cases(false);
+  std::ranges::move(all_cases(true), std::back_inserter(cases));
+  require_case(name, cases);
+}
+
+}  // namespace
 
 Command bisect_command(CLI::App& program) {
   const auto options = std::make_shared<BisectOptions>();
@@ -20,6 +38,7 @@ Command bisect_command(CLI::App& program) {
   app->add_option("--program", options->program, "Program that the build makes")->capture_default_str();
   return {app, [options](const std::vector<std::string>&) {
             install_signal_handlers();
+            require_known(options->name);
             bisect(*options);
             return ExitCode::ok;
           }};

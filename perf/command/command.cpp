@@ -1,5 +1,7 @@
 #include "perf/command/command.hpp"
 
+#include <algorithm>
+
 #include "common/program/program.hpp"
 #include "common/program/signals.hpp"
 #include "common/scene/nearest.hpp"
@@ -45,6 +47,15 @@ void require_name(const std::string& kind, const std::string& name, const std::v
     if (name == known) return;
   throw Failure(ExitCode::usage,
                 "there is no " + kind + " '" + name + "'; " + scene::suggestion(name, valid));
+}
+
+void require_case(const std::string& name, const std::vector<Case>& cases) {
+  if (std::ranges::find(cases, name, &Case::name) != cases.end()) return;
+  std::vector<std::string> names;
+  for (const Case& c : cases) names.push_back(c.name);
+  throw Failure(ExitCode::usage, "this drogue-perf has no case '" + name + "'" +
+                                     (scene::nearest(name, names) ? "; " + scene::suggestion(name, names)
+                                                                  : "; see drogue-perf list"));
 }
 
 }  // namespace drogue::perf

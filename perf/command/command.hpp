@@ -7,6 +7,7 @@
 
 #include "common/program/failure.hpp"
 #include "kernels/device/backend.hpp"
+#include "perf/measure/measurement.hpp"
 
 namespace drogue::perf {
 
@@ -46,5 +47,8 @@ void require_app(const std::string& app);
 
 /// Throws Failure(usage) with the nearest valid name if `name`, the name of a `kind`, is not in `valid`.
 void require_name(const std::string& kind, const std::string& name, const std::vector<std::string>& valid);
+
+/// Throws Failure(usage) with the nearest name if no case is called `name`.
+void require_case(const std::string& name, const std::vector<Case>& cases);
 
 }  // namespace drogue::perf

@@ -23,19 +23,15 @@ struct NcuOptions {
 
 /// Throws Failure(usage) with the nearest name for a case that this machine cannot run. Without a GPU the
 /// list of its cases is missing, and any size passes with a notice.
-void require_case(const std::string& name) {
+void require_case_on_cuda(const std::string& name) {
   if (!device::is_present(device::Backend::cuda)) {
     print_notice("drogue-perf", "this build or machine has no cases on cuda: only the kind of '" + name +
                                     "' is checked; drogue-perf list prints the names where ncu runs");
     return;
   }
-  std::vector<std::string> names;
-  for (const Case& c : all_cases(false))
-    if (c.on_device) names.push_back(c.name);
-  if (std::ranges::find(names, name) == names.end())
-    throw Failure(ExitCode::usage, "there is no case '" + name + "'" +
-                                       (scene::nearest(name, names) ? "; " + scene::suggestion(name, names)
-                                                                    : "; see drogue-perf list"));
+  std::vector<Case> cases = all_cases(false);
+  std::erase_if(cases, [](const Case& c) { return !c.on_device; });
+  require_case(name, cases);
 }
 
 ExitCode print_command(NcuOptions options) {
@@ -49,7 +45,7 @@ ExitCode print_command(NcuOptions options) {
                                          " is too much; a program and its arguments follow --command --");
     const std::string kernels = kernels_of_case(name);
     if (options.launches.kernels.empty()) options.launches.kernels = kernels;
-    require_case(name);
+    require_case_on_cuda(name);
     options.words = {std::filesystem::read_symlink("/proc/self/exe").string(), "run", "--filter",
                      "^" + name + "$"};
   }

@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <regex>
-#include <string_view>
 #include <utility>
 
 #include "common/program/signals.hpp"
@@ -63,18 +62,6 @@ std::optional<std::string> mistyped_kind(const std::string& filter) {
   const std::vector<std::string> kinds = case_kinds();
   if (std::ranges::any_of(kinds, [&](const std::string& valid) { return valid.ends_with(kind); })) return {};
   return scene::nearest(kind, kinds);
-}
-
-/// Reason why a backend that a filter names between slashes cannot run here.
-std::optional<std::string> missing_backend(const std::string& filter) {
-  constexpr std::string_view separators = "/^$|()";
-  for (std::size_t begin = 0; begin < filter.size();) {
-    const std::size_t end = std::min(filter.find_first_of(separators, begin), filter.size());
-    if (const auto backend = device::backend_from_name(filter.substr(begin, end - begin)))
-      if (const auto reason = device::why_unavailable(*backend)) return reason;
-    begin = end + 1;
-  }
-  return {};
 }
 
 Failure no_case(const RunOptions& options, const std::regex& filter) {

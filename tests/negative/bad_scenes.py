@@ -125,6 +125,8 @@ BAD_SETS = [
     (["mesh.cells.x=1"], ["mesh.cells is 100, not a table"]),
     (["output.times=[0.1,0.05]"], ["not greater"]),
     (["nothing=1"], ['"nothing"']),
+    (["gas[gamma=1.5"], ["the key is not of the form table.key"]),
+    (["gas]gamma=1.5"], ["the key is not of the form table.key"]),
     (["initial.riemann.left.rho=-1"], ["> 0"]),
     (["initial.expression={rho=\"x\",p=\"1\"}", "verify={}"], ["rho = -0.99", "cell 0"]),
     (["tuning.kernel.block=128"], ["tuning.kernel"]),

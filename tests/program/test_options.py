@@ -4,6 +4,7 @@
 import csv
 import json
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -29,6 +30,12 @@ class CommandLine(options_program.OptionsTest):
         names = sorted(path.stem for path in options_program.BATCHES.glob("*.csv"))
         self.assertEqual(names, [line.split()[0] for line in self.expect(0, "--list-batches").stdout.splitlines()])
         self.assertEqual([], self.names())
+
+    def test_terminal_shows_the_share_of_the_rows_that_are_priced(self):
+        self.write(batch([row(i) for i in range(320)]))
+        shown = self.terminal("price", "batch.csv", "--backend", "serial", "--chunk", "16", *FAST)
+        first = re.search(r"(\d+) rows \((\d+) %\)", shown)
+        self.assertEqual(("16", "5"), first.groups(), shown)
 
     def test_rejects_invalid_command_lines(self):
         cases = {

@@ -7,6 +7,7 @@ import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
+import gas_program
 import perf_program
 
 CASE = "gas-step/serial/1024"
@@ -86,11 +87,22 @@ class Bisect(perf_program.PerfTest):
 
     def test_refuses_unknown_cases_and_commits(self):
         self.commit(["1e-3 0.5", "2e-3 0.5"])
-        self.assertIn(f'did you mean "{CASE}"?', self.bisect(2, "HEAD~1", "HEAD", "gas-step/serial/1025").stderr)
+        self.assertIn("there is no case 'gas-step/serial/8192' at 'HEAD~1'",
+                      self.bisect(2, "HEAD~1", "HEAD", "gas-step/serial/8192").stderr)
         self.assertIn("there is no commit 'HEAD~7' in 'history'", self.bisect(2, "HEAD~7", "HEAD").stderr)
         self.assertIn("is no ancestor of BAD", self.bisect(2, "HEAD", "HEAD~1").stderr)
         self.assertIn("does not make 'program' of 'HEAD~1'", self.bisect(6, "HEAD~1", "HEAD", build="true").stderr)
         self.assertIn("is in no git repository", self.expect(2, "bisect", CASE, "a", "b", "--repository", "/").stderr)
+
+    def test_refuses_unknown_cases_before_it_builds(self):
+        self.commit(["1e-3 0.5", "2e-3 0.5"])
+        for case, words in (("gas-step/serial/1025", f'no case \'gas-step/serial/1025\'; did you mean "{CASE}"?'),
+                            ("NOSUCHCASE", "no case 'NOSUCHCASE'; see drogue-perf list"),
+                            ("gas-stop/cuda/8192", '"gas-step"')):
+            self.assertIn(words, self.bisect(2, "HEAD~1", "HEAD", case, build="false").stderr)
+        # Backends that this machine lacks may be those of the built programs.
+        if "cuda" not in gas_program.backends():
+            self.bisect(6, "HEAD~1", "HEAD", "gas-step/cuda/8192", build="false")
 
 
 if __name__ == "__main__":

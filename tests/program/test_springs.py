@@ -50,6 +50,12 @@ class CommandLine(springs_program.SpringsTest):
                 again = self.write(printed, "printed.toml")
                 self.assertEqual(printed, self.expect(0, again, "--print-scene").stdout)
 
+    def test_quiet_checks_print_no_quality_of_the_mesh(self):
+        self.assertIn("triangles", self.expect(0, "drum", "--check").stdout)
+        done = self.expect(0, "drum", "--check", "--quiet")
+        self.assertEqual(("", ""), (done.stdout, done.stderr))
+        self.assertIn("[mesh]", self.expect(0, "drum", "--print-scene", "--quiet").stdout)
+
     def test_reports_usage_errors(self):
         for words in (["drumm"], ["drum", "extra"], ["drum", "--backend", "gpu"], ["drum", "--study", "meshes=1:2"], []):
             with self.subTest(words):

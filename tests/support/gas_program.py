@@ -4,6 +4,7 @@ import functools
 import json
 import os
 import pathlib
+import pty
 import re
 import subprocess
 import tempfile
@@ -83,6 +84,25 @@ class GasTest(unittest.TestCase):
         self.assertEqual(code, process.returncode, f"{process.args}\n{process.stderr}")
         self.assertEqual(0 if code == 0 else 1, len(process.stderr.splitlines()), process.stderr)
         return process
+
+    def terminal(self, scene, *words, sets=()):
+        """Output of a run on a terminal, which must end with exit code 0."""
+        master, slave = pty.openpty()
+        process = subprocess.Popen(arguments(scene, *words, sets=sets, program=self.program), cwd=self.folder, env=ENVIRONMENT,
+                                   stdout=slave, stderr=slave)
+        os.close(slave)
+        shown = b""
+        while True:
+            try:
+                part = os.read(master, 4096)
+            except OSError:  # Linux reports the closed terminal as an error
+                break
+            if not part:
+                break
+            shown += part
+        os.close(master)
+        self.assertEqual(0, process.wait(), shown)
+        return shown.decode()
 
     def result(self, directory):
         return result(self.folder / directory)

@@ -30,7 +30,7 @@ class BatchReader {
   /// Index in a line of each column of `columns_of(kind)`, -1 for an absent one.
   [[nodiscard]] const std::vector<int>& columns() const { return _columns; }
 
-  /// Fraction of the file that has been read, 0 to 1.
+  /// Fraction of the bytes of the file up to the end of the last row read, 0 to 1.
   [[nodiscard]] double share() const { return _lines.share(); }
 
   /// Number of rows read.

@@ -27,6 +27,13 @@ bool ChunkSource::next(Chunk& chunk) {
   return _reader.next(chunk, next_row_count());
 }
 
+double ChunkSource::share(const RowCounts& written) const {
+  if (_reader.rows() == 0) return 0.0;
+  const std::int64_t invalid = written.invalid_inputs();
+  const double priced = static_cast<double>(written.rows - invalid) / static_cast<double>(_contracts_per_row);
+  return _reader.share() * (static_cast<double>(invalid) + priced) / static_cast<double>(_reader.rows());
+}
+
 std::size_t ChunkSource::next_row_count() const {
   const std::size_t rows = std::max<std::size_t>(_contracts / _contracts_per_row, 1);
   const double share = _reader.share();

@@ -2,6 +2,7 @@
 
 #include "miniapps/options/command.hpp"
 #include "miniapps/options/input/batch_reader.hpp"
+#include "miniapps/options/output/result_batch.hpp"
 
 namespace drogue::options_app {
 
@@ -19,8 +20,9 @@ class ChunkSource {
   /// Adapts the chunk size to the wall time, s, of a chunk of `rows` rows.
   void adapt(std::int64_t rows, double seconds);
 
-  /// Fraction of the file that has been read, 0 to 1.
-  [[nodiscard]] double share() const { return _reader.share(); }
+  /// Fraction of the batch that `written` rows of the output are of, 0 to 1. The rows that are not read yet
+  /// are taken to be as long as the others. Does not throw.
+  [[nodiscard]] double share(const RowCounts& written) const;
 
  private:
   [[nodiscard]] std::size_t next_row_count() const;

@@ -16,6 +16,9 @@ struct RowCounts {
   std::int64_t invalid_line = 0, failed_line = 0;  ///< line number in the input
   std::string invalid_message;
 
+  /// Number of invalid input rows. Does not throw.
+  [[nodiscard]] std::int64_t invalid_inputs() const { return invalid - invalid_points; }
+
   /// Adds the counts of rows that follow in the output.
   void add(const RowCounts& later);
 };

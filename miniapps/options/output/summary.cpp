@@ -24,16 +24,14 @@ std::string fraction(std::int64_t number, std::int64_t all, const char* noun) {
 // A surface may have invalid parameter sets, which are input rows, and invalid points of valid sets, which
 // are output rows. Each invalid set has one output row.
 
-std::int64_t invalid_sets(const RowCounts& counts) { return counts.invalid - counts.invalid_points; }
-
-std::int64_t points(const RowCounts& counts) { return counts.rows - invalid_sets(counts); }
+std::int64_t points(const RowCounts& counts) { return counts.rows - counts.invalid_inputs(); }
 
 std::string invalid_part_of_surface(const RowCounts& counts, std::int64_t sets) {
-  const std::string of_sets = fraction(invalid_sets(counts), sets, " parameter sets"),
+  const std::string of_sets = fraction(counts.invalid_inputs(), sets, " parameter sets"),
                     of_points = fraction(counts.invalid_points, points(counts), " prices");
-  return (counts.invalid_points == 0  ? of_sets
-          : invalid_sets(counts) == 0 ? of_points
-                                      : of_sets + " and " + of_points) +
+  return (counts.invalid_points == 0     ? of_sets
+          : counts.invalid_inputs() == 0 ? of_points
+                                         : of_sets + " and " + of_points) +
          " invalid";
 }
 
@@ -45,7 +43,7 @@ void print_summary(const Command& command, const run::ResultDocument& result, co
   std::snprintf(time, sizeof time, " in %.3g s: ", result.timing.wall_s);
   std::string text = result.scene + " on " + result.backend + ": ";
   if (command.action == Action::surface)
-    text += counted(input_rows, " parameter sets") + time + counted(invalid_sets(counts), " invalid; ") +
+    text += counted(input_rows, " parameter sets") + time + counted(counts.invalid_inputs(), " invalid; ") +
             counted(points(counts), " prices: ") + counted(ok_rows(counts), " ok, ") +
             counted(counts.coarse, " coarse, ") + counted(counts.invalid_points, " invalid, ");
   else

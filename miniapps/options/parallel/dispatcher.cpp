@@ -108,7 +108,7 @@ void Dispatcher::write_in_order() {
     _open.pop_front();
     ++_first_chunk;
   }
-  _progress.update_rows(_outputs.counts().rows, _source.share());
+  _progress.update_rows(_outputs.counts().rows, _source.share(_outputs.counts()));
 }
 
 void Dispatcher::note_finished(std::size_t worker, const ResultBatch& batch) {

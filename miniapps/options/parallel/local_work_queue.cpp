@@ -17,7 +17,7 @@ void LocalWorkQueue::submit(ResultBatch batch) {
   _outputs.write(batch);
   _rows += batch.counts.rows;
   if (batch.ends_chunk) _source.adapt(std::exchange(_rows, 0), batch.chunk_seconds);
-  _progress.update_rows(_outputs.counts().rows, _source.share());
+  _progress.update_rows(_outputs.counts().rows, _source.share(_outputs.counts()));
 }
 
 }  // namespace drogue::options_app

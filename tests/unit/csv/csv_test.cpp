@@ -175,6 +175,17 @@ TEST(CsvLines, CountsLinesAndStripsTheirEnds) {
   EXPECT_EQ(reader.share(), 1.0);
 }
 
+TEST(CsvLines, ShareEndsAtTheLastLineReturned) {
+  const CsvFile file("one\ntwo\nsix\nten\n");
+  LineReader reader(file.path());
+  Line line;
+  EXPECT_EQ(reader.share(), 0.0);
+  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+    ASSERT_TRUE(reader.next(line));
+    EXPECT_EQ(reader.share(), share) << line.text;
+  }
+}
+
 /// Lines that end at and near the ends of the read blocks.
 TEST(CsvLines, ReadsLinesAcrossBufferBlocks) {
   std::string content;

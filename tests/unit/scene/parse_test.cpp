@@ -56,7 +56,8 @@ TEST(Parse, ReportsUnreadableFilesAsUsageErrors) {
 }
 
 Node with_set(const std::string& assignment) {
-  Node root = parse_text("[gas]\ngamma = 1.4\n[a]\nlist = [1, 2]\n[[b]]\nc = 1\n", "f.toml");
+  Node root =
+      parse_text("[gas]\ngamma = 1.4\n[a]\nlist = [1, 2]\nrows = [[1], [2]]\n[[b]]\nc = 1\n", "f.toml");
   apply_set(root, assignment);
   return root;
 }
@@ -68,7 +69,11 @@ TEST(Set, ReplacesAndAddsValues) {
   EXPECT_EQ(*with_set("scheme.weno=\"js\"").find("scheme")->find("weno")->as<std::string>(), "js");
   EXPECT_EQ(with_set("x.y.z=[1, 2]").find("x")->find("y")->find("z")->as<Node::Array>()->size(), 2U);
   EXPECT_EQ(*(*with_set("a.list.1=7").find("a")->find("list")->as<Node::Array>())[1].as<std::int64_t>(), 7);
-  EXPECT_EQ(*(*with_set("b.0.c=9").find("b")->as<Node::Array>())[0].find("c")->as<std::int64_t>(), 9);
+  for (const char* each : {"b.0.c=9", "b[0].c=9"})
+    EXPECT_EQ(*(*with_set(each).find("b")->as<Node::Array>())[0].find("c")->as<std::int64_t>(), 9) << each;
+  const Node nested = with_set("a.rows[1][0]=7");
+  EXPECT_EQ(
+      *(*(*nested.find("a")->find("rows")->as<Node::Array>())[1].as<Node::Array>())[0].as<std::int64_t>(), 7);
 }
 
 TEST(Set, ReportsTheAssignmentInError) {
@@ -80,6 +85,14 @@ TEST(Set, ReportsTheAssignmentInError) {
   }
   EXPECT_EQ(with_set("gas.gamma=2").as<Node::Table>()->front().node.as<Node::Table>()->front().origin,
             "--set gas.gamma=2");
+}
+
+TEST(Set, RejectsBracketsThatEncloseNoIndex) {
+  for (const std::string bad :
+       {"b[0.c=9", "b[0=9", "b[=9", "b0].c=9", "b[].c=9", "b[0]c=9", "b[0]].c=9", "b[[0]].c=9", "b[-1].c=9",
+        "b[x].c=9", "b.[0].c=9", "[0].c=9", "gas[gamma=2", "gas]gamma=2", "gas[gamma]=2", "gas[a=[0, 1]"})
+    EXPECT_EQ(thrown_by([&] { with_set(bad); }),
+              "--set " + bad + ": the key is not of the form table.key or array[0].key");
 }
 
 TEST(Node, PrintedTextReadsBack) {
