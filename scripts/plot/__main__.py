@@ -6,6 +6,8 @@ import os
 import sys
 from pathlib import Path
 
+from .program import run_program
+
 _NEEDED = ("numpy", "matplotlib", "h5py", "PIL")
 
 
@@ -34,4 +36,4 @@ def _run_with_packages() -> int:
     return 2
 
 
-sys.exit(_run_with_packages())
+sys.exit(run_program(_run_with_packages))

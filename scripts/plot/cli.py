@@ -3,6 +3,7 @@
 import argparse
 import difflib
 import importlib.util
+import math
 import os
 import re
 import subprocess
@@ -10,6 +11,7 @@ import sys
 from pathlib import Path
 
 from .failure import INVALID, OK, USAGE, Failure
+from .program import require_one_rank, write_line
 
 SPACE_TIME_SNAPSHOTS = 8  # smallest number of snapshots for a space-time map
 
@@ -17,7 +19,7 @@ SPACE_TIME_SNAPSHOTS = 8  # smallest number of snapshots for a space-time map
 def _version() -> str:
     folder = Path(__file__).resolve().parent
     git = subprocess.run(
-        ["git", "-C", str(folder), "rev-parse", "--short", "HEAD"],
+        ["git", "-C", str(folder), "rev-parse", "--short=12", "HEAD"],
         capture_output=True,
         text=True,
         check=False,
@@ -41,6 +43,9 @@ def _version() -> str:
 class _Parser(argparse.ArgumentParser):
     def error(self, message):
         raise Failure(USAGE, f"{message}; drogue-plot --help lists the options.")
+
+    def print_help(self, file=None):
+        write_line(self.format_help().rstrip("\n"))
 
 
 def arguments(words: list[str]) -> argparse.Namespace:
@@ -79,6 +84,8 @@ def arguments(words: list[str]) -> argparse.Namespace:
         parser.error("the run directory is missing")
     if not 20 <= options.dpi <= 1200:
         parser.error(f"--dpi {options.dpi} is outside 20 to 1200")
+    if options.time is not None and not math.isfinite(options.time):
+        parser.error(f"--time {options.time} is not finite")
     return options
 
 
@@ -279,13 +286,14 @@ def main(words: list[str] | None = None) -> int:
     try:
         options = arguments(sys.argv[1:] if words is None else words)
         if options.version:
-            print(_version())
+            write_line(_version())
             return OK
+        require_one_rank()
         drawn = 0
         for file in draw(options):
             drawn += 1
             if not options.quiet:
-                print(file)
+                write_line(str(file))
         if drawn == 0:
             raise Failure(
                 USAGE, f"{options.directory} holds nothing to draw: no fields, and too short a history."

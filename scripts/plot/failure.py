@@ -4,6 +4,7 @@ OK = 0
 USAGE = 2
 INVALID = 3  # an invalid record; its sentence begins with FILE:LINE
 IO_ERROR = 6
+INTERRUPTED = 130
 
 
 class Failure(Exception):

@@ -9,6 +9,7 @@ from PIL import Image
 
 from . import style
 from .failure import IO_ERROR, Failure
+from .program import at_signal
 from .style import plt
 
 
@@ -76,11 +77,11 @@ def _write_mp4(file: Path, frames: list[np.ndarray]) -> None:
         "-s", f"{width}x{height}", "-r", str(rate), "-i", "-", "-pix_fmt", "yuv420p", str(file),
     ]  # fmt: skip
     stream = b"".join(pixels.tobytes() for pixels in frames)
-    done = subprocess.run(command, input=stream, capture_output=True, check=False)
-    if done.returncode != 0:
-        raise Failure(
-            IO_ERROR, f"ffmpeg could not write {file}: {done.stderr.decode().strip().splitlines()[-1]}."
-        )
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as ffmpeg:
+        at_signal.append(ffmpeg.kill)
+        errors = ffmpeg.communicate(stream)[1]
+    if ffmpeg.returncode != 0:
+        raise Failure(IO_ERROR, f"ffmpeg could not write {file}: {errors.decode().strip().splitlines()[-1]}.")
 
 
 def write(file: Path, frames) -> Path:

@@ -14,6 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: 
 from PIL import Image  # noqa: E402
 
 from .failure import IO_ERROR, Failure  # noqa: E402
+from .program import at_signal  # noqa: E402
 
 # Okabe and Ito (2008), ordered such that neighbours also differ in lightness.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#5B4A9C", "#7A7A7A")
@@ -175,14 +176,17 @@ def decimate(x: np.ndarray, y: np.ndarray, buckets: int = 2000) -> tuple[np.ndar
 def write_atomically(file: Path, write) -> Path:
     """Calls write(temporary file) and renames it to `file`, which is returned; raises Failure (IO_ERROR)."""
     temporary = file.with_name(f".{file.stem}.{os.getpid()}{file.suffix}")
+    at_signal.append(temporary.unlink)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         write(temporary)
         temporary.replace(file)
     except OSError as error:
+        raise Failure(IO_ERROR, f"{file} cannot be written: {error.strerror or error}.") from None
+    finally:
+        # It is still there after any failure.
         with contextlib.suppress(OSError):
             temporary.unlink()
-        raise Failure(IO_ERROR, f"{file} cannot be written: {error.strerror or error}.") from None
     return file
 
 

@@ -249,6 +249,9 @@ class Refusals(unittest.TestCase):
         self._refused(2, ["--colour"], self.folder, "--colour")
         self._refused(2, ["jpeg"], self.folder, "--format", "jpeg")
         self._refused(2, ["20 to 1200"], self.folder, "--dpi", "5")
+        run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
+        for time in ("nan", "inf", "-inf", "1e999"):
+            self._refused(2, ["--time", "not finite"], run, f"--time={time}")
 
     def test_rejects_unknown_field_with_nearest_name(self):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)

@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..failure import IO_ERROR, OK, USAGE, Failure
+from ..failure import INTERRUPTED, IO_ERROR, OK, USAGE, Failure
 from ..style import check_label
 from . import options, pictures
 from .page import write_page
@@ -29,7 +29,6 @@ APPS = (
     App("drogue-parachute", "Flow and parachutes"),
 )
 OPTIONS = App("drogue-options", "Options")
-INTERRUPTED = 130
 LAST = "c9-flat"  # an opening parachute
 # Scenes like others that are shown, of half a minute and more each.
 SLOW = {

@@ -8,6 +8,7 @@ from statistics import median
 from markupsafe import Markup
 
 from .. import html_page
+from ..program import at_signal
 from . import page
 from .perf_record import STATED, Machine, Record
 from .records import Evidence
@@ -130,7 +131,9 @@ def write(evidence: Evidence, file: Path, dpi: int) -> Path:
     count = len(evidence.everything)
     timed = [record for record in evidence.everything if record.kind not in STATED]
     machines = [(machine, _samples_tables(own, count)) for machine, own in _by_machine(timed).items()]
-    with tempfile.TemporaryDirectory() as folder:
+    temporary = tempfile.TemporaryDirectory()
+    at_signal.append(temporary.cleanup)
+    with temporary as folder:
         pictures = page.Pictures(Path(folder), dpi)
         apps = []
         for app in evidence.apps:
