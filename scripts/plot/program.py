@@ -15,7 +15,7 @@ def _number(name: str) -> int | None:
 
 
 def launched_rank() -> tuple[int, int]:
-    """Rank and number of ranks from the environment of a launcher, as `launched_rank()` of common/program reads them."""
+    """Rank and number of ranks by the environment of a launcher, as `launched_rank()` of common/program reads them."""
     launchers = (
         ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"),
         ("PMI_RANK", "PMI_SIZE"),

@@ -87,7 +87,9 @@ class Signals(ProgramTest):
 
     def test_signal_ends_the_program_where_python_loses_exceptions(self):
         self.interrupted("class Item:\n    __del__ = lambda self: end()\ndef body():\n    Item()\n    time.sleep(60)\n")
-        self.interrupted("def body():\n    try:\n        end()\n    except BaseException:\n        raise ImportError('no')\n")
+        self.interrupted(
+            "def body():\n    try:\n        end()\n    except BaseException:\n        raise ImportError('no')\n"
+        )
 
     def interrupted(self, body):
         """Runs the code of a function `body`, in which end() sends a signal to its own process."""
