@@ -1,6 +1,7 @@
 #include "miniapps/parachute/scene/functions.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "common/expression/compile.hpp"
 #include "common/program/thread_parts.hpp"
@@ -46,6 +47,13 @@ Lattice lattice_of(const flow::Parameters& parameters, flow::StateField field) {
     lattice.first[axis] = parameters.low[axis] + (on_faces ? 0.0 : 0.5 * h);
   }
   return lattice;
+}
+
+std::string place_text(const std::array<double, 3>& place) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "(" << place[0] << ", " << place[1] << ", " << place[2] << ")";
+  return text.str();
 }
 
 std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& lattice, double time) {

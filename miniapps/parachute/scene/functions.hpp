@@ -55,6 +55,9 @@ struct Lattice {
 /// Points of the array `field`, coordinates in m. Does not throw.
 [[nodiscard]] Lattice lattice_of(const flow::Parameters& parameters, flow::StateField field);
 
+/// "(x, y, z)" of a place, m. Throws only std::bad_alloc.
+[[nodiscard]] std::string place_text(const std::array<double, 3>& place);
+
 /// Array of the velocity component along `axis`. Does not throw.
 [[nodiscard]] inline flow::StateField velocity_field(std::size_t axis) {
   return static_cast<flow::StateField>(static_cast<std::size_t>(flow::StateField::velocity_x) + axis);

@@ -26,12 +26,6 @@ constexpr double flux_tolerance = 1e-10;
 
 std::string key_of_wall(std::size_t side) { return std::string("grid.wall_velocity.") + side_names[side]; }
 
-std::string place_text(const std::array<double, 3>& place) {
-  std::string text;
-  for (const double x : place) text += (text.empty() ? "" : ", ") + real_text(x);
-  return "(" + text + ")";
-}
-
 void check_grid(const Table& root, const flow::Parameters& p) {
   double cells = 1.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -19,20 +19,13 @@ namespace {
 
 using fabric::Vector;
 
-std::string place_text(const std::array<double, 3>& place) {
-  std::ostringstream text;
-  text.precision(9);
-  text << "(" << place[0] << ", " << place[1] << ", " << place[2] << ") m";
-  return text.str();
-}
-
 /// Cell of an index whose x varies fastest, and its centre.
 std::string cell_text(const flow::Parameters& p, std::int64_t index) {
   const Lattice cells = lattice_of(p, flow::StateField::pressure);
   const auto centre = cells.place(static_cast<std::size_t>(index));
   std::ostringstream text;
   text << "cell (" << index % cells.n[0] << ", " << index / cells.n[0] % cells.n[1] << ", "
-       << index / cells.n[0] / cells.n[1] << ") at " << place_text(centre);
+       << index / cells.n[0] / cells.n[1] << ") at " << place_text(centre) << " m";
   return text.str();
 }
 
@@ -133,7 +126,7 @@ std::string Simulation::broken_line_text() {
     const auto found = std::ranges::find(lines, line);
     if (found == lines.end()) continue;
     text << "line " << found - lines.begin() << " of canopy[" << i << "] breaks at " << place_text(skirt)
-         << ": it carries more than canopy[" << i
+         << " m: it carries more than canopy[" << i
          << "].lines.strength = " << _scene.canopies[i].lines.strength.value_or(0.0)
          << " N in the step after " << now_text();
   }
@@ -177,7 +170,7 @@ std::string Simulation::leaving_vertex_text() {
       if (distance < least) least = distance, vertex = i, closest = side;
     }
   return leaving_part_text(vertex) + " at " + place_text(positions[vertex]) +
-         " comes closer than a cell to the side " + side_names[closest] + " after " + now_text() +
+         " m comes closer than a cell to the side " + side_names[closest] + " after " + now_text() +
          "; a larger grid.domain or a shorter run.end_time may save the run";
 }
 
