@@ -67,7 +67,8 @@ class Setting:
         self.area = nominal_area(scene["canopy"][0])
 
     def sample(self, row):
-        """Speed down, speed across and speed of the payload relative to the fluid, m/s; force against "down", N; force of the lines across and "up", N."""
+        """Speed down, speed across and speed of the payload relative to the fluid, m/s; force against "down", and force of the
+        lines across and "up", N."""
         velocity = [row[f"canopy_0_payload_velocity_{name}"] - self.stream[axis] for axis, name in enumerate(AXES)]
         lines = [row[f"canopy_0_line_force_{name}"] for name in AXES]
         return (self.sign * velocity[self.axis], self.across(velocity), math.hypot(*velocity),
@@ -104,8 +105,8 @@ def measures(means, setting, blockage):
     ratio = 1.0 + blockage * unit * setting.area / (speed**2 * setting.section)
     return {"down": down, "across": across, "glide": across / down,
             "lean": math.degrees(math.atan2(lines_across, lines_up)) if lines_across or lines_up else 0.0,
-            "drag": unit / down**2, "drag_by_speed": unit / speed**2, "ratio": ratio, "free_down": down * math.sqrt(ratio), "free_drag": unit / down**2 / ratio,
-            "free_drag_by_speed": unit / speed**2 / ratio}
+            "drag": unit / down**2, "drag_by_speed": unit / speed**2, "ratio": ratio, "free_down": down * math.sqrt(ratio),
+            "free_drag": unit / down**2 / ratio, "free_drag_by_speed": unit / speed**2 / ratio}
 
 
 def with_errors(blocks, measure):
@@ -145,8 +146,8 @@ def measure_run(folder, options):
 
 
 COLUMNS = (("m/s down", "down", 2), ("m/s across", "across", 2), ("glide ratio", "glide", 2), ("lean, degrees", "lean", 1),
-           ("C_D0 down", "drag", 3), ("C by speed", "drag_by_speed", 3), ("dynamic pressure", "ratio", 3), ("in free air: m/s down", "free_down", 2),
-           ("C_D0 down", "free_drag", 3), ("C by speed", "free_drag_by_speed", 3))
+           ("C_D0 down", "drag", 3), ("C by speed", "drag_by_speed", 3), ("dynamic pressure", "ratio", 3),
+           ("in free air: m/s down", "free_down", 2), ("C_D0 down", "free_drag", 3), ("C by speed", "free_drag_by_speed", 3))
 
 
 def main(words=None):

@@ -214,10 +214,10 @@ void check_slip(const Table& root, const FlowScene& scene) {
 
 void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   if (scene.bodies.empty()) return;
-  const flow::Parameters& p = scene.parameters;
+  const auto spacing = lattice_of(scene.parameters, flow::StateField::pressure).spacing;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     scene.bodies[i].slip = scene.bodies[i].slips();
-    scene.bodies[i].spacing = {cell_width(p, 0), cell_width(p, 1), cell_width(p, 2)};
+    scene.bodies[i].spacing = spacing;
     read_surface(root, scene, i);
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);

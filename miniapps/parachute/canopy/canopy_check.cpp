@@ -223,6 +223,7 @@ void check_overlaps(const Table& root, const FlowScene& scene, const std::vector
 void check_frame(const Table& root, const FlowScene& scene) {
   if (scene.frame != Frame::follow) return;
   const std::string follow = "grid.frame = \"follow\"";
+  if (scene.canopies.empty()) contradict(root, "grid.frame", follow + " applies only with a [[canopy]]");
   if (std::ranges::none_of(scene.open_axes(), [](bool open) { return open; }))
     contradict(root, "grid.frame",
                follow + " needs an axis whose sides are \"inflow\" or \"outflow\": the grid moves along it");
@@ -307,11 +308,7 @@ void check_and_place_canopies(const Table& root, std::vector<Canopy>& canopies) 
 }
 
 void check_canopies(const Table& root, const FlowScene& scene) {
-  if (scene.canopies.empty()) {
-    if (scene.frame == Frame::follow)
-      contradict(root, "grid.frame", "grid.frame = \"follow\" applies only with a [[canopy]]");
-    return;
-  }
+  if (scene.canopies.empty()) return check_frame(root, scene);
   const flow::Parameters& p = scene.parameters;
   std::vector<std::vector<Vector>> cloths, bodies;
   for (const Body& body : scene.bodies) bodies.push_back(sorted_by_x(mesh_of(body).rest));

@@ -9,9 +9,9 @@ FAMILY = SchemeFamily(
     app="parachute",
     scheme_fact="kernel",
     scheme_names={
-        "cbs43": "B-splines 4-3", "cbs43 inset 0.55": "B-splines 4-3, inset 0.55", "cbs43 defect 0.1": "B-splines 4-3, defect 0.1",
-        "cbs43 inset 0.55 defect 0.1": "B-splines 4-3, inset 0.55, defect 0.1", "cbs32": "B-splines 3-2",
-        "ib4": "four-point function",
+        "cbs43": "B-splines 4-3", "cbs43 inset 0.55": "B-splines 4-3, inset 0.55",
+        "cbs43 defect 0.1": "B-splines 4-3, defect 0.1", "cbs43 inset 0.55 defect 0.1": "B-splines 4-3, inset 0.55, defect 0.1",
+        "cbs32": "B-splines 3-2", "ib4": "four-point function",
     },
     settings=("time", "edge"),
     default_settings=("ab2 0.25", "0.7"),
@@ -32,7 +32,7 @@ FAMILY = SchemeFamily(
     },
     note="A C-9 opens from its flat cloth in a stream of 10 m/s, its payload fixed, in a box of 12 m by 12 m by 24 m. "
     "Impulse: momentum that it gives the air in the first second. Drag: mean from 1 to 2 s of highly porous cloth, which starts "
-    "nearly open and hardly breathes. Inset: of free edges, in cells; defect: weight of its running mean. Errors are relative to a solution on twice the cells "
-    "per axis of the finest grid with half the time step.",
+    "nearly open and hardly breathes. Inset: of free edges, in cells; defect: weight of its running mean. Errors are relative "
+    "to a solution on twice the cells per axis of the finest grid with half the time step.",
     target_errors=(1e-1, 3e-2, 1e-2),
 )  # fmt: skip
