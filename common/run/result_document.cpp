@@ -119,9 +119,18 @@ std::int64_t Metrics::integer(const std::string& group, const std::string& name)
   return 0;
 }
 
-bool ResultDocument::add_check(const std::string& name, double value, double tolerance) {
+std::string Check::measured() const {
+  if (!measurement) return {};
+  char text[96];
+  std::snprintf(text, sizeof text, "%.4g %s [%.4g, %.4g]", measurement->value, passed ? "in" : "not in",
+                measurement->lowest, measurement->highest);
+  return text;
+}
+
+bool ResultDocument::add_check(const std::string& name, double value, double tolerance,
+                               const std::optional<Measurement>& measurement) {
   const bool passed = std::abs(value) <= tolerance;  // false for NaN
-  checks.push_back({name, value, tolerance, passed});
+  checks.push_back({name, value, tolerance, passed, measurement});
   return passed;
 }
 
@@ -139,7 +148,7 @@ std::string ResultDocument::failed_check() const {
   else
     std::snprintf(text, sizeof text, "%s is %.6g, above its tolerance %.6g", failed->name.c_str(),
                   failed->value, failed->tolerance);
-  return text;
+  return failed->measurement && !std::isnan(failed->value) ? text + (": " + failed->measured()) : text;
 }
 
 ResultDocument new_result(const std::string& program, const std::string& scene) {

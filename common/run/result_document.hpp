@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -13,12 +14,23 @@
 
 namespace drogue::run {
 
+/// Measured quantity, and the interval in which its check passes; all three in the unit of the quantity.
+struct Measurement {
+  double value = 0.0;
+  double lowest = 0.0, highest = 0.0;
+};
+
 /// Verified quantity; passed if |value| <= tolerance.
 struct Check {
   std::string name;
   double value = 0.0;
   double tolerance = 0.0;
   bool passed = false;
+  /// Quantity whose deviation from a target is `value`. The summary of a run has it, result.json has not.
+  std::optional<Measurement> measurement = {};
+
+  /// Measurement as text: "3327 in [2670, 3560]" or "1551 not in [2670, 3560]"; empty without one.
+  [[nodiscard]] std::string measured() const;
 };
 
 /// Named numbers and names of a run, in groups. Each group becomes an object of result.json, in the order in
@@ -89,7 +101,8 @@ struct ResultDocument {
   }
 
   /// Adds a check. Returns true if it passed; NaN fails.
-  bool add_check(const std::string& name, double value, double tolerance);
+  bool add_check(const std::string& name, double value, double tolerance,
+                 const std::optional<Measurement>& measurement = {});
 
   /// One sentence on the first failed check; empty if all passed.
   [[nodiscard]] std::string failed_check() const;

@@ -145,8 +145,9 @@ class SceneRun {
                 _result.backend.c_str(), static_cast<long long>(_result.steps), _result.time,
                 _result.timing.wall_s, _app.summary ? _app.summary(_result).c_str() : "");
     for (const run::Check& check : _result.checks)
-      std::printf("  %-*s %.4g  (tolerance %.4g)  %s\n", static_cast<int>(width), check.name.c_str(),
-                  check.value, check.tolerance, check.passed ? "passed" : "FAILED");
+      std::printf("  %-*s %.4g  (tolerance %.4g)  %s%s\n", static_cast<int>(width), check.name.c_str(),
+                  check.value, check.tolerance, check.passed ? "passed" : "FAILED",
+                  check.measurement ? (": " + check.measured()).c_str() : "");
     std::printf("files in %s\n", _out.string().c_str());
   }
 

@@ -56,11 +56,6 @@ struct Target {
   double tolerance = 0.0;
 };
 
-/// Magnitude of the relative error of a value. Does not throw.
-[[nodiscard]] inline double relative_deviation(double value, const Target& target) {
-  return std::abs(value / target.value - 1.0);
-}
-
 /// Extreme velocity along a line, m/s, and optionally its coordinate, m.
 struct Extremum {
   double value = 0.0;

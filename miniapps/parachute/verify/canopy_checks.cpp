@@ -6,13 +6,14 @@
 #include "common/run/history_reader.hpp"
 #include "common/run/statistics.hpp"
 #include "miniapps/parachute/verify/force_history.hpp"
+#include "miniapps/parachute/verify/target.hpp"
 
 namespace drogue::parachute_app {
 
 void check_canopies(const Verify& wanted, const CanopyRecord& record, run::ResultDocument& result) {
   const auto check_mean = [&](const std::string& name, double value, const Target& target) {
     result.metrics.set("canopies", name, value);
-    result.add_check(name, relative_deviation(value, target), target.tolerance);
+    check_target(result, name, value, target);
   };
   for (std::size_t i = 0; i < wanted.drags.size(); ++i) {
     const CanopyMean& drag = wanted.drags[i];
@@ -44,7 +45,7 @@ void check_canopies(const Verify& wanted, const CanopyRecord& record, run::Resul
   // A value passes between two bounds if its distance from their mean is at most half of theirs.
   const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {
     result.metrics.set("canopies", name, value);
-    result.add_check(name, std::abs(value - 0.5 * (bounds[0] + bounds[1])), 0.5 * (bounds[1] - bounds[0]));
+    check_distance(result, name, value, 0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[1] - bounds[0]));
   };
   for (std::size_t i = 0; i < wanted.peak_forces.size(); ++i) {
     const CanopyPeak& peak = wanted.peak_forces[i];
@@ -67,9 +68,7 @@ void check_oscillations(const Verify& checks, const run::RunDirectory* directory
     const std::vector<double>& place = history.at(wanted.column);
     const auto check = [&](const std::string& name, double value, const std::optional<Target>& target) {
       result.metrics.set("oscillations", name + "_" + std::to_string(i), value);
-      if (target)
-        result.add_check(name + "_of_oscillation_" + std::to_string(i), relative_deviation(value, *target),
-                         target->tolerance);
+      if (target) check_target(result, name + "_of_oscillation_" + std::to_string(i), value, *target);
     };
     check("frequency", frequency_from(time, place, wanted.from), wanted.frequency);
     check("amplitude", amplitude_from(time, place, wanted.from), wanted.amplitude);

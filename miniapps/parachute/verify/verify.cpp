@@ -10,6 +10,7 @@
 #include "miniapps/parachute/verify/profile.hpp"
 #include "miniapps/parachute/verify/row_interpolation.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
+#include "miniapps/parachute/verify/target.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -113,20 +114,17 @@ void Simulation::check_totals(run::ResultDocument& result) {
   if (wanted.speed_growth)
     result.add_check("speed_growth", std::max(_statistics.speed_growth(), 0.0), *wanted.speed_growth);
   if (wanted.kinetic_energy)
-    result.add_check("kinetic_energy", relative_deviation(totals.kinetic_energy, *wanted.kinetic_energy),
-                     wanted.kinetic_energy->tolerance);
+    check_target(result, "kinetic_energy", totals.kinetic_energy, *wanted.kinetic_energy);
   if (wanted.dissipation_peak) {
     const DissipationPeak& peak = *wanted.dissipation_peak;
-    result.add_check("dissipation_peak", relative_deviation(_statistics.peak_dissipation(), peak.target),
-                     peak.target.tolerance);
+    check_target(result, "dissipation_peak", _statistics.peak_dissipation(), peak.target);
     if (peak.time)
-      result.add_check("dissipation_peak_time", std::abs(_statistics.peak_time() - *peak.time),
-                       *peak.time_tolerance);
+      check_distance(result, "dissipation_peak_time", _statistics.peak_time(), *peak.time,
+                     *peak.time_tolerance);
   }
   for (std::size_t i = 0; i < wanted.flow_rates.size(); ++i) {
     const FlowRate& rate = wanted.flow_rates[i];
-    result.add_check("flow_rate_" + std::to_string(i),
-                     relative_deviation(totals.outflow[rate.side], rate.target), rate.target.tolerance);
+    check_target(result, "flow_rate_" + std::to_string(i), totals.outflow[rate.side], rate.target);
   }
 }
 
@@ -137,8 +135,7 @@ void Simulation::check_forces(run::ResultDocument& result) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const double force =
         forces[static_cast<std::size_t>(wanted[i].body)][static_cast<std::size_t>(wanted[i].axis)];
-    result.add_check("force_" + std::to_string(i), relative_deviation(force, wanted[i].target),
-                     wanted[i].target.tolerance);
+    check_target(result, "force_" + std::to_string(i), force, wanted[i].target);
   }
 }
 
@@ -153,8 +150,7 @@ void Simulation::check_force_history(const run::RunDirectory* directory, run::Re
       const ForceWindow& window = windows[i];
       const double value = measure(history.at(force_column(window.body, window.axis)), window);
       result.metrics.set("forces", name + "_" + std::to_string(i), value);
-      result.add_check(name + "_" + std::to_string(i), relative_deviation(value, window.target),
-                       window.target.tolerance);
+      check_target(result, name + "_" + std::to_string(i), value, window.target);
     }
   };
   check("mean_force", wanted.mean_forces, [&](const std::vector<double>& force, const ForceWindow& window) {
@@ -199,9 +195,8 @@ void Simulation::check_profiles(run::ResultDocument& result) {
     const auto check = [&](const std::string& which, const std::optional<Extremum>& wanted, double sign) {
       if (!wanted) return;
       const auto [where, value] = line.maximum(sign);
-      result.add_check(name + which, std::abs(value - wanted->value), wanted->tolerance);
-      if (wanted->at)
-        result.add_check(name + which + "_at", std::abs(where - *wanted->at), *wanted->at_tolerance);
+      check_distance(result, name + which, value, wanted->value, wanted->tolerance);
+      if (wanted->at) check_distance(result, name + which + "_at", where, *wanted->at, *wanted->at_tolerance);
     };
     check("_minimum", profile.minimum, -1.0);
     check("_maximum", profile.maximum, 1.0);

@@ -135,6 +135,16 @@ TEST(ResultDocument, ChecksPassUpToTheirTolerance) {
   EXPECT_EQ(result.failed_check(), "above is 2.5, above its tolerance 2");
 }
 
+TEST(ResultDocument, ChecksReportTheirMeasurements) {
+  ResultDocument result;
+  result.add_check("force", 0.5, 1.0, Measurement{2.5, 1.0, 3.0});
+  result.add_check("energy", 0.5, 1.0);
+  EXPECT_EQ(result.checks[0].measured(), "2.5 in [1, 3]");
+  EXPECT_EQ(result.checks[1].measured(), "");
+  result.add_check("speed", 1.5, 1.0, Measurement{0.5, 1.0, 3.0});
+  EXPECT_EQ(result.failed_check(), "speed is 1.5, above its tolerance 1: 0.5 not in [1, 3]");
+}
+
 TEST(ResultDocument, HoldsBuildFactsAndPeakMemory) {
   const test::TemporaryDirectory directory;
   write_result(directory / "result.json", new_result("drogue-gas", "sod"));
