@@ -84,11 +84,14 @@ def _write_mp4(file: Path, frames: list[np.ndarray]) -> None:
         raise Failure(IO_ERROR, f"ffmpeg could not write {file}: {errors.decode().strip().splitlines()[-1]}.")
 
 
-def write(file: Path, frames) -> Path:
-    """Writes frames of equal size, (height, width, 3) bytes each, to a .gif or .mp4 file; returns `file`.
+def write(stem: Path, formats: tuple[str, ...], frames):
+    """Generator of the paths of movies, `stem` with the suffix of each format, of the same frames.
 
-    Raises Failure (IO_ERROR) if the file cannot be written.
+    Frames are of equal size, (height, width, 3) bytes each. Raises Failure (IO_ERROR) if a file cannot be written.
     """
     frames = list(frames)
-    writer = _write_gif if file.suffix == ".gif" else _write_mp4
-    return style.write_atomically(file, lambda temporary: writer(temporary, frames))
+    writers = {"gif": _write_gif, "mp4": _write_mp4}
+    for suffix in formats:
+        yield style.write_atomically(
+            stem.with_name(f"{stem.name}.{suffix}"), lambda temporary: writers[suffix](temporary, frames)
+        )

@@ -1,16 +1,18 @@
 """Figures of synthetic runs of drogue-parachute with canopies and bodies."""
 
 import shutil
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
 import h5py
+import imageio_ffmpeg
 import numpy as np
 from matplotlib.patches import Circle
 from matplotlib.text import Text
-from PIL import Image
+from PIL import Image, ImageSequence
 from plot import cli, shading, style
 from plot.flow.plane import plane_of
 from plot.flow.quantities import quantities
@@ -70,6 +72,26 @@ class CanopyPictures(unittest.TestCase):
                 self.assertEqual({"fields.png", "fields.gif", "history.png", "canopies.png"}, names)
                 with Image.open(run / "fields.gif") as movie:
                     self.assertEqual(3, movie.n_frames)
+
+    def frames_of(self, run, *words):
+        """Frames (height, width, 3) of the GIF of a run."""
+        self.assertEqual(0, cli.main([str(run), "--quiet", "--dpi", "40", *words]))
+        with Image.open(run / "fields.gif") as movie:
+            return [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(movie)]
+
+    def test_movie_both_writes_equal_frames_as_gif_and_mp4(self):
+        path = write_canopies(self.folder / "run")
+        frames = self.frames_of(path, "--movie", "both")
+        raw = subprocess.run(
+            [imageio_ffmpeg.get_ffmpeg_exe(), "-loglevel", "error", "-i", path / "fields.mp4", "-f", "rawvideo",
+             "-pix_fmt", "rgb24", "-"], capture_output=True, check=True,
+        ).stdout  # fmt: skip
+        decoded = np.frombuffer(raw, np.uint8).reshape(-1, *frames[0].shape).astype(int)
+        self.assertEqual(len(frames), len(decoded))
+        differences = [[np.abs(a - b).mean() for b in decoded] for a in frames]
+        for k, row in enumerate(differences):
+            self.assertLess(row[k], 3)
+            self.assertEqual(k, int(np.argmin(row)))
 
     def test_cloth_drop_is_drawn_without_a_flow(self):
         folder = write_cloth_drop(self.folder / "drop")
