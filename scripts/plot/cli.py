@@ -14,6 +14,7 @@ from .failure import INVALID, OK, USAGE, Failure
 from .program import require_one_rank, write_line
 
 SPACE_TIME_SNAPSHOTS = 8  # smallest number of snapshots for a space-time map
+_MOVIES = {"gif": ("gif",), "mp4": ("mp4",), "both": ("gif", "mp4"), "none": ()}  # formats by the word of --movie
 
 
 def _version() -> str:
@@ -67,7 +68,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
         "--format", choices=("png", "pdf", "svg"), default="png", help="kind of the still pictures"
     )
     parser.add_argument(
-        "--movie", choices=("gif", "mp4", "none"), default="gif", help="kind of the moving picture"
+        "--movie", choices=_MOVIES, default="gif", help="kind of the moving picture; both: GIF and MP4 (default: gif)"
     )
     parser.add_argument("--dpi", type=int, default=160, help="pixels an inch of a PNG (default: 160)")
     parser.add_argument(
@@ -86,6 +87,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
         parser.error(f"--dpi {options.dpi} is outside 20 to 1200")
     if options.time is not None and not math.isfinite(options.time):
         parser.error(f"--time {options.time} is not finite")
+    options.movie = _MOVIES[options.movie]
     return options
 
 
@@ -96,7 +98,9 @@ def _validated_fields(wanted: str, present: list[str]) -> list[str]:
         if name not in present:
             near = difflib.get_close_matches(name, present, 1)
             hint = f"nearest is {near[0]}" if near else f"it has {', '.join(present) or 'none'}"
-            raise Failure(USAGE, f"The run has no field '{name}'; {hint}.")
+            raise Failure(
+                USAGE, f"The run has no field '{name}'; {hint}; output.fields of its scene chooses what a run writes."
+            )
     return names
 
 
@@ -132,8 +136,8 @@ def _gas_pictures(run, options, out, save):
         mapped = options.field and view.fields or [view.fields[0]]
         for name in mapped:
             yield save(fields_figure.space_time_figure(view, name), f"space_time_{name}")
-    if len(run.snapshots) >= 2 and options.movie != "none":
-        yield movie_file.write(out / f"fields.{options.movie}", movie_frames.frames(view))
+    if len(run.snapshots) >= 2 and options.movie:
+        yield from movie_file.write(out / "fields", options.movie, movie_frames.frames(view))
 
 
 def _springs_pictures(run, options, out, save):
@@ -143,8 +147,8 @@ def _springs_pictures(run, options, out, save):
     view = fabric_figure.View(run)
     snapshot = _chosen_snapshot(run, options)
     yield save(fabric_figure.fabric_figure(view, snapshot), "fields")
-    if len(run.snapshots) >= 2 and options.movie != "none":
-        yield movie_file.write(out / f"fields.{options.movie}", fabric_figure.frames(view))
+    if len(run.snapshots) >= 2 and options.movie:
+        yield from movie_file.write(out / "fields", options.movie, fabric_figure.frames(view))
 
 
 def _canopy_pictures(run, options, out, save):
@@ -161,9 +165,9 @@ def _canopy_pictures(run, options, out, save):
     plane = plane_of(run, options.slice or "y") if is_flow(run) else None
     view = canopy_figure.View(Canopies(run), plane, [known[name] for name in names or moving])
     yield save(canopy_figure.canopy_figure(view, _chosen_snapshot(run, options)), "fields", few_colours=False)
-    if len(run.snapshots) >= 2 and options.movie != "none":
+    if len(run.snapshots) >= 2 and options.movie:
         view.quantities = [known[name] for name in moving]
-        yield movie_file.write(out / f"fields.{options.movie}", canopy_figure.frames(view))
+        yield from movie_file.write(out / "fields", options.movie, canopy_figure.frames(view))
 
 
 def _flow_pictures(run, options, out, save):
@@ -183,9 +187,9 @@ def _flow_pictures(run, options, out, save):
         view = slices_figure.View(plane, [known[name] for name in names])
         figure = slices_figure.slices_figure(view, snapshot)
         yield save(figure, "fields", few_colours=False)
-    if names and len(run.snapshots) >= 2 and options.movie != "none":
+    if names and len(run.snapshots) >= 2 and options.movie:
         moving = slices_figure.View(plane, [known[quantities.movie_name(names)]])
-        yield movie_file.write(out / f"fields.{options.movie}", slices_figure.frames(moving))
+        yield from movie_file.write(out / "fields", options.movie, slices_figure.frames(moving))
     if (figure := profiles_figure.profiles_figure(run, snapshot)) is not None:
         yield save(figure, "profiles")
     if spectrum.is_periodic(run) and (figure := spectrum.spectrum_figure(run, snapshot)) is not None:

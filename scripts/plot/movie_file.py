@@ -12,6 +12,10 @@ from .failure import IO_ERROR, Failure
 from .program import at_signal
 from .style import plt
 
+_GIF_COLOURS = 255  # one of 256 is for pixels that keep their colour from frame to frame
+_NEAR = 8  # distance, of 255 along each axis, below which a colour of a GIF stands for another one
+_CANDIDATES = 8192  # colours that are considered for the palette
+
 
 def frame_of(canvas) -> np.ndarray:
     """Pixels, (height, width, 3) bytes, of what a canvas shows, without an odd last row or column."""
@@ -40,19 +44,31 @@ def _unpack_rgb(colours: np.ndarray) -> np.ndarray:
 
 
 def _common_palette(frames) -> np.ndarray:
-    """The 256 most frequent colours of all frames; one common palette avoids flicker and keeps white exact."""
+    """Colours of a GIF; one common palette avoids flicker and keeps white exact.
+
+    They are the most frequent ones of all frames that are not near to more frequent ones: mixtures at the edges of thin
+    lines, each of them rare, find a colour of their kind.
+    """
     counts = Counter()
     for pixels in frames:
         counts.update(
             dict(zip(*(part.tolist() for part in np.unique(_pack_rgb(pixels), return_counts=True))))
         )
-    return np.array([colour for colour, _ in counts.most_common(256)])
+    candidates = np.array([colour for colour, _ in counts.most_common(_CANDIDATES)])
+    colours = _unpack_rgb(candidates)
+    nearest, chosen = np.full(len(colours), np.inf), []  # squared distance to the chosen ones
+    while len(chosen) < _GIF_COLOURS and nearest.max() >= _NEAR**2:
+        chosen.append(int((nearest >= _NEAR**2).argmax()))
+        nearest = np.minimum(nearest, ((colours - colours[chosen[-1]]) ** 2).sum(-1))
+    return candidates[chosen]
 
 
 def _quantize(pixels: np.ndarray, palette: np.ndarray) -> Image.Image:
     """Frame with each colour replaced by the nearest one of the palette (Pillow's own search is approximate)."""
     colours, index = np.unique(_pack_rgb(pixels), return_inverse=True)
-    distance = ((_unpack_rgb(colours)[:, None, :] - _unpack_rgb(palette)[None, :, :]) ** 2).sum(-1)
+    # The squared distance without the square of the colour itself; single precision holds these integers exactly.
+    choices = _unpack_rgb(palette).astype(np.float32)
+    distance = (choices**2).sum(-1) - 2 * _unpack_rgb(colours).astype(np.float32) @ choices.T
     nearest = distance.argmin(1).astype(np.uint8)[index].reshape(pixels.shape[:2])
     image = Image.fromarray(nearest, "P")
     image.putpalette(_unpack_rgb(palette).astype(np.uint8).tobytes())
@@ -64,7 +80,7 @@ def _write_gif(file: Path, frames: list[np.ndarray]) -> None:
     images = [_quantize(pixels, palette) for pixels in frames]
     frame_ms = int(np.clip(4000 / len(images), 50, 700))
     durations = [frame_ms] * (len(images) - 1) + [1500]
-    images[0].save(file, save_all=True, append_images=images[1:], duration=durations, loop=0, optimize=False)
+    images[0].save(file, save_all=True, append_images=images[1:], duration=durations, loop=0, optimize=True)
 
 
 def _write_mp4(file: Path, frames: list[np.ndarray]) -> None:
@@ -84,11 +100,14 @@ def _write_mp4(file: Path, frames: list[np.ndarray]) -> None:
         raise Failure(IO_ERROR, f"ffmpeg could not write {file}: {errors.decode().strip().splitlines()[-1]}.")
 
 
-def write(file: Path, frames) -> Path:
-    """Writes frames of equal size, (height, width, 3) bytes each, to a .gif or .mp4 file; returns `file`.
+def write(stem: Path, formats: tuple[str, ...], frames):
+    """Generator of the paths of movies, `stem` with the suffix of each format, of the same frames.
 
-    Raises Failure (IO_ERROR) if the file cannot be written.
+    Frames are of equal size, (height, width, 3) bytes each. Raises Failure (IO_ERROR) if a file cannot be written.
     """
     frames = list(frames)
-    writer = _write_gif if file.suffix == ".gif" else _write_mp4
-    return style.write_atomically(file, lambda temporary: writer(temporary, frames))
+    writers = {"gif": _write_gif, "mp4": _write_mp4}
+    for suffix in formats:
+        yield style.write_atomically(
+            stem.with_name(f"{stem.name}.{suffix}"), lambda temporary: writers[suffix](temporary, frames)
+        )

@@ -83,6 +83,7 @@ def write_canopies(folder, fields=("velocity", "position", "von_mises"), payload
             z = centres(CELLS, np.subtract(HIGH, LOW))[2]
             values = {
                 "velocity": (np.stack((0 * z, 0 * z, 4 + 0.1 * k * z), axis=-1), "m/s"),
+                "vorticity": (np.stack((0 * z, 0.1 * k * z, 0 * z), axis=-1), "1/s"),
                 "canopy/position": (tent(bulge), "m"),
                 "canopy/von_mises": (bulge * np.arange(GORES), "N/m"),
             }

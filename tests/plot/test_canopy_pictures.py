@@ -1,16 +1,19 @@
 """Figures of synthetic runs of drogue-parachute with canopies and bodies."""
 
 import shutil
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
 import h5py
+import imageio_ffmpeg
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle
 from matplotlib.text import Text
-from PIL import Image
+from PIL import Image, ImageSequence
 from plot import cli, shading, style
 from plot.flow.plane import plane_of
 from plot.flow.quantities import quantities
@@ -70,6 +73,68 @@ class CanopyPictures(unittest.TestCase):
                 self.assertEqual({"fields.png", "fields.gif", "history.png", "canopies.png"}, names)
                 with Image.open(run / "fields.gif") as movie:
                     self.assertEqual(3, movie.n_frames)
+
+    def frames_of(self, run, *words):
+        """Frames (height, width, 3) of the GIF of a run."""
+        self.assertEqual(0, cli.main([str(run), "--quiet", "--dpi", "40", *words]))
+        with Image.open(run / "fields.gif") as movie:
+            return [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(movie)]
+
+    def test_every_frame_of_movie_shows_streamlines_unless_run_has_vorticity(self):
+        """The colour map of the panel beside the cloth has no white."""
+        cloth = ("position", "von_mises")
+        for fields, words, has_lines in (
+            (("velocity", *cloth), (), True),
+            (("velocity", "vorticity", *cloth), (), False),
+            (("velocity", "vorticity", *cloth), ("--field", "speed"), True),
+        ):
+            with self.subTest(fields, words=words):
+                path = write_canopies(self.folder / "-".join((*fields, *words)), fields)
+                run = read_run(path)
+                shown = quantities(run)["speed" if has_lines else "vorticity"]
+                drawing = CanopyFigure(View(Canopies(run), plane_of(run, "y"), [shown]), run.snapshots).figure
+                box, height = panel_of(drawing, shown.label).get_window_extent(), drawing.bbox.height
+                rows, columns = (slice(int(low) + 2, int(high) - 2) for low, high in
+                                 ((height - box.y1, height - box.y0), (box.x0, box.x1)))  # fmt: skip
+                frames = self.frames_of(path, *words)
+                self.assertEqual(3, len(frames))
+                for frame in frames:
+                    white = int((frame[rows, columns] == 255).all(axis=-1).sum())
+                    (self.assertGreater if has_lines else self.assertLess)(white, 500)
+
+    def test_streamlines_are_those_of_the_grid_and_steady(self):
+        """The velocity in the file is that relative to the grid, and here always along z."""
+        path = write_canopies(self.folder / "run", payload_speed=1.0)
+        scene = (path / "scene.toml").read_text()
+        drawn = []
+        for frame in ("fixed", "follow"):
+            (path / "scene.toml").write_text(scene.replace("[grid]\n", f'[grid]\nframe = "{frame}"\n'))
+            run = read_run(path)
+            drawing = CanopyFigure(self.view(run), run.snapshots)
+            (lines,) = [item for item in panel_of(drawing.figure, "speed").collections
+                        if isinstance(item, LineCollection) and item.get_zorder() == 2.2]  # fmt: skip
+            for snapshot in run.snapshots:
+                drawing.show(snapshot)
+                drawn.append([segment.tolist() for segment in lines.get_segments()])
+        self.assertGreater(len(drawn[0]), 10)
+        for segment in drawn[0]:
+            self.assertEqual(1, len({x for x, _ in segment}))
+        for other in drawn[1:]:
+            self.assertEqual(drawn[0], other)
+
+    def test_movie_both_writes_equal_frames_as_gif_and_mp4(self):
+        path = write_canopies(self.folder / "run")
+        frames = self.frames_of(path, "--movie", "both")
+        raw = subprocess.run(
+            [imageio_ffmpeg.get_ffmpeg_exe(), "-loglevel", "error", "-i", path / "fields.mp4", "-f", "rawvideo",
+             "-pix_fmt", "rgb24", "-"], capture_output=True, check=True,
+        ).stdout  # fmt: skip
+        decoded = np.frombuffer(raw, np.uint8).reshape(-1, *frames[0].shape).astype(int)
+        self.assertEqual(len(frames), len(decoded))
+        differences = [[np.abs(a - b).mean() for b in decoded] for a in frames]
+        for k, row in enumerate(differences):
+            self.assertLess(row[k], 3)
+            self.assertEqual(k, int(np.argmin(row)))
 
     def test_cloth_drop_is_drawn_without_a_flow(self):
         folder = write_cloth_drop(self.folder / "drop")

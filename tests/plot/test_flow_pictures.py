@@ -126,6 +126,10 @@ class FlowPictures(unittest.TestCase):
     def test_rejects_unknown_field_with_nearest_name(self):
         run = write_flow(self.folder / "run", (4, 4, 1), (1.0, 1.0, 1.0), shear)
         self.assertIn("no field 'velocity_w'; nearest is velocity_", self.refusal(run, "--field", "velocity_w"))
+        sentence = self.refusal(run, "--field", "q_criterion")
+        self.assertIn("no field 'q_criterion'", sentence)
+        self.assertIn("output.fields of its scene chooses what a run writes", sentence)
+        self.assertEqual(1, sentence.count("\n"))
 
     def test_quantities_are_components_and_magnitudes(self):
         run = read_run(write_flow(self.folder / "run", (4, 4, 4), (1.0, 1.0, 1.0), shear, (2.0,)))

@@ -74,6 +74,10 @@ class Pictures(unittest.TestCase):
         self.assertEqual((self.folder / "deep/er/fields.pdf").read_bytes()[:4], b"%PDF")
         self.assertEqual(sorted(run.iterdir()), before)
 
+    def test_movie_both_gives_gif_and_mp4(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=2)
+        self.assertEqual((0, ["fields.gif", "fields.mp4", "fields.png", "history.png"]), _plot(run, "--movie", "both")[:2])
+
     def test_error_is_zero_for_exact_values_and_equals_disturbance(self):
         run = self.folder / "run"
         run.mkdir()

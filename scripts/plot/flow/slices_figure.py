@@ -14,6 +14,7 @@ from ..style import plt
 from .plane import AXES, Plane
 from .quantities import Quantity
 from .sheets import sheet_section
+from .streamlines import Streamlines
 
 MAX_FRAMES = 60
 _DPI = 100
@@ -107,20 +108,6 @@ def draw_slice(axes, key, plane: Plane, quantity: Quantity, snapshots: list[Snap
     return image
 
 
-def draw_streamlines(axes, plane: Plane, snapshot: Snapshot, density: tuple[float, float]) -> None:
-    """Draws white streamlines of the velocity in a plane, none if it is zero, not finite, or along a line."""
-    x, y = plane.centres
-    if min(len(x), len(y)) < 2:
-        return
-    velocity = snapshot.fields["velocity"].values
-    u, v = (plane.cut(velocity[..., axis]) for axis in plane.across)
-    if not (np.isfinite(u).all() and np.isfinite(v).all()) or not np.any(u) and not np.any(v):
-        return
-    limits = axes.axis()
-    axes.streamplot(x, y, u, v, color="white", linewidth=0.55, arrowsize=0.6, density=density)
-    axes.axis(limits)
-
-
 class SheetOutline:
     """Bodies and flags where a plane cuts them, as black lines."""
 
@@ -142,7 +129,7 @@ class SlicesFigure:
 
     def __init__(self, view: View, snapshots: list[Snapshot], colours: int = 256):
         self._view, self._colours = view, colours
-        self._images = []
+        self._images, self._streamlines = [], []
         width, height = _panel_size(view.plane.extent)
         cell = (_LEFT + width + _KEY_GAP + _KEY + _KEY_LABELS, _ABOVE + height + _BELOW)
         count = len(view.quantities)
@@ -174,27 +161,23 @@ class SlicesFigure:
     def _add_panel(self, axes, key, quantity: Quantity, snapshots: list[Snapshot]) -> None:
         image = draw_slice(axes, key, self._view.plane, quantity, snapshots, self._colours)
         self._images.append((quantity, image, SheetOutline(axes, self._view.plane)))
+        if quantity.name == "speed":
+            self._streamlines.append(Streamlines(axes, self._view.plane))
 
     def show(self, snapshot: Snapshot) -> None:
         """Replaces the drawn data by those of a snapshot."""
         for quantity, image, outline in self._images:
             outline.show(snapshot)
             image.set_data(self._view.plane.cut(quantity.values(snapshot)))
+        for streamlines in self._streamlines:
+            streamlines.show(snapshot)
         self._caption.set_text(self._view.caption(snapshot))
-
-    def add_streamlines(self, snapshot: Snapshot) -> None:
-        """Draws streamlines of the velocity in the plane on the panel of the speed, if there is one."""
-        panel = next((image.axes for quantity, image, _ in self._images if quantity.name == "speed"), None)
-        if panel is not None:
-            width, height = _panel_size(self._view.plane.extent)
-            draw_streamlines(panel, self._view.plane, snapshot, (0.3 * width, 0.3 * height))
 
 
 def slices_figure(view: View, snapshot: Snapshot):
     """Figure of one snapshot."""
     drawing = SlicesFigure(view, [snapshot])
     drawing.show(snapshot)
-    drawing.add_streamlines(snapshot)
     return drawing.figure
 
 

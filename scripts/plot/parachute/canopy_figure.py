@@ -10,7 +10,8 @@ from matplotlib.patches import Circle
 from .. import shading, style
 from ..flow.plane import Plane
 from ..flow.quantities import Quantity
-from ..flow.slices_figure import SheetOutline, draw_slice, draw_streamlines
+from ..flow.slices_figure import SheetOutline, draw_slice
+from ..flow.streamlines import Streamlines
 from ..movie_file import drawn_frames
 from ..run_directory import Snapshot, evenly_spaced
 from ..style import plt
@@ -72,7 +73,7 @@ class Colours:
 
 
 # A GIF has 256 colours with those of the text.
-_MOVIE_COLOURS = Colours(stress=32, flow=64, shades=4)
+_MOVIE_COLOURS = Colours(stress=32, flow=40, shades=4)
 
 
 class CanopyFigure:
@@ -110,13 +111,15 @@ class CanopyFigure:
             left = _CLOTH_LEFT + cloth_width + _KEY_GAP
             key = inches(left, _BELOW + 0.2 * cloth_height, _KEY, 0.6 * cloth_height)
             self._add_stress(key, snapshots)
-        self._slices = []
+        self._slices, self._streamlines = [], []
         for k, quantity in enumerate(view.quantities):
             left = cloth_cell + k * cell + _LEFT
             axes = inches(left, _BELOW, *self._panel)
             key = inches(left + self._panel[0] + _KEY_GAP, _BELOW, _KEY, self._panel[1])
             self._slices.append(self._add_slice(axes, key, quantity, snapshots))
             axes.axis(window)
+            if quantity.name == "speed":
+                self._streamlines.append(Streamlines(axes, view.plane))
         self._caption = style.heading(self.figure, view.canopies.run.name, "")
 
     def _cloth_range(self, snapshots: list[Snapshot]) -> tuple[np.ndarray, np.ndarray]:
@@ -187,6 +190,8 @@ class CanopyFigure:
             lines.set_segments(positions[canopies.lines][..., across])
             cut.set_segments(canopies.section(snapshot, self._view.plane.normal, self._view.plane.place)[..., across])
             payloads.set_data(*positions[canopies.payloads][:, across].T)
+        for streamlines in self._streamlines:
+            streamlines.show(snapshot)
         self._caption.set_text(self._view.caption(snapshot))
 
     def _show_cloth(self, snapshot: Snapshot) -> None:
@@ -210,24 +215,17 @@ class CanopyFigure:
         self._parts.set_verts([shapes[k] for k in order])
         self._parts.set_facecolor(colours)
         self._parts.set_edgecolor(colours)
-        self._parts.set_linewidth(np.where(order < len(corners), 0.2, 0.6))
+        is_cloth = order < len(corners)
+        self._parts.set_linewidth(np.where(is_cloth, 0.2, 0.6))
+        # Mixed colours at the edges of triangles would fill the palette of a GIF.
+        self._parts.set_antialiased(~is_cloth | (self._colours.shades is None))
         self._payloads.set_data(*projected[canopies.payloads, :2].T)
-
-    def add_streamlines(self, snapshot: Snapshot) -> None:
-        """Draws streamlines of the velocity in the plane on the panel of the speed, if there is one."""
-        panel = next((image.axes for quantity, image, *_ in self._slices if quantity.name == "speed"), None)
-        if panel is not None:
-            extent, window = self._view.plane.extent, panel.axis()
-            width = self._panel[0] * (extent[1] - extent[0]) / (window[1] - window[0])
-            height = self._panel[1] * (extent[3] - extent[2]) / (window[3] - window[2])
-            draw_streamlines(panel, self._view.plane, snapshot, (0.3 * width, 0.3 * height))
 
 
 def canopy_figure(view: View, snapshot: Snapshot):
     """Figure of one snapshot."""
     drawing = CanopyFigure(view, [snapshot])
     drawing.show(snapshot)
-    drawing.add_streamlines(snapshot)
     return drawing.figure
 
 
