@@ -81,7 +81,7 @@ class CanopyPictures(unittest.TestCase):
             return [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(movie)]
 
     def test_every_frame_of_movie_shows_streamlines_unless_run_has_vorticity(self):
-        """The colour map of the panel beside the cloth has no white."""
+        """The darkest of the three colours is bright in pixels of white lines, never in those of the colour map."""
         cloth = ("position", "von_mises")
         for fields, words, has_lines in (
             (("velocity", *cloth), (), True),
@@ -99,8 +99,8 @@ class CanopyPictures(unittest.TestCase):
                 frames = self.frames_of(path, *words)
                 self.assertEqual(3, len(frames))
                 for frame in frames:
-                    white = int((frame[rows, columns] == 255).all(axis=-1).sum())
-                    (self.assertGreater if has_lines else self.assertLess)(white, 500)
+                    white = int((frame[rows, columns].min(axis=-1) > 160).sum())
+                    (self.assertGreater if has_lines else self.assertLess)(white, 100)
 
     def test_streamlines_are_those_of_the_grid_and_steady(self):
         """The velocity in the file is that relative to the grid, and here always along z."""
@@ -111,14 +111,13 @@ class CanopyPictures(unittest.TestCase):
             (path / "scene.toml").write_text(scene.replace("[grid]\n", f'[grid]\nframe = "{frame}"\n'))
             run = read_run(path)
             drawing = CanopyFigure(self.view(run), run.snapshots)
-            (lines,) = [item for item in panel_of(drawing.figure, "speed").collections
-                        if isinstance(item, LineCollection) and item.get_zorder() == 2.2]  # fmt: skip
             for snapshot in run.snapshots:
                 drawing.show(snapshot)
-                drawn.append([segment.tolist() for segment in lines.get_segments()])
+                (lines,) = [item for item in panel_of(drawing.figure, "speed").collections
+                            if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]  # fmt: skip
+                self.assertEqual(0, max(np.ptp(segment[:, 0]) for segment in lines.get_segments()))
+                drawn.append(sorted({segment[0, 0] for segment in lines.get_segments()}))
         self.assertGreater(len(drawn[0]), 10)
-        for segment in drawn[0]:
-            self.assertEqual(1, len({x for x, _ in segment}))
         for other in drawn[1:]:
             self.assertEqual(drawn[0], other)
 
