@@ -121,9 +121,14 @@ std::int64_t Metrics::integer(const std::string& group, const std::string& name)
 
 std::string Check::measured() const {
   if (!measurement) return {};
-  char text[96];
-  std::snprintf(text, sizeof text, "%.4g %s [%.4g, %.4g]", measurement->value, passed ? "in" : "not in",
-                measurement->lowest, measurement->highest);
+  const auto& [quantity, lowest, highest] = *measurement;
+  if (std::isnan(quantity)) return "not measured";
+  // Two digits more than those in which the bounds differ.
+  const double ratio = std::max(std::abs(lowest), std::abs(highest)) / (highest - lowest);
+  const int digits = std::isfinite(ratio) ? std::clamp(3 + static_cast<int>(std::log10(ratio)), 5, 15) : 15;
+  char text[128];
+  std::snprintf(text, sizeof text, "%.*g %s [%.*g, %.*g]", digits, quantity, passed ? "in" : "not in", digits,
+                lowest, digits, highest);
   return text;
 }
 
@@ -138,17 +143,20 @@ std::string ResultDocument::failed_check() const {
   const auto failed =
       std::find_if(checks.begin(), checks.end(), [](const Check& check) { return !check.passed; });
   if (failed == checks.end()) return {};
-  char text[256];
+  char text[384];
   if (std::isnan(failed->value))
     std::snprintf(
         text, sizeof text,
         "%s could not be measured in this run, perhaps because it is too short, or relative to a value of 0; "
         "its tolerance is %.6g",
         failed->name.c_str(), failed->tolerance);
+  else if (failed->measurement)
+    std::snprintf(text, sizeof text, "%s is %s: its deviation is %.6g, above its tolerance %.6g",
+                  failed->name.c_str(), failed->measured().c_str(), failed->value, failed->tolerance);
   else
     std::snprintf(text, sizeof text, "%s is %.6g, above its tolerance %.6g", failed->name.c_str(),
                   failed->value, failed->tolerance);
-  return failed->measurement && !std::isnan(failed->value) ? text + (": " + failed->measured()) : text;
+  return text;
 }
 
 ResultDocument new_result(const std::string& program, const std::string& scene) {

@@ -29,7 +29,8 @@ struct Check {
   /// Quantity whose deviation from a target is `value`. The summary of a run has it, result.json has not.
   std::optional<Measurement> measurement = {};
 
-  /// Measurement as text: "3327 in [2670, 3560]" or "1551 not in [2670, 3560]"; empty without one.
+  /// Measurement as text: "3327.1 in [2670, 3560]", "1551.2 not in [2670, 3560]" or "not measured", if it is
+  /// not a number; empty without one.
   [[nodiscard]] std::string measured() const;
 };
 

@@ -5,11 +5,13 @@ import io
 import shutil
 import tempfile
 import unittest
+import warnings
 from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
 import h5py
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.text import Text
 from PIL import Image
 from plot import cli, style
@@ -122,6 +124,26 @@ class FlowPictures(unittest.TestCase):
         self.assertIn("names no axis", self.refusal(solid, "--slice", "w=0.5"))
         (flat / "fields.h5").unlink()
         self.assertIn("no fields of a flow", self.refusal(flat, "--slice", "z"))
+
+    def test_streamlines_need_a_finite_velocity_and_two_directions(self):
+        def flow(value):
+            return lambda time, x, y, z: {"velocity": vectors(value + 0 * x, 0 * x, 0 * x)}
+
+        for value, cells, lengths, has_lines in (
+            (1.0, (16, 16, 1), (1.0, 1.0, 0.1), True),
+            (0.0, (16, 16, 1), (1.0, 1.0, 0.1), False),
+            (np.nan, (16, 16, 1), (1.0, 1.0, 0.1), False),
+            (np.inf, (16, 16, 1), (1.0, 1.0, 0.1), False),
+            (1.0, (64, 4, 1), (64.0, 1.0, 0.1), False),
+        ):
+            with self.subTest((value, cells)), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                run = read_run(write_flow(self.folder / f"{value}-{cells[0]}", cells, lengths, flow(value)))
+                figure = slices_figure(View(plane_of(run), [quantities(run)["speed"]]), run.snapshots[0])
+                lines = [item for axes in figure.axes for item in axes.collections
+                         if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]  # fmt: skip
+                self.assertEqual(has_lines, bool(lines) and len(lines[0].get_segments()) > 10)
+                self.assertEqual(has_lines, bool(lines))
 
     def test_rejects_unknown_field_with_nearest_name(self):
         run = write_flow(self.folder / "run", (4, 4, 1), (1.0, 1.0, 1.0), shear)

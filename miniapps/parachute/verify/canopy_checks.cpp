@@ -45,7 +45,8 @@ void check_canopies(const Verify& wanted, const CanopyRecord& record, run::Resul
   // A value passes between two bounds if its distance from their mean is at most half of theirs.
   const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {
     result.metrics.set("canopies", name, value);
-    check_distance(result, name, value, 0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[1] - bounds[0]));
+    result.add_check(name, std::abs(value - 0.5 * (bounds[0] + bounds[1])), 0.5 * (bounds[1] - bounds[0]),
+                     run::Measurement{value, bounds[0], bounds[1]});
   };
   for (std::size_t i = 0; i < wanted.peak_forces.size(); ++i) {
     const CanopyPeak& peak = wanted.peak_forces[i];

@@ -24,11 +24,12 @@ class Spectrum:
 
 
 def is_periodic(run: Run) -> bool:
-    """Whether every axis with more than one cell is periodic, there are two at least, and a velocity is known."""
+    """Whether every axis with more than one cell is periodic, there are two at least, and a finite velocity is known."""
     boundary = run.scene.get("grid", {}).get("boundary", {})
     along = [axis for axis, count in zip(AXES, cell_counts(run)) if count > 1]
     periodic = all(boundary.get(axis) in ("periodic", ["periodic", "periodic"]) for axis in along)
-    return periodic and len(along) >= 2 and "velocity" in run.snapshots[-1].fields
+    fields = run.snapshots[-1].fields
+    return periodic and len(along) >= 2 and "velocity" in fields and bool(np.isfinite(fields["velocity"].values).all())
 
 
 def energy_spectrum(velocity: np.ndarray, lengths: tuple[float, float, float]) -> Spectrum:

@@ -28,12 +28,12 @@ class Streamlines:
         self._seeds = np.concatenate((seeds[~inner], seeds[inner]))
 
     def show(self, snapshot: Snapshot) -> None:
-        """Replaces the lines; there are none if the velocity is zero, not finite, or that of a line of cells."""
+        """Replaces the lines; there are none if the velocity is zero or not finite, or the plane is a narrow strip."""
         for item in self._items:
             item.remove()
         self._items = []
         x, y = self._plane.centres
-        if min(len(x), len(y)) < 2:
+        if min(len(x), len(y)) < 2 or 30 * min(self._density) < 2:
             return
         velocity = snapshot.fields["velocity"].values
         u, v = (self._plane.cut(velocity[..., axis]) for axis in self._plane.across)

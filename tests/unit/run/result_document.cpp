@@ -142,7 +142,11 @@ TEST(ResultDocument, ChecksReportTheirMeasurements) {
   EXPECT_EQ(result.checks[0].measured(), "2.5 in [1, 3]");
   EXPECT_EQ(result.checks[1].measured(), "");
   result.add_check("speed", 1.5, 1.0, Measurement{0.5, 1.0, 3.0});
-  EXPECT_EQ(result.failed_check(), "speed is 1.5, above its tolerance 1: 0.5 not in [1, 3]");
+  EXPECT_EQ(result.failed_check(), "speed is 0.5 not in [1, 3]: its deviation is 1.5, above its tolerance 1");
+  result.add_check("narrow", 0.0, 1e-9, Measurement{19.2, 19.2 - 1.92e-8, 19.2 + 1.92e-8});
+  EXPECT_EQ(result.checks[3].measured(), "19.2 in [19.199999981, 19.200000019]");
+  result.add_check("drag", std::nan(""), 1.0, Measurement{std::nan(""), 1.0, 3.0});
+  EXPECT_EQ(result.checks[4].measured(), "not measured");
 }
 
 TEST(ResultDocument, HoldsBuildFactsAndPeakMemory) {
