@@ -96,7 +96,7 @@ def _validated_fields(wanted: str, present: list[str]) -> list[str]:
     names = [name.strip() for name in wanted.split(",") if name.strip()]
     for name in names:
         if name not in present:
-            near = difflib.get_close_matches(name, present, 1)
+            near = difflib.get_close_matches(name, present, 1, cutoff=0.75)
             hint = f"nearest is {near[0]}" if near else f"it has {', '.join(present) or 'none'}"
             raise Failure(
                 USAGE, f"The run has no field '{name}'; {hint}; output.fields of its scene chooses what a run writes."

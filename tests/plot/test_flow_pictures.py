@@ -152,6 +152,10 @@ class FlowPictures(unittest.TestCase):
         self.assertIn("no field 'q_criterion'", sentence)
         self.assertIn("output.fields of its scene chooses what a run writes", sentence)
         self.assertEqual(1, sentence.count("\n"))
+        # Vorticity is no misspelt velocity.
+        still = write_flow(self.folder / "still", (4, 4, 1), (1.0, 1.0, 1.0),
+                           lambda time, x, y, z: {"velocity": vectors(x, y, z)})  # fmt: skip
+        self.assertIn("no field 'vorticity'; it has speed, velocity_x", self.refusal(still, "--field", "vorticity"))
 
     def test_quantities_are_components_and_magnitudes(self):
         run = read_run(write_flow(self.folder / "run", (4, 4, 4), (1.0, 1.0, 1.0), shear, (2.0,)))
