@@ -7,17 +7,16 @@
 The disk of `disk-normal` is moved by amplitude sin(2 pi t), m, for three periods in a box of two diameters to each side.
 --cells: cells per diameter. The part of the force on the disk in phase with its acceleration, over two periods, is printed
 as added mass; then follow the part in phase with the velocity (negative if it brakes the disk), the root mean square of the
-rest, and the largest force. All are relative to the force of an ideal fluid, whose added mass is 8/3 rho a^3 (Lamb, Hydrodynamics, 1932, section 102).
-ARGUMENTs go to the program, such as `--backend serial --set 'coupling={method="sharp"}'`.
+rest, and the largest force. All are relative to the force of an ideal fluid, whose added mass is 8/3 rho a^3 (Lamb,
+Hydrodynamics, 1932, section 102). ARGUMENTs go to the program, such as `--backend serial --set 'coupling={method="sharp"}'`.
 """
 
 import argparse
 import math
-import pathlib
 import subprocess
 import sys
 
-from measure_inversion import read_history
+from recording import parse_with_arguments, read_history
 
 RADIUS, DENSITY = 0.5, 1.0  # m, kg/m^3, of the scene
 OMEGA = 2.0 * math.pi  # angular frequency, rad/s
@@ -55,11 +54,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cells", nargs="+", default=[8, 16], type=int, help="cells to a diameter of the disk, several grids")
     parser.add_argument("--amplitude", type=float, default=0.02, help="largest displacement, m")
-    parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/host/bin"))
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/added-mass"))
-    words = sys.argv[1:]
-    end = words.index("--") if "--" in words else len(words)
-    options, arguments = parser.parse_args(words[:end]), words[end + 1:]
+    options, arguments = parse_with_arguments(parser, "out/added-mass")
     program = options.bin / "drogue-parachute"
     if not program.exists() or min(options.cells) < 1 or not options.amplitude > 0.0:
         sys.exit(f"measure_added_mass.py: --cells and --amplitude must be positive, and {program} must exist.")

@@ -28,7 +28,7 @@ import pathlib
 import sys
 import tomllib
 
-from measure_inversion import read_history
+from recording import read_history
 
 AXES = "xyz"
 

@@ -15,6 +15,8 @@ import subprocess
 import sys
 import tomllib
 
+from recording import parse_with_arguments
+
 
 def literal(value):
     """TOML text of a value."""
@@ -52,11 +54,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene")
     parser.add_argument("--ratio", required=True, type=lambda text: [float(part) for part in text.split(",")])
-    parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/host/bin"))
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/drag"))
-    words = sys.argv[1:]
-    end = words.index("--") if "--" in words else len(words)
-    options, arguments = parser.parse_args(words[:end]), words[end + 1:]
+    options, arguments = parse_with_arguments(parser, "out/drag")
     program = options.bin / "drogue-parachute"
     printed = subprocess.run([program, options.scene, "--print-scene"], capture_output=True, text=True, check=True)
     scene = tomllib.loads(printed.stdout)

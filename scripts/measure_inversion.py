@@ -13,12 +13,12 @@ such as `--backend cuda --set run.end_time=3`.
 """
 
 import argparse
-import csv
 import math
-import pathlib
 import statistics
 import subprocess
 import sys
+
+from recording import parse_with_arguments, read_history
 
 PAYLOAD = (-3.0, 0.0, -4.4)  # m
 BOX = ("grid.cells=[45, 45, 48]", "grid.domain=[[-9, 9], [-9, 9], [-9.2, 10]]", "verify={divergence = 1e-12}")
@@ -35,12 +35,6 @@ def assignments(angle, seed, amplitude):
     return [word for value in values for word in ("--set", value)]
 
 
-def read_history(directory):
-    """Rows of history.csv as numbers, by the names of the columns without their units."""
-    with open(directory / "history.csv", newline="", encoding="utf-8") as file:
-        return [{name.split(" ")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-
-
 def measures(directory):
     """Last and largest inversion index, largest force of the lines, N, and its time, s."""
     rows = read_history(directory)
@@ -54,11 +48,7 @@ def main():
     parser.add_argument("--angles", default="15,30,45,60,75,90", type=lambda text: [float(part) for part in text.split(",")])
     parser.add_argument("--runs", type=int, default=8)
     parser.add_argument("--amplitude", type=float, default=0.01, help="largest displacement, m")
-    parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/host/bin"))
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/inversion"))
-    words = sys.argv[1:]
-    end = words.index("--") if "--" in words else len(words)
-    options, arguments = parser.parse_args(words[:end]), words[end + 1:]
+    options, arguments = parse_with_arguments(parser, "out/inversion")
     program = options.bin / "drogue-parachute"
     if options.runs < 1 or not program.exists():
         sys.exit("measure_inversion.py: " + (f"there is no {program}." if options.runs > 0 else "--runs must be at least 1."))

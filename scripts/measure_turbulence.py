@@ -12,12 +12,10 @@ time per step and cell on one core, all of the program included. ARGUMENTs go to
 import argparse
 import json
 import math
-import pathlib
 import resource
 import subprocess
-import sys
 
-from measure_inversion import read_history
+from recording import parse_with_arguments, read_history
 
 VOLUME = (2 * math.pi) ** 3
 
@@ -35,11 +33,7 @@ def main():
     parser.add_argument("--cells", default="32,64", type=lambda text: [int(part) for part in text.split(",")])
     parser.add_argument("--advections", default="weno5,central", type=lambda text: text.split(","))
     parser.add_argument("--models", default="none,smagorinsky,vreman", type=lambda text: text.split(","))
-    parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/host/bin"))
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/turbulence"))
-    words = sys.argv[1:]
-    end = words.index("--") if "--" in words else len(words)
-    options, arguments = parser.parse_args(words[:end]), words[end + 1:]
+    options, arguments = parse_with_arguments(parser, "out/turbulence")
     for cells in options.cells:
         for advection in options.advections:
             for model in options.models:

@@ -1,14 +1,32 @@
-"""Shared parts of the recording scripts: runs, summaries, bitwise comparison of backends, and the record file."""
+"""Shared parts of the recording and measuring scripts: options, runs, histories, summaries, bitwise comparison of backends, and
+the record file."""
 
 import argparse
+import csv
 import json
 import pathlib
 import subprocess
+import sys
 
 
 # mpi_yield_when_idle: ranks that wait leave their core to others.
 LAUNCHER = ("mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n")
 STOPPING_S = 30.0  # from the signal until a run is killed
+
+
+def parse_with_arguments(parser, out):
+    """Options of the command line, with --bin and --out (default: `out`), and the words after `--`, which go to the program."""
+    parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/host/bin"))
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(out))
+    words = sys.argv[1:]
+    end = words.index("--") if "--" in words else len(words)
+    return parser.parse_args(words[:end]), words[end + 1:]
+
+
+def read_history(directory):
+    """Rows of history.csv as numbers, by the names of the columns without their units."""
+    with open(directory / "history.csv", newline="", encoding="utf-8") as file:
+        return [{name.split(" ")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
 
 
 def run(program, scene, backend, folder, *more, ranks=1, limit=None):
