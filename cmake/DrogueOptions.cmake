@@ -2,7 +2,7 @@
 #   drogue_arithmetic  options that decide rounding; exported, so that users of the kernels compile alike
 #   drogue_private     warnings, include root, sanitizers; never exported
 
-option(DROGUE_EXACT "No fused multiply-add: backends agree bit for bit, but for flow on CUDA" OFF)
+option(DROGUE_EXACT "No fused multiply-add: backends agree bit for bit" OFF)
 option(DROGUE_WARNINGS_AS_ERRORS "Stop at a warning in our own code" OFF)
 option(DROGUE_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
 option(DROGUE_UNITY_TESTS "Compile several sources of a test, or of drogue-perf, as one" ${CMAKE_UNITY_BUILD})

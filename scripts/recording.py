@@ -109,24 +109,24 @@ def differing_results(first, second):
     return [] if same else ["history.csv"]
 
 
+def exact_row(program, scene, backends, work):
+    """Row on the bitwise equality of a scene between the first backend and the others; runs it into `work`."""
+    folders = {backend: work / f"exact-{scene}-{backend}" for backend in backends}
+    codes = [run(program, scene, backend, folder)["exit_code"] for backend, folder in folders.items()]
+    different = {}
+    if not any(codes):
+        different = {b: differing_results(folders[backends[0]], folders[b]) for b in backends[1:]}
+    return {
+        "scene": scene,
+        "exit_codes": codes,
+        "identical": not any(codes) and not any(different.values()),
+        "different": {b: len(names) for b, names in different.items()},
+    }
+
+
 def exact_rows(program, backends, work):
-    """Rows on the bitwise equality of all scenes between the first backend and the others."""
-    rows = []
-    for scene in list_scenes(program):
-        folders = {backend: work / f"exact-{scene}-{backend}" for backend in backends}
-        codes = [run(program, scene, backend, folder)["exit_code"] for backend, folder in folders.items()]
-        different = {}
-        if not any(codes):
-            different = {b: differing_results(folders[backends[0]], folders[b]) for b in backends[1:]}
-        rows.append(
-            {
-                "scene": scene,
-                "exit_codes": codes,
-                "identical": not any(codes) and not any(different.values()),
-                "different": {b: len(names) for b, names in different.items()},
-            }
-        )
-    return rows
+    """`exact_row` of all scenes."""
+    return [exact_row(program, scene, backends, work) for scene in list_scenes(program)]
 
 
 def scene_runs(program, backends, work):

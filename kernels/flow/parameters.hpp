@@ -37,7 +37,7 @@ enum class Turbulence {
 
 /// Solver of the pressure equation.
 enum class PressureSolver {
-  automatic,        ///< the faster direct solver of the backend
+  automatic,        ///< the faster direct solver of the backend; in the preset exact, diagonalization
   fft,              ///< by fast transforms along all axes
   diagonalization,  ///< by products with the matrices of eigenvectors, Lynch, Rice and Thomas 1964
   hypre_pfmg,       ///< conjugate gradients of hypre, preconditioned by its semicoarsening multigrid

@@ -8,33 +8,59 @@
 
 #include <Kokkos_Core.hpp>
 
-#if defined(KOKKOS_ENABLE_CUDA)
+#include "kernels/device/launch.hpp"
+
+#if defined(KOKKOS_ENABLE_CUDA) && !defined(DROGUE_EXACT)
 #include <cublas_v2.h>
 #endif
 
 namespace drogue::linear {
 
-/// One line of the product of a three-dimensional array with a square matrix along an axis: row `line` of the
-/// result, all of its entries along the faster axes.
-template <class ExecutionSpace>
-struct DenseProductFunctor {
+/// Product of a three-dimensional array, x fastest, with a square matrix along an axis. Every entry is a sum
+/// in the order of k, whatever computes it.
+struct AxisProduct {
   int n;               ///< cells along the axis of the product
   std::int64_t inner;  ///< numbers between neighbours along this axis
   bool transposed;     ///< multiplies by the transpose: forward transform
   const double *matrix, *from;
   double* to;
 
-  KOKKOS_FUNCTION void operator()(const std::int64_t line) const {
-    const std::int64_t outer = line / n;
-    const int row = static_cast<int>(line % n);
-    const double* source = from + outer * n * inner;
-    double* target = to + line * inner;
-    for (std::int64_t x = 0; x < inner; ++x) target[x] = 0.0;
-    for (int k = 0; k < n; ++k) {
-      const double factor = transposed ? matrix[static_cast<std::int64_t>(row) * n + k]
-                                       : matrix[static_cast<std::int64_t>(k) * n + row];
-      for (std::int64_t x = 0; x < inner; ++x) target[x] += factor * source[k * inner + x];
+  /// Factor of entry k of a line of `from` in entry `row` of the line of `to`.
+  [[nodiscard]] KOKKOS_FUNCTION double factor(int row, int k) const {
+    return transposed ? matrix[static_cast<std::int64_t>(row) * n + k]
+                      : matrix[static_cast<std::int64_t>(k) * n + row];
+  }
+};
+
+/// Row `line` of a product, all of its entries along the faster axes: for hosts, whose compilers vectorise
+/// it.
+struct DenseProductFunctor {
+  AxisProduct product;
+
+  KOKKOS_FUNCTION void operator()(const int line) const {
+    const AxisProduct& p = product;
+    const double* source = p.from + static_cast<std::int64_t>(line / p.n) * p.n * p.inner;
+    double* target = p.to + line * p.inner;
+    for (std::int64_t x = 0; x < p.inner; ++x) target[x] = 0.0;
+    for (int k = 0; k < p.n; ++k) {
+      const double factor = p.factor(line % p.n, k);
+      for (std::int64_t x = 0; x < p.inner; ++x) target[x] += factor * source[k * p.inner + x];
     }
+  }
+};
+
+/// One entry of a product: for devices, which need many threads.
+struct DenseProductEntryFunctor {
+  AxisProduct product;
+
+  KOKKOS_FUNCTION void operator()(const int entry) const {
+    const AxisProduct& p = product;
+    const std::int64_t line = entry / p.inner;
+    const int row = static_cast<int>(line % p.n);
+    const double* source = p.from + (line - row) * p.inner + entry % p.inner;
+    double sum = 0.0;
+    for (int k = 0; k < p.n; ++k) sum += p.factor(row, k) * source[k * p.inner];
+    p.to[entry] = sum;
   }
 };
 
@@ -51,20 +77,22 @@ class DenseProduct {
   /// Asynchronous; `from` and `to` must not overlap. Does not throw.
   void along_axis(const std::array<int, 3>& cells, std::size_t axis, const List& matrix, bool transposed,
                   const List& from, const List& to) const {
-    std::int64_t inner = 1, lines = 1;
+    int inner = 1, lines = 1;
     for (std::size_t a = 0; a < 3; ++a) (a < axis ? inner : lines) *= cells[a];
-    Kokkos::parallel_for("drogue::linear::dense_product",
-                         Kokkos::RangePolicy<ExecutionSpace>(_space, 0, lines),
-                         DenseProductFunctor<ExecutionSpace>{cells[axis], inner, transposed, matrix.data(),
-                                                             from.data(), to.data()});
+    const AxisProduct product{cells[axis], inner, transposed, matrix.data(), from.data(), to.data()};
+    if constexpr (device::is_host<ExecutionSpace>)
+      device::launch_each(_space, "drogue::linear::dense_product", lines, DenseProductFunctor{product});
+    else
+      device::launch_each(_space, "drogue::linear::dense_product", inner * lines,
+                          DenseProductEntryFunctor{product});
   }
 
  private:
   ExecutionSpace _space;
 };
 
-#if defined(KOKKOS_ENABLE_CUDA)
-/// By cuBLAS, which uses the FP64 tensor cores.
+#if defined(KOKKOS_ENABLE_CUDA) && !defined(DROGUE_EXACT)
+/// By cuBLAS, which uses the FP64 tensor cores; not in the preset exact, since it sums in another order.
 template <>
 class DenseProduct<Kokkos::Cuda> {
  public:

@@ -8,6 +8,7 @@
 
 #include "kernels/flow/boundary/conditions.hpp"
 #include "kernels/flow/launch.hpp"
+#include "kernels/flow/projection/pressure_equation.hpp"
 #include "kernels/flow/views.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
@@ -189,7 +190,7 @@ class ImplicitDiffusion {
       if (same < _problems.size()) continue;
       _problems.push_back(problem);
       const bool transforms = linear::FourierSolver<ExecutionSpace>::supports(problem) &&
-                              parameters.pressure_solver != PressureSolver::diagonalization;
+                              prefers_transforms(parameters.pressure_solver);
       if (group.size() > 1)
         _solvers.emplace_back(
             std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space, problem, group, ranks,

@@ -35,6 +35,17 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
   return problem;
 }
 
+/// True if direct solvers use fast transforms where they can. In the preset exact they do so on request only:
+/// FFTW and cuFFT sum in different orders, while products with matrices have one on all backends. Does not
+/// throw.
+constexpr bool prefers_transforms(PressureSolver solver) {
+#if defined(DROGUE_EXACT)
+  return solver == PressureSolver::fft;
+#else
+  return solver != PressureSolver::diagonalization;
+#endif
+}
+
 /// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization. Throws
 /// std::invalid_argument if `parameters` request transforms that the backend lacks for them.
 template <class ExecutionSpace>
@@ -44,7 +55,7 @@ bool uses_transforms(const Parameters& parameters, int ranks) {
   if (parameters.pressure_solver == PressureSolver::fft && !can)
     throw std::invalid_argument(
         "flow solver: this backend has fast transforms for periodic axes on one rank only");
-  return can && parameters.pressure_solver != PressureSolver::diagonalization;
+  return can && prefers_transforms(parameters.pressure_solver);
 }
 
 /// Solver of the pressure equation that `Parameters::pressure_solver` selects. The constructor and the solves

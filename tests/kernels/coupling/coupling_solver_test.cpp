@@ -285,7 +285,7 @@ TEST(CoupledSolver, BackendsAgree) {
     const State here = end(tested_backend);
     for (const device::Backend backend : device::compiled_backends()) {
       if (backend == tested_backend) continue;
-      EXPECT_LE(distance(here, end(backend)), drogue::testing::backend_tolerance(tested_backend, backend));
+      EXPECT_LE(distance(here, end(backend)), drogue::testing::run_tolerance);
     }
   }
 }

@@ -90,6 +90,8 @@ TEST(FlowCounters, OptionsOfAStepAddOnlyTheirKernels) {
     for (const Option& option : options()) {
       Parameters p = tunnel();
       p.time_scheme = time;
+      // A device has transforms of periodic axes alone, and one launch whatever the solver is.
+      if (!on_device) p.pressure_solver = PressureSolver::fft;
       option.apply(p);
       const auto solver = started(backend, p, random_field(FlowDomain(p), 4));
       ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause) << option.name;

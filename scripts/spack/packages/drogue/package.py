@@ -10,7 +10,7 @@ class Drogue(CMakePackage, CudaPackage):
 
     version("main")
 
-    variant("exact", default=False, description="No fused multiply-add: backends agree bit for bit, but for flow on CUDA")
+    variant("exact", default=False, description="No fused multiply-add: backends agree bit for bit")
     variant("openmp", default=True, description="OpenMP backend")
 
     depends_on("c", type="build")
