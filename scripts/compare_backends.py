@@ -4,21 +4,20 @@
     scripts/compare_backends.py PROGRAM --bin build/cuda-exact/bin [--backends serial,openmp,cuda] [--only REGEX]
                                 [--skip REGEX] [--jobs N] [--work FOLDER] [--to FILE]
 
-PROGRAM is gas, springs or parachute. Of each scene it compares the datasets of fields.h5, or history.csv if the scene
-writes no fields, with those of the first backend. Options:
+PROGRAM is gas, springs or parachute. Of each scene it compares the datasets of fields.h5 and history.csv with those of
+the first backend. Options:
 
     --only   only scenes whose names contain the regular expression
     --skip   scenes that are left out, besides those named -full
-    --jobs   scenes that run at the same time, each on one thread of a host; default: one
-    --to     JSON file for the rows and the provenance
+    --jobs   scenes that run at the same time, each with its share of the cores and at least two threads, unless
+             OMP_NUM_THREADS is set; default: one
+    --to     JSON file for the rows and the provenance, written after each scene
 
-Needs h5py. Prints the scenes that differ, with the numbers of datasets, or failed. The exit code is 1 if any did, 2 if
-nothing was compared.
+Needs h5py. Prints a line per scene. The exit code is 1 if one differs or failed, 2 if nothing was compared.
 """
 
 import argparse
 import concurrent.futures
-import json
 import os
 import pathlib
 import re
@@ -27,50 +26,80 @@ import sys
 from recording import exact_row, list_scenes, save_record
 
 
+def expression(text):
+    """A regular expression of the command line."""
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(f"'{text}' is no regular expression: {error}") from error
+
+
+def distinct_backends(text):
+    """Names of at least two different backends."""
+    names = [name.strip() for name in text.split(",")]
+    if len(names) < 2 or len(set(names)) < len(names) or "" in names:
+        raise argparse.ArgumentTypeError(f"'{text}' is no list of two or more different backends")
+    return names
+
+
+def positive(text):
+    """A whole number above zero."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is no number of scenes, 1 or more")
+    return int(text)
+
+
 def chosen_scenes(program, only, skip):
     """Names of the small scenes with `only` in their names and, if it is given, without `skip`."""
-    names = [name for name in list_scenes(program) if not name.endswith("-full") and re.search(only, name)]
-    return [name for name in names if not (skip and re.search(skip, name))]
+    names = [name for name in list_scenes(program) if not name.endswith("-full") and only.search(name)]
+    return [name for name in names if not (skip and skip.search(name))]
 
 
 def described(row, backends):
-    """One line on a row that is not identical."""
+    """One line on a row."""
     if any(row["exit_codes"]):
         codes = (f"{backend} {code}" for backend, code in zip(backends, row["exit_codes"], strict=True))
-        return f"{row['scene']}: exit codes {', '.join(codes)}"
+        return f"{row['scene']}: exit codes {', '.join(codes)}: {row['message']}"
+    if row["identical"]:
+        return f"{row['scene']}: the same bits"
     counts = (f"{backend} ({count})" for backend, count in row["different"].items() if count)
     return f"{row['scene']}: other bits than on {backends[0]}: {', '.join(counts)}"
 
 
 def main():
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("program", choices=("gas", "springs", "parachute"))
-    options.add_argument("--bin", type=pathlib.Path, required=True)
-    options.add_argument("--backends", default="serial,openmp,cuda")
-    options.add_argument("--only", default="")
-    options.add_argument("--skip")
-    options.add_argument("--jobs", type=int, default=1)
-    options.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/compare"))
-    options.add_argument("--to", type=pathlib.Path)
-    arguments = options.parse_args()
-    program, backends = arguments.bin / f"drogue-{arguments.program}", arguments.backends.split(",")
-    if arguments.jobs > 1:
-        os.environ["OMP_NUM_THREADS"] = "1"
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", choices=("gas", "springs", "parachute"))
+    parser.add_argument("--bin", type=pathlib.Path, required=True)
+    parser.add_argument("--backends", type=distinct_backends, default="serial,openmp,cuda")
+    parser.add_argument("--only", type=expression, default="")
+    parser.add_argument("--skip", type=expression)
+    parser.add_argument("--jobs", type=positive, default=1)
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/compare"))
+    parser.add_argument("--to", type=pathlib.Path)
+    arguments = parser.parse_args()
+    program, backends = arguments.bin / f"drogue-{arguments.program}", arguments.backends
+    if not program.exists():
+        parser.error(f"there is no program {program}")
     scenes = chosen_scenes(program, arguments.only, arguments.skip)
     if not scenes:
-        print("no scene was compared")
-        return 2
+        parser.error("nothing was compared: no scene has such a name")
+    if arguments.jobs > 1:
+        os.environ.setdefault("OMP_NUM_THREADS", str(max(2, os.cpu_count() // arguments.jobs)))
+    record = {"schema": "drogue.record/1", "program": arguments.program, "backends": backends}
+    rows = {}
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as jobs:
-        rows = list(jobs.map(lambda scene: exact_row(program, scene, backends, arguments.work), scenes))
-    different = [row for row in rows if not row["identical"]]
-    for row in different:
-        print(described(row, backends))
-    print(f"{len(rows) - len(different)} of {len(rows)} scenes have the same bits on {', '.join(backends)}")
-    if arguments.to:
-        last = json.loads((arguments.work / f"exact-{rows[-1]['scene']}-{backends[-1]}" / "result.json").read_text())
-        head = {"schema": "drogue.record/1", "program": arguments.program, "backends": backends}
-        save_record(head | {key: last.get(key) for key in ("provenance", "git")} | {"exact": rows}, arguments.to)
-    return 1 if different else 0
+        for done in concurrent.futures.as_completed(
+            jobs.submit(exact_row, program, scene, backends, arguments.work) for scene in scenes
+        ):
+            row, results = done.result()
+            rows[row["scene"]] = row
+            print(described(row, backends), flush=True)
+            record |= {key: results[-1][key] for key in ("provenance", "git") if key in results[-1]}
+            if arguments.to:
+                save_record(record | {"exact": [rows[scene] for scene in scenes if scene in rows]}, arguments.to)
+    same = sum(row["identical"] for row in rows.values())
+    print(f"{same} of {len(rows)} scenes have the same bits on {', '.join(backends)}")
+    return 0 if same == len(rows) else 1
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 
-from recording import differing_datasets, list_scenes, run
+from recording import differing_results, list_scenes, run
 
 BATCHES = {
     "example": ["price", "example", "--greeks"],
@@ -43,21 +43,7 @@ def scene_difference(programs, scene, backend, work):
         result = run(program, scene, backend, folder)
         if result["exit_code"] != 0:
             return [f"exit code {result['exit_code']} of {program}: {result['message']}"]
-    different, compared = [], False
-    for file, difference in (("fields.h5", differing_datasets), ("history.csv", differing_bytes)):
-        files = [folder / file for folder in folders]
-        present = [path.exists() for path in files]
-        if all(present):
-            different += difference(*files)
-            compared = True
-        elif any(present):
-            different.append(f"{file} of one build alone")
-    return different if compared or different else ["neither fields nor history"]
-
-
-def differing_bytes(first, second):
-    """The name of two files, if they differ."""
-    return [] if first.read_bytes() == second.read_bytes() else [first.name]
+    return differing_results(*folders)
 
 
 def batch_difference(programs, words, backend, work):

@@ -102,31 +102,40 @@ def differing_datasets(first, second):
 
 
 def differing_results(first, second):
-    """Names of the datasets of two run directories that are not bitwise equal; without fields.h5, `history.csv`."""
-    if (first / "fields.h5").exists():
-        return differing_datasets(first / "fields.h5", second / "fields.h5")
-    same = (first / "history.csv").read_bytes() == (second / "history.csv").read_bytes()
-    return [] if same else ["history.csv"]
+    """Names of the datasets of fields.h5 that differ between two run directories, and of history.csv if it does."""
+    differences = {"fields.h5": differing_datasets, "history.csv": differing_bytes}
+    names, compared = [], False
+    for file, difference in differences.items():
+        present = [(folder / file).exists() for folder in (first, second)]
+        if all(present):
+            names += difference(first / file, second / file)
+            compared = True
+        elif any(present):
+            names.append(f"{file} of one run alone")
+    return names if compared or names else ["neither fields nor history"]
+
+
+def differing_bytes(first, second):
+    """The name of two files, if they differ."""
+    return [] if first.read_bytes() == second.read_bytes() else [first.name]
 
 
 def exact_row(program, scene, backends, work):
-    """Row on the bitwise equality of a scene between the first backend and the others; runs it into `work`."""
+    """Row on the bitwise equality of a scene between the first backend and the others, and the results of its runs in `work`."""
     folders = {backend: work / f"exact-{scene}-{backend}" for backend in backends}
-    codes = [run(program, scene, backend, folder)["exit_code"] for backend, folder in folders.items()]
-    different = {}
-    if not any(codes):
-        different = {b: differing_results(folders[backends[0]], folders[b]) for b in backends[1:]}
-    return {
-        "scene": scene,
-        "exit_codes": codes,
-        "identical": not any(codes) and not any(different.values()),
-        "different": {b: len(names) for b, names in different.items()},
-    }
+    results = [run(program, scene, backend, folder) for backend, folder in folders.items()]
+    row = {"scene": scene, "exit_codes": [result["exit_code"] for result in results], "different": {}}
+    if any(row["exit_codes"]):
+        row["message"] = next((result["message"] for result in results if result["exit_code"]), "")
+    else:
+        row["different"] = {b: len(differing_results(folders[backends[0]], folders[b])) for b in backends[1:]}
+    row["identical"] = not any(row["exit_codes"]) and not any(row["different"].values())
+    return row, results
 
 
 def exact_rows(program, backends, work):
-    """`exact_row` of all scenes."""
-    return [exact_row(program, scene, backends, work) for scene in list_scenes(program)]
+    """Rows of all scenes by `exact_row`."""
+    return [exact_row(program, scene, backends, work)[0] for scene in list_scenes(program)]
 
 
 def scene_runs(program, backends, work):

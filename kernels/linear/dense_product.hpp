@@ -19,13 +19,13 @@ namespace drogue::linear {
 /// Product of a three-dimensional array, x fastest, with a square matrix along an axis. Every entry is a sum
 /// in the order of k, whatever computes it.
 struct AxisProduct {
-  int n;               ///< cells along the axis of the product
-  std::int64_t inner;  ///< numbers between neighbours along this axis
-  bool transposed;     ///< multiplies by the transpose: forward transform
+  int n;            ///< cells along the axis of the product
+  int inner;        ///< numbers between neighbours along this axis
+  bool transposed;  ///< multiplies by the transpose: forward transform
   const double *matrix, *from;
   double* to;
 
-  /// Factor of entry k of a line of `from` in entry `row` of the line of `to`.
+  /// Dimensionless factor of entry k of a line of `from` in entry `row` of the line of `to`. Does not throw.
   [[nodiscard]] KOKKOS_FUNCTION double factor(int row, int k) const {
     return transposed ? matrix[static_cast<std::int64_t>(row) * n + k]
                       : matrix[static_cast<std::int64_t>(k) * n + row];
@@ -39,12 +39,13 @@ struct DenseProductFunctor {
 
   KOKKOS_FUNCTION void operator()(const int line) const {
     const AxisProduct& p = product;
-    const double* source = p.from + static_cast<std::int64_t>(line / p.n) * p.n * p.inner;
-    double* target = p.to + line * p.inner;
-    for (std::int64_t x = 0; x < p.inner; ++x) target[x] = 0.0;
-    for (int k = 0; k < p.n; ++k) {
-      const double factor = p.factor(line % p.n, k);
-      for (std::int64_t x = 0; x < p.inner; ++x) target[x] += factor * source[k * p.inner + x];
+    const int row = line % p.n;
+    const double* source = p.from + static_cast<std::int64_t>(line - row) * p.inner;
+    double* target = p.to + static_cast<std::int64_t>(line) * p.inner;
+    for (int x = 0; x < p.inner; ++x) target[x] = 0.0;
+    for (int k = 0; k < p.n; ++k, source += p.inner) {
+      const double factor = p.factor(row, k);
+      for (int x = 0; x < p.inner; ++x) target[x] += factor * source[x];
     }
   }
 };
@@ -55,11 +56,10 @@ struct DenseProductEntryFunctor {
 
   KOKKOS_FUNCTION void operator()(const int entry) const {
     const AxisProduct& p = product;
-    const std::int64_t line = entry / p.inner;
-    const int row = static_cast<int>(line % p.n);
-    const double* source = p.from + (line - row) * p.inner + entry % p.inner;
+    const int line = entry / p.inner, row = line % p.n;
+    const double* source = p.from + static_cast<std::int64_t>(line - row) * p.inner + entry % p.inner;
     double sum = 0.0;
-    for (int k = 0; k < p.n; ++k) sum += p.factor(row, k) * source[k * p.inner];
+    for (int k = 0; k < p.n; ++k, source += p.inner) sum += p.factor(row, k) * *source;
     p.to[entry] = sum;
   }
 };
@@ -73,8 +73,8 @@ class DenseProduct {
   /// Products on `space`, with numbers of any unit. Does not throw.
   explicit DenseProduct(const ExecutionSpace& space) : _space(space) {}
 
-  /// to = M^T from (`transposed`) or M from along `axis`, with the n x n matrix M, column after column.
-  /// Asynchronous; `from` and `to` must not overlap. Does not throw.
+  /// to = M^T from (`transposed`) or M from along `axis`, with the n x n matrix M, column after column, of
+  /// fewer than 2^31 numbers. Asynchronous; `from` and `to` must not overlap. Does not throw.
   void along_axis(const std::array<int, 3>& cells, std::size_t axis, const List& matrix, bool transposed,
                   const List& from, const List& to) const {
     int inner = 1, lines = 1;

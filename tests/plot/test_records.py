@@ -154,11 +154,15 @@ class Records(TemporaryFolder):
         self.assertEqual([], recording.differing_results(a, b))
         self.assertEqual(["000001/position"], recording.differing_results(a, c))
         for folder, text in ((a, "1\n"), (b, "1\n"), (c, "2\n")):
-            (folder / "fields.h5").unlink()
             (folder / "history.csv").write_text(text)
-        self.assertEqual(
-            ([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c))
-        )
+        self.assertEqual([], recording.differing_results(a, b))
+        self.assertEqual(["000001/position", "history.csv"], recording.differing_results(a, c))
+        (b / "fields.h5").unlink()
+        self.assertEqual(["fields.h5 of one run alone"], recording.differing_results(a, b))
+        (b / "history.csv").unlink()
+        (a / "fields.h5").unlink()
+        (a / "history.csv").unlink()
+        self.assertEqual(["neither fields nor history"], recording.differing_results(a, b))
 
 
 if __name__ == "__main__":

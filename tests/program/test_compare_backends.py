@@ -10,7 +10,8 @@ import tempfile
 import unittest
 
 SCRIPT = pathlib.Path(os.environ["DROGUE_SOURCE"]) / "scripts" / "compare_backends.py"
-# One scene with equal histories, one whose history names the backend, one that fails on OpenMP, and one that takes minutes.
+# One scene with equal histories, one whose history names the backend, one that fails on OpenMP without a result, and one that
+# takes minutes.
 PROGRAM = """#!/usr/bin/env python3
 import json, pathlib, sys
 if "--list-scenes" in sys.argv:
@@ -19,9 +20,11 @@ if "--list-scenes" in sys.argv:
 scene, backend = sys.argv[1], sys.argv[sys.argv.index("--backend") + 1]
 folder = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
 folder.mkdir(parents=True, exist_ok=True)
+if scene == "fails" and backend == "openmp":
+    print("drogue-springs: no such device", file=sys.stderr)
+    sys.exit(77)
 (folder / "history.csv").write_text(backend if scene == "differs" else "1,2")
 (folder / "result.json").write_text(json.dumps({"git": "abc"}))
-sys.exit(4 if scene == "fails" and backend == "openmp" else 0)
 """
 
 
@@ -34,35 +37,45 @@ class Backends(unittest.TestCase):
         program.write_text(PROGRAM)
         program.chmod(0o755)
 
-    def compare(self, *words):
-        """Exit code and printed lines of a comparison."""
+    def compare(self, *words, backends="serial,openmp"):
+        """Exit code and printed lines of a comparison, of which a rejected one writes its last line to stderr."""
         command = [sys.executable, "-B", SCRIPT, "springs", "--bin", self.folder, "--work", self.folder / "work",
-                   "--backends", "serial,openmp", *words]  # fmt: skip
+                   "--backends", backends, *words]  # fmt: skip
         done = subprocess.run(command, capture_output=True, text=True, check=False)
-        self.assertEqual("", done.stderr)
-        return done.returncode, done.stdout.splitlines()
+        return done.returncode, done.stdout.splitlines() or done.stderr.splitlines()[-1:]
 
     def test_names_scenes_that_differ_or_fail(self):
+        code, lines = self.compare("--jobs", "2")
+        self.assertEqual((1, "1 of 3 scenes have the same bits on serial, openmp"), (code, lines.pop()))
         self.assertEqual(
-            (1, ["differs: other bits than on serial: openmp (1)", "fails: exit codes serial 0, openmp 4",
-                 "1 of 3 scenes have the same bits on serial, openmp"]),
-            self.compare("--jobs", "2"))  # fmt: skip
+            ["differs: other bits than on serial: openmp (1)", "equal: the same bits",
+             "fails: exit codes serial 0, openmp 77: drogue-springs: no such device"], sorted(lines))  # fmt: skip
 
-    def test_scenes_left_out_do_not_count(self):
-        lines = ["1 of 1 scenes have the same bits on serial, openmp"]
+    def test_counts_no_scenes_that_are_left_out(self):
+        lines = ["equal: the same bits", "1 of 1 scenes have the same bits on serial, openmp"]
         self.assertEqual((0, lines), self.compare("--skip", "differs|fails"))
         self.assertEqual((0, lines), self.compare("--only", "^equal"))
 
-    def test_rows_are_written_with_the_commit(self):
+    def test_writes_rows_with_the_commit(self):
         file = self.folder / "rows.json"
-        self.compare("--only", "equal|differs", "--to", file)
+        self.compare("--to", file)
         record = json.loads(file.read_text())
         self.assertEqual(("abc", ["serial", "openmp"]), (record["git"], record["backends"]))
-        self.assertEqual([True, False], [row["identical"] for row in record["exact"]])
+        rows = {row["scene"]: row["identical"] for row in record["exact"]}
+        self.assertEqual({"equal": True, "differs": False, "fails": False}, rows)
 
-    def test_a_comparison_without_scenes_is_an_error(self):
-        code, lines = self.compare("--only", "nothing")
-        self.assertEqual((2, ["no scene was compared"]), (code, lines))
+    def test_rejects_what_compares_nothing(self):
+        for words, backends, reason in (
+            (("--only", "nothing"), "serial,openmp", "nothing was compared"),
+            (("--only", "["), "serial,openmp", "'[' is no regular expression"),
+            (("--jobs", "0"), "serial,openmp", "'0' is no number of scenes"),
+            (("--bin", "nowhere"), "serial,openmp", "there is no program nowhere/drogue-springs"),
+            ((), "serial", "'serial' is no list of two or more different backends"),
+            ((), "serial,serial", "'serial,serial' is no list"),
+        ):
+            with self.subTest(words=words, backends=backends):
+                code, lines = self.compare(*words, backends=backends)
+                self.assertEqual((2, True), (code, reason in lines[-1]), lines)
 
 
 if __name__ == "__main__":

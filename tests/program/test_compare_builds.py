@@ -84,7 +84,7 @@ class Builds(unittest.TestCase):
     def test_history_of_one_build_alone_differs(self):
         self.scenes("old", "1,2")
         self.scenes("new", None)
-        self.expect_bits(1, "history.csv of one build alone")
+        self.expect_bits(1, "history.csv of one run alone")
 
     def test_comparing_nothing_is_an_error(self):
         self.scenes("old", "1,2")

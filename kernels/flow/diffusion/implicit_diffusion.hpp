@@ -8,7 +8,7 @@
 
 #include "kernels/flow/boundary/conditions.hpp"
 #include "kernels/flow/launch.hpp"
-#include "kernels/flow/projection/pressure_equation.hpp"
+#include "kernels/flow/prefers_transforms.hpp"
 #include "kernels/flow/views.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"

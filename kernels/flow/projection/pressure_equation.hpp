@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "kernels/flow/parameters.hpp"
+#include "kernels/flow/prefers_transforms.hpp"
 #include "kernels/flow/state.hpp"
 #include "kernels/flow/views.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
@@ -33,17 +34,6 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
                           end(2 * axis + 1)};
   }
   return problem;
-}
-
-/// True if direct solvers use fast transforms where they can. In the preset exact they do so on request only:
-/// FFTW and cuFFT sum in different orders, while products with matrices have one on all backends. Does not
-/// throw.
-constexpr bool prefers_transforms(PressureSolver solver) {
-#if defined(DROGUE_EXACT)
-  return solver == PressureSolver::fft;
-#else
-  return solver != PressureSolver::diagonalization;
-#endif
 }
 
 /// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization. Throws
