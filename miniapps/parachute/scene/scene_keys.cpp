@@ -101,7 +101,8 @@ void declare_flow(Table& table, FlowScene& scene) {
               "Time integration: Runge-Kutta of third order with three projections, or Adams-Bashforth of "
               "second order");
   table.value("pressure", scene::choice_codec(parameters.pressure_solver, pressure_choices),
-              "Solver of the pressure equation; `auto` is the faster direct one, in the preset exact diagonalization");
+              "Solver of the pressure equation; `auto` is the faster direct one, in the preset exact "
+              "diagonalization");
   table
       .value("pressure_tolerance", scene::real_codec(parameters.pressure_tolerance),
              "Relative residual at which the iterations end")
