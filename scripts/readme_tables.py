@@ -145,7 +145,23 @@ def flow_table(evidence):
     return [records.source("drogue-perf run --filter '^flow-step/cuda'"), "", *table(heading, rows)]
 
 
-TABLES = {"gas": gas_table, "springs": springs_table, "options": options_table, "flow": flow_table}
+def canopy_table(evidence):
+    solutions, flights, rows = Records(evidence, "parachute-solution-*"), Records(evidence, "flight-*"), []
+    for cells in (15, 30, 45, 60):
+        own = [solutions(f"parachute-solution/porous-drag/cuda/cbs43{inset} ab2 0.25 edge 0.7/{cells}") for inset in ("", " inset 0.55")]
+        rows.append([str(cells), *(text for record in own for text in (error_of(record, 3), time_of(record, 1e3)))])
+    # A sample is the time of a millisecond of flight.
+    small, contact, large = (time_of(flights(f"parachute-flight/cuda/{case}"), 1e3)
+                             for case in ("60x60x120/c9", "60x60x120/c9-contact", "120x120x240/c9"))  # fmt: skip
+    return [
+        solutions.source("drogue-perf work-precision --app parachute --backend cuda"), "",
+        *table(["cells across", "error", "ms", "with an inset: error", "ms"], rows), "",
+        f"A second of flight of a C-9 in its stream takes {small} s on 60x60x120 cells, {contact} s with contact, and {large} s on "
+        "120x120x240. " + flights.source("drogue-perf run --filter '^parachute-flight/cuda'"),
+    ]  # fmt: skip
+
+
+TABLES = {"gas": gas_table, "springs": springs_table, "options": options_table, "flow": flow_table, "canopy": canopy_table}
 
 
 def wrapped(lines):

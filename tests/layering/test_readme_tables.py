@@ -48,6 +48,7 @@ class Repository(unittest.TestCase):
         for words, count in (
             (r"(\d+) scenes of gas, each", len(scenes("gas-h100.json") & scenes("gas-xeon-2.json"))),
             (r"(\d+) scenes of cloth and strings", len(scenes("springs-h100.json") & scenes("springs-xeon-2.json"))),
+            (r"(\d+) small scenes of flows", len(json.loads((ROOT / "docs/evidence/parachute-exact-h200.json").read_text())["exact"])),
             (r"(\d+) hard cases of options", data_rows(ROOT / "tests/hard/options.csv")),
             (r"(\d+) hard-case runs of gas", data_rows(ROOT / "tests/hard/tolerances.csv")),
         ):
@@ -62,7 +63,8 @@ class Generator(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.evidence = Path(folder.name)
         (self.evidence / "alone").mkdir()
-        for name in ("gas-solution-h100", "springs-solution-h200", "springs-solution-epyc", "options-epyc", "flow-h200"):
+        for name in ("gas-solution-h100", "springs-solution-h200", "springs-solution-epyc", "options-epyc", "flow-h200",
+                     "parachute-solution-h200", "flight-h200"):  # fmt: skip
             shutil.copy(readme_tables.EVIDENCE / f"{name}.jsonl", self.evidence)
         shutil.copy(readme_tables.EVIDENCE / "alone/options-h200.jsonl", self.evidence / "alone")
 
