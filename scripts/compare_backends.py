@@ -23,7 +23,7 @@ import pathlib
 import re
 import sys
 
-from recording import exact_row, list_scenes, save_record
+from recording import exact_row, save_record, small_scenes
 
 
 def expression(text):
@@ -51,8 +51,7 @@ def positive(text):
 
 def chosen_scenes(program, only, skip):
     """Names of the small scenes with `only` in their names and, if it is given, without `skip`."""
-    names = [name for name in list_scenes(program) if not name.endswith("-full") and only.search(name)]
-    return [name for name in names if not (skip and skip.search(name))]
+    return [name for name in small_scenes(program) if only.search(name) and not (skip and skip.search(name))]
 
 
 def described(row, backends):

@@ -20,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 
-from recording import differing_results, list_scenes, run
+from recording import differing_results, run, small_scenes
 
 BATCHES = {
     "example": ["price", "example", "--greeks"],
@@ -64,7 +64,7 @@ def cases_of(program):
     if program.name == "drogue-options":
         return {batch: (batch_difference, words) for batch, words in BATCHES.items()}
     # NAME-full repeats the scene NAME on a fine mesh for GPUs and is skipped.
-    return {s: (scene_difference, s) for s in list_scenes(program) if not s.endswith("-full")}
+    return {s: (scene_difference, s) for s in small_scenes(program)}
 
 
 def compare_bits(old, new, backend, only):

@@ -22,7 +22,7 @@ import json
 import re
 import sys
 
-from recording import argument_parser, list_scenes, run, save_record, write_record
+from recording import argument_parser, list_scenes, run, save_record, small_scenes, write_record
 
 KEEP = ("scene", "backend", "ranks", "device", "threads", "git", "provenance", "steps", "exit_code", "message", "checks")
 
@@ -43,11 +43,6 @@ def row_of(result, scene, backend, ranks):
 def failed(row):
     """True if the run of a row ended in a failure: neither refused nor left out."""
     return not ("refused" in row or "not_run" in row) and row["exit_code"] != 0
-
-
-def small_scenes(program):
-    """Names of the scenes without -full."""
-    return [name for name in list_scenes(program) if not name.endswith("-full")]
 
 
 def scene_names(program, arguments):

@@ -71,6 +71,11 @@ def list_scenes(program):
     return [line.split()[0] for line in listed.splitlines() if line.strip()]
 
 
+def small_scenes(program):
+    """Names of the scenes without -full."""
+    return [name for name in list_scenes(program) if not name.endswith("-full")]
+
+
 def summary(result):
     """The part of a result that a record keeps; times in s."""
     keep = ("scene", "backend", "device", "threads", "steps", "exit_code", "message", "checks", "ledger")

@@ -159,9 +159,13 @@ class Records(TemporaryFolder):
         self.assertEqual(["000001/position", "history.csv"], recording.differing_results(a, c))
         (b / "fields.h5").unlink()
         self.assertEqual(["fields.h5 of one run alone"], recording.differing_results(a, b))
-        (b / "history.csv").unlink()
-        (a / "fields.h5").unlink()
-        (a / "history.csv").unlink()
+        for folder in (a, c):
+            (folder / "fields.h5").unlink()
+        self.assertEqual(
+            ([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c))
+        )
+        for folder in (a, b):
+            (folder / "history.csv").unlink()
         self.assertEqual(["neither fields nor history"], recording.differing_results(a, b))
 
 
