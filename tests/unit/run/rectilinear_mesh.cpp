@@ -5,6 +5,7 @@
 #include <array>
 #include <regex>
 
+#include "common/run/fields/fields_writer.hpp"
 #include "common/run/hdf5/hdf5.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
