@@ -49,6 +49,16 @@ void refuse_extras(const CLI::App& app) {
   throw unwanted_word(app, option == extras.end() ? extras.front() : *option);
 }
 
+/// Refuses an option that takes one value and has several.
+void refuse_repeated(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::size_t times = option->results().size();
+    if (option->get_items_expected_max() == 1 && times > 1)
+      throw Failure(ExitCode::usage,
+                    option->get_name() + " is given " + std::to_string(times) + " times; give it once");
+  }
+}
+
 }  // namespace
 
 Arguments split_arguments(int argc, const char* const* argv) {
@@ -68,6 +78,10 @@ std::string parse_command_line(CLI::App& app, const std::vector<std::string>& wo
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::CallForHelp&) {
     return app.help();
+  } catch (const CLI::ArgumentMismatch& error) {
+    refuse_repeated(app);
+    for (const CLI::App* subcommand : app.get_subcommands()) refuse_repeated(*subcommand);
+    throw Failure(ExitCode::usage, error.what());
   } catch (const CLI::ParseError& error) {
     throw Failure(ExitCode::usage, error.what());
   }

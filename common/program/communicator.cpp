@@ -28,6 +28,10 @@ void finish(MPI_Request& request) {
   for (Backoff pause; !is_done(request);) pause.wait();
 }
 
+/// Has ranks that wait inside of Open MPI leave their core to ranks that work. A core with one rank costs
+/// nothing by it. A value of the user, by the environment or --mca, stays.
+void yield_while_waiting() { setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0); }
+
 std::string of_rank(const std::string& sentence, int rank) {
   return rank == 0 ? sentence : sentence + " (on rank " + std::to_string(rank) + ")";
 }
@@ -42,6 +46,7 @@ struct Communicator::Transfer {
 Communicator::Communicator() {
   const LaunchedRank launched = launched_rank();
   if (launched.ranks == 1) return;
+  yield_while_waiting();
   int threads = MPI_THREAD_SINGLE;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
   MPI_Comm_rank(MPI_COMM_WORLD, &_rank);

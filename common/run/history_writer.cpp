@@ -24,16 +24,24 @@ void append_number(std::string& text, double value) {
   text.append(digits, end);
 }
 
+/// First line of `stream`, with its end; empty if no whole line is there. Throws `Failure` (io_error) unless
+/// it is `expected` or empty.
+std::string header_of(std::ifstream& stream, const std::filesystem::path& file, const std::string& expected) {
+  std::string line;
+  if (!std::getline(stream, line) || stream.eof()) return {};
+  line += '\n';
+  if (line != expected)
+    throw Failure(ExitCode::io_error,
+                  "cannot continue '" + file.string() + "': it has other columns than this run");
+  return line;
+}
+
 /// Length of the header and all whole rows up to `time`, bytes; 0 without a header.
 std::uintmax_t bytes_until(const std::filesystem::path& file, const std::string& expected_header,
                            double time) {
   std::ifstream stream(file, std::ios::binary);
+  if (header_of(stream, file, expected_header).empty()) return 0;
   std::string line;
-  if (!std::getline(stream, line) || stream.eof()) return 0;
-  if (line + "\n" != expected_header) {
-    throw Failure(ExitCode::io_error,
-                  "cannot continue '" + file.string() + "': it has other columns than this run");
-  }
   std::uintmax_t bytes = expected_header.size();
   while (std::getline(stream, line) && !stream.eof()) {  // a row cut short by a kill has no line end
     double row_time = 0.0;
@@ -52,6 +60,11 @@ std::string history_header(const std::vector<Column>& columns) {
     line += "," + column.name + (column.unit.empty() ? "" : " [" + column.unit + "]");
   }
   return line + "\n";
+}
+
+void require_same_columns(const std::filesystem::path& file, const std::vector<Column>& columns) {
+  std::ifstream stream(file, std::ios::binary);
+  header_of(stream, file, history_header(columns));
 }
 
 HistoryWriter::HistoryWriter(std::filesystem::path file, const std::vector<Column>& columns,

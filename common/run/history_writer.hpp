@@ -19,6 +19,10 @@ struct Column {
 /// Header line of history.csv, including its line end.
 [[nodiscard]] std::string history_header(const std::vector<Column>& columns);
 
+/// Throws `Failure` (io_error) if `file` has a header that is not that of `columns`, so that a run cannot
+/// continue it. An absent or empty file has none.
+void require_same_columns(const std::filesystem::path& file, const std::vector<Column>& columns);
+
 /// Writes history.csv: first column `time [s]`, one row per reported step, numbers in the shortest form that
 /// reads back equal. Rows reach the operating system once per second, at flush() and at destruction.
 class HistoryWriter {

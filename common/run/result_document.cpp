@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/program/provenance.hpp"
@@ -108,15 +109,19 @@ void Metrics::set(const std::string& group, const std::string& name, Value value
 }
 
 std::int64_t Metrics::integer(const std::string& group, const std::string& name) const {
+  return static_cast<std::int64_t>(real(group, name).value_or(0.0));
+}
+
+std::optional<double> Metrics::real(const std::string& group, const std::string& name) const {
   for (const Group& each : _groups)
     if (each.name == group)
       for (const auto& [key, value] : each.values)
         if (key == name) {
-          if (const auto* real = std::get_if<double>(&value)) return static_cast<std::int64_t>(*real);
+          if (const auto* real = std::get_if<double>(&value)) return *real;
           const auto* count = std::get_if<std::int64_t>(&value);
-          return count != nullptr ? *count : 0;
+          return count != nullptr ? std::optional(static_cast<double>(*count)) : std::nullopt;
         }
-  return 0;
+  return std::nullopt;
 }
 
 std::string Check::measured() const {
@@ -214,6 +219,15 @@ void record_failure(ResultDocument& result, const Failure& failure, const std::f
   } catch (const Failure& second) {
     throw Failure(failure.code(), std::string(failure.what()) + "; and " + second.what());
   }
+}
+
+bool is_of_finished_run(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!json.is_object()) return false;
+  const auto status = json.find("status");
+  return status != json.end() &&
+         (*status == status_name(ExitCode::ok) || *status == status_name(ExitCode::verification_failed));
 }
 
 void write_result(const std::filesystem::path& file, ResultDocument result) {

@@ -53,6 +53,9 @@ class Metrics {
   /// A number as integer; 0 if it does not exist or is a text.
   [[nodiscard]] std::int64_t integer(const std::string& group, const std::string& name) const;
 
+  /// A number as real; nothing if it does not exist or is a text.
+  [[nodiscard]] std::optional<double> real(const std::string& group, const std::string& name) const;
+
   [[nodiscard]] const std::vector<Group>& groups() const { return _groups; }
 
  private:
@@ -120,6 +123,10 @@ std::string to_json(const ResultDocument& result);
 /// Stores in `result` how a run failed, and calls `write`. Throws a `Failure` that names both failures if
 /// `write` throws one.
 void record_failure(ResultDocument& result, const Failure& failure, const std::function<void()>& write);
+
+/// True if the result.json `file` is of a run that reached its end, whether its checks passed or not. False
+/// for a file that is absent or unreadable.
+[[nodiscard]] bool is_of_finished_run(const std::filesystem::path& file);
 
 /// Writes `file` atomically, with the peak of host memory. Throws `Failure` (io_error).
 void write_result(const std::filesystem::path& file, ResultDocument result);

@@ -79,13 +79,15 @@ RunDirectory::RunDirectory(std::filesystem::path path, ExistingRun existing)
   }
 }
 
-void RunDirectory::begin() {
-  if (_existing == ExistingRun::overwrite) remove_former_run();
-  if (_existing == ExistingRun::resume) {
-    remove_file(_path / "result.json");
-    remove_leftovers();
-  }
+std::vector<std::string> RunDirectory::begin() {
   _begun = true;
+  if (_existing == ExistingRun::resume)
+    remove_file(_path / "result.json");
+  else if (_existing == ExistingRun::overwrite)
+    for (const std::string& name : run_file_names()) remove_file(_path / name);
+  else
+    return {};
+  return remove_leftovers();
 }
 
 RunDirectory::~RunDirectory() { unlock(); }
@@ -112,18 +114,20 @@ void RunDirectory::unlock() noexcept {
   close(_lock);
 }
 
-void RunDirectory::remove_former_run() const {
-  for (const std::string& name : run_file_names()) remove_file(_path / name);
-  remove_leftovers();
-}
-
-void RunDirectory::remove_leftovers() const {
+/// Returns the names of pictures.
+std::vector<std::string> RunDirectory::remove_leftovers() const {
   std::vector<std::filesystem::path> leftovers;
   for (const auto& entry : std::filesystem::directory_iterator(_path)) {
     const std::filesystem::path& file = entry.path();
     if (is_leftover(file.filename().string()) || is_picture(file)) leftovers.push_back(file);
   }
-  for (const auto& file : leftovers) remove_file(file);
+  std::vector<std::string> pictures;
+  for (const auto& file : leftovers) {
+    remove_file(file);
+    if (is_picture(file)) pictures.push_back(file.filename().string());
+  }
+  std::ranges::sort(pictures);
+  return pictures;
 }
 
 void RunDirectory::write_scene(std::string_view toml) const {

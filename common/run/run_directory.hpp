@@ -23,8 +23,9 @@ class RunDirectory {
   /// writable or if another process uses it; usage if it holds a run and `existing` is refuse.
   RunDirectory(std::filesystem::path path, ExistingRun existing);
 
-  /// Removes or prepares the files of a former run, as `existing` states.
-  void begin();
+  /// Removes or prepares the files of a former run, as `existing` states. Returns the names of the pictures
+  /// that it removed.
+  std::vector<std::string> begin();
 
   [[nodiscard]] bool begun() const noexcept { return _begun; }
   ~RunDirectory();
@@ -42,8 +43,7 @@ class RunDirectory {
  private:
   void lock();
   void unlock() noexcept;
-  void remove_former_run() const;
-  void remove_leftovers() const;
+  [[nodiscard]] std::vector<std::string> remove_leftovers() const;
 
   std::filesystem::path _path;
   ExistingRun _existing;

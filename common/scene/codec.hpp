@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -84,6 +85,23 @@ Codec integer_codec(T& value) {
           },
           [&value] { return std::optional(toml_text(static_cast<std::int64_t>(value))); },
           back_to_default(value)};
+}
+
+/// Integer that is absent unless given.
+template <class T>
+Codec integer_codec(std::optional<T>& value) {
+  const auto number = std::make_shared<T>();
+  Codec codec = integer_codec(*number);
+  codec.read = [read = codec.read, number, &value](const Node& node, const Limits& limits) {
+    std::string complaint = read(node, limits);
+    if (complaint.empty()) value = *number;
+    return complaint;
+  };
+  codec.print = [&value] {
+    return value ? std::optional(toml_text(static_cast<std::int64_t>(*value))) : std::nullopt;
+  };
+  codec.reset = back_to_default(value);
+  return codec;
 }
 
 /// Treats 0, or the first choice, as an absent value.

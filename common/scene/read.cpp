@@ -123,6 +123,15 @@ class Reader {
     }
   }
 
+  /// How to add a missing table all of whose keys have defaults; empty for any other key.
+  static std::string remedy(const Key& key, const std::string& path) {
+    if (key._kind != Key::Kind::table) return {};
+    const auto& keys = key._tables.front()->_keys;
+    const bool needs_values = !key._tables.front()->_alternatives.empty() ||
+                              std::ranges::any_of(keys, [](const auto& each) { return each->_required; });
+    return needs_values ? "" : "; add the line [" + path + "], its keys have defaults";
+  }
+
   /// Checks that need all values.
   void check(const Table& table) {
     for (const auto& key : table._keys) {
@@ -135,7 +144,7 @@ class Reader {
         const std::string condition = key->_condition.empty() ? "" : " (needed " + key->_condition + ")";
         report(Rank::missing, table._origin.empty() ? _root._origin : table._origin,
                "missing " + std::string(key->_kind == Key::Kind::value ? "key " : "table ") +
-                   toml_string(path) + condition + ": " + key->_help);
+                   toml_string(path) + condition + ": " + key->_help + remedy(*key, path));
       }
       for (const auto& child : key->_tables) {
         // a fixed table that is missing is one error, not one for each of its keys

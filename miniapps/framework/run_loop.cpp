@@ -1,5 +1,7 @@
 #include "miniapps/framework/run_loop.hpp"
 
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 
 #include "common/program/progress.hpp"
@@ -19,6 +21,7 @@ class RunLoop {
         _wanted(simulation.output()),
         _end(simulation.end_time().time),
         _now(simulation.now()),
+        _begin(_now.step),
         _progress(request.quiet) {}
 
   /// However the run ends, the result shows how far it came.
@@ -41,6 +44,15 @@ class RunLoop {
   }
 
  private:
+  [[nodiscard]] int restart_interval() const { return _wanted.restart_every.value_or(0); }
+
+  /// With an interval, the last file of it continues the run as if it had not ended.
+  [[nodiscard]] bool needs_restart_of_end() const {
+    if (_wanted.restart_every == 0) return false;
+    const bool is_later = _now.step > _begin && !_wanted.restart_every;
+    return is_later || !std::filesystem::exists(_request.files.directory->file("restart.h5"));
+  }
+
   [[nodiscard]] bool ended() const { return _stop == Stop::interrupted || _stop == Stop::failed; }
 
   void open_files() {
@@ -58,8 +70,8 @@ class RunLoop {
   [[nodiscard]] AdvanceLimits next_limits() const {
     AdvanceLimits limits;
     limits.target_time = next_stop(_wanted, _now.time, _end);
-    if (_output && _wanted.restart_every > 0)
-      limits.pause_step = (_now.step / _wanted.restart_every + 1) * _wanted.restart_every;
+    if (const int every = restart_interval(); _output && every > 0)
+      limits.pause_step = (_now.step / every + 1) * every;
     if (!_warm) limits.pause_step = _now.step + 1;
     if (_output) limits.row_every = _wanted.history_every;
     return limits;
@@ -78,8 +90,8 @@ class RunLoop {
     _now = _simulation.now();
     if (_now.time == limits.target_time && is_output_time(_wanted, _now.time)) write_output_now();
     const bool can_continue = _stop != Stop::target || _simulation.plan_next_interval();
-    if (_output && _wanted.restart_every > 0 && _now.step % _wanted.restart_every == 0 && !ended())
-      _output->write_restart();
+    const int every = restart_interval();
+    if (_output && every > 0 && _now.step % every == 0 && !ended()) _output->write_restart();
     if (!can_continue) _stop = Stop::failed;
   }
 
@@ -88,8 +100,9 @@ class RunLoop {
     // An interrupted run is continued, and must then have the rows of a run without interruption.
     if (complete && _stop != Stop::interrupted && _output && _output->lacks_row(_now.time))
       _output->write_row(_simulation.row());
+    const bool ends_early = (ended() && !complete) || _stop == Stop::interrupted;
     const bool restart_written =
-        _output && _request.keeps_restart && ((ended() && !complete) || _stop == Stop::interrupted);
+        _output && _request.keeps_restart && (ends_early || (!ended() && needs_restart_of_end()));
     if (restart_written) _output->write_restart();
     if (_output) _output->finish();
     if (_stop == Stop::failed)
@@ -103,6 +116,7 @@ class RunLoop {
   const OutputRequest& _wanted;
   const double _end;
   SimulationTime _now;
+  const std::int64_t _begin;  // step
   ProgressLine _progress;
   std::optional<RunOutput> _output;
   Stop _stop = Stop::target;
@@ -117,6 +131,7 @@ void set_up(Simulation& simulation, const RunFiles& files) {
   simulation.restore(reader);
   const EndTime end = simulation.end_time();
   run::require_not_after(files.restart, simulation.now().time, end.key, end.time);
+  require_continuable(simulation, files);
 }
 
 ExitCode run_to_end(Simulation& simulation, const RunRequest& request, run::ResultDocument& result) {

@@ -10,13 +10,14 @@ namespace drogue::framework {
 struct RunRequest {
   RunFiles files;
   bool quiet = false;
-  bool keeps_restart = true;  ///< a run that ends before its time leaves restart.h5
+  bool keeps_restart = true;  ///< the run leaves restart.h5, also at its end unless the scene forbids
   /// Called at every output time, also if no fields are written; may be empty.
   std::function<void()> at_output;
 };
 
 /// Sets the initial state, or the state of `files.restart`. Throws `Failure` (io_error) for a restart file
-/// that is damaged, belongs to another scene, or is later than the end of the run.
+/// that is damaged, belongs to another scene, or is later than the end of the run, and for files of the run
+/// directory that cannot be continued; it changes no file.
 void set_up(Simulation& simulation, const RunFiles& files);
 
 /// Runs `simulation` to its end, writes the files of the run, and fills in `result`, also if it throws.

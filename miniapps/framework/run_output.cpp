@@ -1,5 +1,6 @@
 #include "miniapps/framework/run_output.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <memory>
 #include <utility>
@@ -25,6 +26,15 @@ void copy_history(const std::filesystem::path& restart, const std::vector<run::C
   if (error) throw run::io_failure("write", file, error.value());
 }
 
+/// Time, s, up to which a continued run keeps rows. Where a run of the whole has no row at the state of the
+/// restart file, that of its former end is dropped.
+double last_row_to_keep(Simulation& simulation) {
+  const SimulationTime now = simulation.now();
+  const bool is_end = !(now.time < simulation.end_time().time);
+  const bool has_row = now.step % simulation.output().history_every == 0;
+  return is_end || has_row ? now.time : std::nextafter(now.time, -1.0);
+}
+
 }  // namespace
 
 void write_restart_file(const std::filesystem::path& file, const std::string& fingerprint,
@@ -32,6 +42,15 @@ void write_restart_file(const std::filesystem::path& file, const std::string& fi
   run::RestartWriter writer(file, fingerprint);
   simulation.write_restart(writer);
   writer.commit();
+}
+
+void require_continuable(Simulation& simulation, const RunFiles& files) {
+  if (files.directory == nullptr) return;
+  if (simulation.output().history_every > 0)
+    run::require_same_columns(files.directory->file("history.csv"), simulation.history_columns());
+  if (!simulation.output().fields.empty())
+    run::FieldsWriter::require_same_fields(files.directory->path(), simulation.field_specs(),
+                                           simulation.now().time);
 }
 
 RunOutput::RunOutput(Simulation& simulation, const RunFiles& files)
@@ -45,7 +64,7 @@ RunOutput::RunOutput(Simulation& simulation, const RunFiles& files)
     const std::filesystem::path file = files.directory->file("history.csv");
     const std::vector<run::Column> columns = simulation.history_columns();
     if (resume_time) copy_history(files.restart, columns, file);
-    _history.emplace(file, columns, resume_time);
+    _history.emplace(file, columns, resume_time ? std::optional(last_row_to_keep(simulation)) : std::nullopt);
     if (_history->continues()) _last_row_time = *resume_time;
   }
   if (simulation.output().fields.empty()) return;

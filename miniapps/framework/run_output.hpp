@@ -23,6 +23,10 @@ struct RunFiles {
 void write_restart_file(const std::filesystem::path& file, const std::string& fingerprint,
                         Simulation& simulation);
 
+/// Throws `Failure` (io_error) if history.csv or fields.h5 of the run directory cannot be continued by
+/// `simulation`, which has the state of a restart file. Changes nothing.
+void require_continuable(Simulation& simulation, const RunFiles& files);
+
 /// The files of a run that grow while it steps: history.csv, fields.h5, restart.h5, each only if the scene
 /// requests it. One background thread writes fields in the order of their requests. All functions throw
 /// `Failure` (io_error).

@@ -39,8 +39,9 @@ void declare_output_intervals(scene::Table& table, OutputRequest& output) {
       .range(0, 1e9);
   table
       .value("restart_every", scene::integer_codec(output.restart_every),
-             "Steps between restart files; 0: none")
-      .range(0, 1e9);
+             "Steps between restart files; 0: none, not even at the end of the run")
+      .range(0, 1e9)
+      .default_text("none between; one at the end");
 }
 
 void declare_output(scene::Table& table, OutputRequest& output, const std::vector<std::string>& names) {

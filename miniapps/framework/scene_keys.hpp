@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@ struct OutputRequest {
   std::vector<std::string> fields;  ///< names of the fields of fields.h5; empty: no such file
   std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
   int history_every = 10;           ///< steps between rows of history.csv; 0: none
-  int restart_every = 0;            ///< steps between restart files; 0: none
+  /// Steps between restart files; 0: none, not even at the end; none: one at the end.
+  std::optional<int> restart_every;
 };
 
 /// End of a run and the key of the scene that sets it.

@@ -82,7 +82,7 @@ class SceneRun {
         scene->create({backend, _options.baseline, _options.quiet, _communicator});
     set_up(*simulation, files);
     _result.timing.setup_s = setup.seconds();
-    _directory.begin();
+    begin_directory();
     _directory.write_scene(scene->print());
     _result.exit_code = run_to_end(*simulation, {files, _options.quiet, true, {}}, _result);
     if (_result.exit_code != ExitCode::ok) return;
@@ -91,6 +91,14 @@ class SceneRun {
       write_restart_file(_directory.file("restart.h5"), files.fingerprint, *simulation);
     if (const std::string failed = _result.failed_check(); !failed.empty())
       throw Failure(ExitCode::verification_failed, failed);
+  }
+
+  void begin_directory() {
+    std::string names;
+    for (const std::string& name : _directory.begin()) names += (names.empty() ? "" : ", ") + name;
+    if (!names.empty() && !_options.restart.empty())
+      print_notice(_app.program(), "the run continues, and its former pictures are removed: " + names +
+                                       "; drogue-plot draws them again");
   }
 
   /// How the scene beside the restart file differs from that of this run; empty if its fingerprint is not
@@ -116,6 +124,11 @@ class SceneRun {
     } catch (const Failure&) {
       // No scene, or none of this program; or it lacks a file that lies beside the original.
     }
+    if (same && _restart.empty() && run::is_of_finished_run(_out / "result.json"))
+      throw Failure(ExitCode::usage,
+                    "'" + _out.string() +
+                        "' holds a finished run and no restart file, so that it cannot be continued; choose "
+                        "another --out, or give --overwrite to replace it");
     if (!same)
       throw Failure(ExitCode::usage, "'" + _out.string() + "' holds a run of another scene" +
                                          (_restart.empty() ? " and no restart file; choose another --out, or "
@@ -124,9 +137,10 @@ class SceneRun {
   }
 
   /// Writes how the run failed. An error in the scene or the command line leaves the files of a former run
-  /// untouched; a restart file that was refused is reported.
+  /// untouched, and so does a restart file that is refused; result.json states the refusal where none is.
   void record(const Failure& failure) {
-    const bool refused_restart = !_restart.empty() && failure.code() == ExitCode::io_error;
+    const bool refused_restart = !_restart.empty() && failure.code() == ExitCode::io_error &&
+                                 !std::filesystem::exists(_directory.file("result.json"));
     run::record_failure(_result, failure, [&] {
       if (_is_empty || _directory.begun() || refused_restart) write_result();
     });

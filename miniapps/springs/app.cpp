@@ -1,5 +1,8 @@
 #include "miniapps/springs/app.hpp"
 
+#include <cmath>
+#include <cstdio>
+
 #include "kernels/fabric/host_threads.hpp"
 #include "kernels/mesh/quality.hpp"
 #include "miniapps/framework/metrics.hpp"
@@ -20,6 +23,17 @@ class RunnableScene final : public framework::TypedScene<SpringsScene, Simulatio
   }
 };
 
+/// ", 1.2e-3 J of energy lost (0.04 %)", or gained, where energy is conserved; empty elsewhere.
+std::string energy_summary(const run::ResultDocument& result) {
+  const std::optional<double> lost = result.metrics.real("energy", "lost");
+  if (!lost) return {};
+  char text[80];
+  std::snprintf(text, sizeof text, ", %.2g J of energy %s (%.2g %%)", std::abs(*lost),
+                *lost < 0.0 ? "gained" : "lost",
+                100.0 * std::abs(result.metrics.real("energy", "lost_share").value_or(0.0)));
+  return text;
+}
+
 }  // namespace
 
 framework::MiniApp mini_app() {
@@ -32,6 +46,7 @@ framework::MiniApp mini_app() {
     return std::make_unique<RunnableScene>(read_springs_scene(file, assignments), declare_springs_scene);
   };
   app.study = run_study;
+  app.summary = energy_summary;
   app.metrics.add_group("energy");
   framework::set_no_limiter(app.metrics);
   return app;

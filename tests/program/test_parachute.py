@@ -125,7 +125,7 @@ class RunDirectory(parachute_program.FlowTest):
 
     def test_writes_only_requested_files(self):
         self.expect(0, self.write(VORTICES), *QUIET, sets=["output={history_every=0}"])
-        self.assertEqual({"scene.toml", "result.json"}, {file.name for file in (self.folder / "out").iterdir()})
+        self.assertEqual({"restart.h5", "scene.toml", "result.json"}, {file.name for file in (self.folder / "out").iterdir()})
 
     def launches(self, *sets):
         self.expect(0, self.write(VORTICES), *QUIET, "--overwrite", sets=["verify={}", "output={history_every=0}", *sets])
@@ -1056,6 +1056,21 @@ class Restart(parachute_program.FlowTest):
         for coupling in (["contact=false"], ["contact=true"], ["defect_filter=0.1", "edge_inset=0.55"]):
             with self.subTest(coupling):
                 self.compare("serial", ["coupling." + text for text in coupling], lambda process: process.send_signal(signal.SIGINT), 130, CANOPY)
+
+    def test_finished_run_continues_to_a_later_end_time(self):
+        """It equals a run with an output at the former end bit for bit, which ends its steps there too."""
+        for name, text, half, end, more in (
+                ("flow", GUST, 0.3, 0.7, ()), ("implicit", GUST, 0.3, 0.7, ("flow.diffusion=crank-nicolson", "flow.time=ab2")),
+                ("canopy", CANOPY, 0.1, 0.2, ("coupling.contact=true",)), ("cloth", CLOTH, 0.1, 0.2, ())):
+            with self.subTest(name):
+                fields = "position" if name in ("canopy", "cloth") else "velocity"
+                scene, sets = self.write(text), [*more, "verify={}", f"output={{history_every=7,fields=['{fields}'],times=[{half}]}}"]
+                later = [*sets, f"output.times=[{half}, {end}]", f"run.end_time={end}"]
+                words = ["--quiet", "--backend", "serial", "--out"]
+                self.expect(0, scene, *words, "part", "--overwrite", sets=[*sets, f"run.end_time={half}"])
+                self.expect(0, scene, *words, "part", "--restart", "auto", sets=later)
+                self.expect(0, scene, *words, "whole", "--overwrite", sets=later)
+                self.assert_same_runs()
 
     def test_killed_run_equals_uninterrupted_run(self):
         self.compare(gas_program.threaded(), [], lambda process: process.kill(), -signal.SIGKILL)

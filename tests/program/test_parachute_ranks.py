@@ -214,6 +214,10 @@ class Failures(RanksTest):
             with self.subTest(victim):
                 self.interrupt(victim)
 
+    def test_mpirun_passes_the_notice_of_a_batch_system_on(self):
+        """Slurm's --signal=USR1@60 reaches mpirun, which forwards it to all ranks."""
+        self.interrupt(None)
+
     def interrupt(self, victim):
         out = f"out{victim}"
         process = self.begin(2, self.write(LONG_GUST), *QUIET, "--out", out, sets=["output.restart_every=5"])
@@ -221,7 +225,10 @@ class Failures(RanksTest):
             time.sleep(0.05)
             if (self.folder / out / "restart.h5").exists():
                 break
-        os.kill(processes_of(process)[victim], signal.SIGTERM)
+        if victim is None:
+            process.send_signal(signal.SIGUSR1)
+        else:
+            os.kill(processes_of(process)[victim], signal.SIGTERM)
         message = "drogue-parachute: interrupted by a signal; restart.h5 is written, continue with --restart auto"
         self.assertEqual((130, [message]), self.end(process)[:2])
         self.assertEqual("interrupted", self.result(out)["status"])

@@ -12,7 +12,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 import gas_program
 
 COARSE = ["mesh.cells=50", "verify.l1_density=1.0", "output.times=[0.4]"]
-FILES = ["fields.h5", "fields.xdmf", "history.csv", "result.json", "scene.toml"]
+FILES = ["fields.h5", "fields.xdmf", "history.csv", "restart.h5", "result.json", "scene.toml"]
 SHIPPED = gas_program.SOURCE / "miniapps/gas/scenes"
 
 
@@ -29,12 +29,18 @@ class Directory(gas_program.GasTest):
         self.assertEqual(["out"], [path.name for path in self.folder.iterdir()])
 
     def test_writes_no_fields_and_history_unless_requested(self):
-        self.expect(0, "sod", "--backend", "serial", sets=[gas_program.NO_FIELDS, "output.history_every=0"])
+        sets = [gas_program.NO_FIELDS, "output.history_every=0"]
+        self.expect(0, "sod", "--backend", "serial", sets=sets)
+        self.assertEqual(["restart.h5", "result.json", "scene.toml"], self.names())
+        self.expect(0, "sod", "--backend", "serial", "--overwrite", sets=[*sets, "output.restart_every=0"])
         self.assertEqual(["result.json", "scene.toml"], self.names())
 
-    def test_writes_a_restart_file_if_requested(self):
-        self.coarse(sets=["output.restart_every=20"])
-        self.assertEqual(sorted([*FILES, "restart.h5"]), self.names())
+    def test_leaves_a_restart_file_whatever_the_interval(self):
+        for interval in (20, 1000000):
+            self.coarse("--overwrite", sets=[f"output.restart_every={interval}"])
+            self.assertEqual(FILES, self.names())
+        self.coarse("--overwrite", sets=["output.restart_every=0"])
+        self.assertEqual([name for name in FILES if name != "restart.h5"], self.names())
 
     def test_scene_toml_reproduces_the_run(self):
         self.coarse()
@@ -63,16 +69,19 @@ class Directory(gas_program.GasTest):
 
     def test_restart_auto_rejects_another_scene(self):
         self.coarse()
-        before = {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES}
-        text = self.expect(2, "lax", "--backend", "serial", "--restart", "auto", "--out", "out/sod").stderr
-        self.assertIn("another scene", text)
-        self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES})
+        for code, gone in ((6, []), (2, ["restart.h5"])):
+            for name in gone:
+                (self.folder / "out/sod" / name).unlink()
+            before = {name: (self.folder / "out/sod" / name).read_bytes() for name in self.names()}
+            text = self.expect(code, "lax", "--backend", "serial", "--restart", "auto", "--out", "out/sod").stderr
+            self.assertIn("another scene", text)
+            self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in self.names()})
 
     def test_overwrite_removes_only_the_former_run(self):
         self.coarse(sets=["output.restart_every=20"])
         (self.folder / "out/sod/notes.txt").write_text("mine")
         self.expect(0, "sod", "--backend", "serial", "--overwrite", sets=[gas_program.NO_FIELDS])
-        self.assertEqual(["history.csv", "notes.txt", "result.json", "scene.toml"], self.names())
+        self.assertEqual(["history.csv", "notes.txt", "restart.h5", "result.json", "scene.toml"], self.names())
 
     def test_accepts_a_directory_with_foreign_files(self):
         (self.folder / "there").mkdir()

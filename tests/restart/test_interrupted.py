@@ -44,6 +44,19 @@ class Interrupted(restarting.RestartTest):
     def test_sigterm_ends_after_a_whole_step(self):
         self.assert_continues(signal.SIGTERM, scene="entropy-wave", backend=gas_program.threaded())
 
+    def test_notices_of_shells_and_batch_systems_end_after_a_whole_step(self):
+        """Sent twice: a shell that ends and its terminal both send SIGHUP, and SIGXCPU comes every second."""
+        sets = ["mesh.cells=6400", "output.restart_every=25", gas_program.NO_FIELDS]
+        for number in (signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU, signal.SIGALRM):
+            with self.subTest(number.name):
+                process = self.begin("sod", "serial", "--overwrite", sets=sets)
+                process.send_signal(number)
+                process.send_signal(number)
+                self.assertEqual(130, process.wait(timeout=30), process.stderr.read())
+                self.assertEqual(("interrupted", 130), tuple(self.result("part")[key] for key in ("status", "exit_code")))
+                self.assertTrue((self.folder / "part/restart.h5").exists())
+                self.assertFalse((self.folder / "part/.lock").exists())
+
     def test_continues_after_very_short_stretches(self):
         sets = ["mesh.cells=3000", "output.restart_every=1", "output.times=[0.4]"]
         for words in ((), ("--seed-mode",)):

@@ -1,5 +1,6 @@
 """Rejected restart files, and permitted changes between a run and its continuation."""
 
+import fcntl
 import os
 import sys
 import unittest
@@ -24,15 +25,15 @@ class RestartFiles(gas_program.GasTest):
         return self.expect(code, scene, "--quiet", "--backend", "serial", "--out", "run", *words, sets=sets).stderr
 
     def assert_refused(self, word, scene="sod", sets=SETS):
-        kept = {name: (self.folder / "run" / name).read_bytes() for name in ("history.csv", "fields.h5", "restart.h5")}
+        kept = self.contents()
         message = self.resume(6, scene=scene, sets=sets)
         self.assertIn("restart.h5", message)
         self.assertIn(word, message)
-        reported = self.result("run")
-        self.assertEqual(("io-error", 6), (reported["status"], reported["exit_code"]))
-        self.assertIn(reported["message"], message)
-        for name, content in kept.items():
-            self.assertEqual(content, (self.folder / "run" / name).read_bytes(), f"{name} was touched")
+        self.assertEqual(kept, self.contents())
+
+    def contents(self, directory="run"):
+        """Contents of all files by name."""
+        return {file.name: file.read_bytes() for file in (self.folder / directory).iterdir()}
 
     def test_rejects_truncated_files(self):
         for length in (len(self.bytes) - 1, len(self.bytes) // 2, 600, 512):
@@ -107,6 +108,56 @@ class RestartFiles(gas_program.GasTest):
         self.assertEqual((whole / "history.csv").read_text(), (part / "history.csv").read_text())
         self.assertEqual(0.4, self.result("run")["time"])
 
+    def test_finished_run_continues_to_a_later_end_time(self):
+        """It equals a run with an output at the former end bit for bit: that run shortens the same steps."""
+        sets = ["mesh.cells=200", "output.history_every=7", "verify.l1_density=1.0"]
+        words = ["--quiet", "--backend", "serial", "--out"]
+        longer = [*sets, "run.end_time=0.4", "output.times=[0.1, 0.2, 0.4]"]
+        for words_of_run in ((), ("--seed-mode",)):
+            with self.subTest(words_of_run):
+                self.expect(0, "sod", *words, "part", "--overwrite", *words_of_run, sets=[*sets, "run.end_time=0.2", "output.times=[0.1, 0.2]"])
+                self.expect(0, "sod", *words, "part", "--restart", "auto", *words_of_run, sets=longer)
+                self.expect(0, "sod", *words, "whole", "--overwrite", *words_of_run, sets=longer)
+                for name in ("history.csv", "fields.xdmf", "scene.toml"):
+                    self.assertEqual((self.folder / "whole" / name).read_text(), (self.folder / "part" / name).read_text())
+                whole, part = gas_program.fields(self.folder / "whole"), gas_program.fields(self.folder / "part")
+                self.assertEqual(whole.datasets, part.datasets)
+                for key in ("steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter"):
+                    self.assertEqual(self.result("whole")[key], self.result("part")[key], key)
+
+    def test_refuses_to_continue_a_finished_run_without_a_restart_file(self):
+        """It would begin anew, and its files would be lost."""
+        sets = [*SETS, "output.restart_every=0"]
+        self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "bare", sets=sets)
+        before = self.contents("bare")
+        later = [*sets, "run.end_time=0.25", "output.times=[0.1, 0.2, 0.25]"]
+        for wanted in (sets, later):
+            message = self.expect(2, "sod", "--quiet", "--backend", "serial", "--out", "bare", "--restart", "auto", sets=wanted).stderr
+            self.assertIn("a finished run and no restart file", message)
+            self.assertEqual(before, self.contents("bare"))
+
+    def test_says_which_pictures_it_removes(self):
+        for name in ("fields.png", "space_time_rho.png", "mine.png"):
+            (self.folder / "run" / name).write_bytes(b"picture")
+        self.assert_refused(" s, later than run.end_time = 0.1", sets=[*SETS, "run.end_time=0.1", "output.times=[0.1]"])
+        done = gas_program.run("sod", "--quiet", "--backend", "serial", "--out", "run", "--restart", "auto", sets=SETS, cwd=self.folder)
+        self.assertEqual((0, "drogue-gas: the run continues, and its former pictures are removed: fields.png, space_time_rho.png; "
+                          "drogue-plot draws them again\n"), (done.returncode, done.stderr))
+        self.assertNotIn("fields.png", self.contents())
+        self.assertIn("mine.png", self.contents())
+
+    def test_names_the_variable_that_locks_files(self):
+        """A reader that locks fields.h5, as a viewer does while it has it open."""
+        with open(self.folder / "run/fields.h5", "rb") as reader:
+            fcntl.flock(reader, fcntl.LOCK_SH)
+            before = self.contents()
+            words = ["--quiet", "--backend", "serial", "--out", "run", "--restart", "auto"]
+            message = self.expect(6, "sod", *words, sets=SETS, environment={"HDF5_USE_FILE_LOCKING": "TRUE"}).stderr
+            self.assertIn("fields.h5", message)
+            self.assertIn("HDF5_USE_FILE_LOCKING = TRUE", message)
+            self.assertEqual(before.keys() - {"result.json"}, self.contents().keys() - {"result.json"})
+            self.expect(0, "sod", *words, sets=SETS)
+
     def test_continues_on_another_backend(self):
         self.expect(0, "sod", "--quiet", "--backend", gas_program.threaded(), "--out", "run", "--restart", "auto", sets=SETS)
 
@@ -114,7 +165,9 @@ class RestartFiles(gas_program.GasTest):
         """fields.xdmf lists the same fields for all outputs."""
         for fields in ('["rho"]', '["rho", "u"]'):
             with self.subTest(fields):
+                before = self.contents()
                 message = self.resume(6, sets=[*SETS, f"output.fields={fields}"])
+                self.assertEqual(before, self.contents())
                 self.assertIn("fields.h5", message)
                 self.assertIn("other fields", message)
         self.resume(0, sets=[*SETS, 'output.fields=["p", "u", "rho"]'])

@@ -248,6 +248,20 @@ FieldsWriter::FieldsWriter(const std::filesystem::path& directory, std::string t
   }
 }
 
+void FieldsWriter::require_same_fields(const std::filesystem::path& directory,
+                                       const std::vector<DatasetSpec>& fields, double resume_time) {
+  State state;
+  state.file = directory / "fields.h5";
+  state.fields = fields;
+  if (!std::filesystem::exists(state.file)) return;
+  const h5::Handle handle = h5::open_file(state.file, false);
+  const h5::Handle index = h5::open_group(handle, "steps");
+  for (const std::string& name : h5::children(index)) {
+    const h5::Handle output = h5::open_group(index, name);
+    if (h5::read_number(output, "time") <= resume_time) state.require_same_fields(output);
+  }
+}
+
 FieldsWriter::~FieldsWriter() { _state->abandon_step(); }
 
 void FieldsWriter::add_mesh(const DatasetSpec& spec, const Source& source) {

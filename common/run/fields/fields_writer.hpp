@@ -37,6 +37,11 @@ class FieldsWriter : public FieldSink {
   FieldsWriter(const std::filesystem::path& directory, std::string title, std::vector<DatasetSpec> fields,
                std::optional<double> resume_time = std::nullopt);
 
+  /// Throws unless the constructor could continue the files of `directory` at `resume_time`, s, with these
+  /// fields. Changes nothing.
+  static void require_same_fields(const std::filesystem::path& directory,
+                                  const std::vector<DatasetSpec>& fields, double resume_time);
+
   ~FieldsWriter() override;
   FieldsWriter(const FieldsWriter&) = delete;
   FieldsWriter& operator=(const FieldsWriter&) = delete;

@@ -1,5 +1,6 @@
 #include "common/run/hdf5/hdf5_call.hpp"
 
+#include <cerrno>
 #include <cstdlib>
 
 #include "common/run/files/io_error.hpp"
@@ -48,6 +49,11 @@ void open_library() {
 void fail(const std::string& action, const std::filesystem::path& path) {
   Cause cause;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look_at, &cause);
+  if (const char* locking = std::getenv("HDF5_USE_FILE_LOCKING");
+      locking != nullptr && (cause.system_error == EAGAIN || cause.system_error == EWOULDBLOCK))
+    throw Failure(ExitCode::io_error, "cannot " + action + " '" + path.string() +
+                                          "': another program has locked it, since HDF5_USE_FILE_LOCKING = " +
+                                          locking + "; close that program, or unset the variable in both");
   if (cause.system_error != 0) throw io_failure(action, path, cause.system_error);
   if (cause.text.empty()) cause.text = "HDF5 gives no reason";
   throw Failure(ExitCode::io_error, "cannot " + action + " '" + path.string() + "': " + cause.text);

@@ -78,6 +78,12 @@ double star_density(const Primitive& side, double p, double gamma) {
   return side.rho * (ratio + mu) / (mu * ratio + 1.0);
 }
 
+/// Speed of the left shock that compresses `side` to pressure p.
+double shock_speed(const Primitive& side, double p, double gamma) {
+  return side.u - sound_speed(side, gamma) *
+                      std::sqrt((gamma + 1.0) / (2.0 * gamma) * (p / side.p) + (gamma - 1.0) / (2.0 * gamma));
+}
+
 /// State inside a left rarefaction on the ray `speed`.
 Primitive inside_fan(const Primitive& side, double c, double speed, double gamma) {
   const double local =
@@ -104,6 +110,20 @@ double ExactRiemann::star_density_left() const { return _vacuum ? 0.0 : star_den
 
 double ExactRiemann::star_density_right() const { return _vacuum ? 0.0 : star_density(_right, _p, _gamma); }
 
+/// Speed of the outermost left wave. `side` is the left state or the mirror image of the right one.
+std::optional<double> ExactRiemann::outer_wave(const Primitive& side) const {
+  constexpr double rounding = 1e-12;
+  if (side.rho == 0.0 || (!_vacuum && std::abs(_p - side.p) <= rounding * side.p)) return std::nullopt;
+  return !_vacuum && _p > side.p ? shock_speed(side, _p, _gamma) : side.u - sound_speed(side, _gamma);
+}
+
+std::optional<double> ExactRiemann::left_wave() const { return outer_wave(_left); }
+
+std::optional<double> ExactRiemann::right_wave() const {
+  const std::optional<double> image = outer_wave({_right.rho, -_right.u, _right.p});
+  return image ? std::optional(-*image) : std::nullopt;
+}
+
 Primitive ExactRiemann::sample(double speed) const {
   if (_vacuum) {
     const double left_front = _left.u + 2.0 / (_gamma - 1.0) * speed_of_sound(_left, _gamma);
@@ -124,9 +144,7 @@ Primitive ExactRiemann::sample(double speed) const {
 Primitive ExactRiemann::sample_side(const Primitive& side, double speed) const {
   const double c = sound_speed(side, _gamma);
   if (!_vacuum && _p > side.p) {
-    const double shock = side.u - c * std::sqrt((_gamma + 1.0) / (2.0 * _gamma) * (_p / side.p) +
-                                                (_gamma - 1.0) / (2.0 * _gamma));
-    if (speed <= shock) return side;
+    if (speed <= shock_speed(side, _p, _gamma)) return side;
     return {star_density(side, _p, _gamma), side.u - wave(side, _p, _gamma).value, _p};
   }
   if (speed <= side.u - c) return side;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "kernels/reference/gas/euler.hpp"
 
 namespace drogue::reference {
@@ -21,7 +23,13 @@ class ExactRiemann {
   [[nodiscard]] double star_density_left() const;
   [[nodiscard]] double star_density_right() const;
 
+  /// Speed of the wave that enters the left or the right state, m/s, from left to right; nothing if it has no
+  /// strength, or if that state is a vacuum.
+  [[nodiscard]] std::optional<double> left_wave() const;
+  [[nodiscard]] std::optional<double> right_wave() const;
+
  private:
+  [[nodiscard]] std::optional<double> outer_wave(const Primitive& side) const;
   [[nodiscard]] Primitive sample_side(const Primitive& side, double speed) const;
 
   Primitive _left;

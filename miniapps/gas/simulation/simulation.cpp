@@ -72,7 +72,7 @@ void Simulation::start() {
 
 /// The first snapshot allocates the memory that all of them use.
 void Simulation::allocate_snapshot() {
-  if (_scene.output.fields.empty() && _scene.output.restart_every == 0) return;
+  if (_scene.output.fields.empty() && _scene.output.restart_every == std::optional(0)) return;
   _solver->begin_snapshot();
   _solver->finish_snapshot();
 }

@@ -79,6 +79,7 @@ framework::RepeatedRun run_repeatedly(const GasScene& scene, device::Backend bac
                                       const ExactSolution& exact, const study::Repeats& repeats) {
   GasScene silent = scene;
   silent.output = {};  // steps shortened to meet unwritten outputs would only cost time
+  silent.output.restart_every = 0;
   return framework::repeat_run(repeats, [&](framework::RepeatedRun& runs) {
     Simulation simulation(silent, {backend, false, true});
     run::ResultDocument result;

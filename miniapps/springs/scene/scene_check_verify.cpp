@@ -4,6 +4,8 @@
 #include "common/scene/read.hpp"
 #include "miniapps/springs/scene/expressions.hpp"
 #include "miniapps/springs/scene/scene_check.hpp"
+#include "miniapps/springs/simulation/energy_balance.hpp"
+#include "miniapps/springs/verify/probe.hpp"
 #include "miniapps/springs/verify/verify.hpp"
 
 namespace drogue::springs_app {
@@ -14,6 +16,82 @@ using scene::Table;
 
 void require(const Table& root, bool holds, const std::string& path, const std::string& needs) {
   if (!holds) contradict(root, path, path + " needs " + needs);
+}
+
+bool is_zero(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double value) { return value == 0.0; });
+}
+
+/// True if something measures the forces that are left at the end: a reaction of a pin, or a dead load.
+bool has_reaction_or_load(const SpringsScene& scene) {
+  const auto acts = [&scene](const std::string& strength) {
+    return !strength.empty() && !depends_on_time(strength) && !is_zero(values_at(strength, scene.mesh));
+  };
+  return !scene.pins.empty() || std::ranges::any_of(scene.loads, [&](const Load& load) {
+    return acts(load.pressure) ||
+           (load.force && (acts(load.force->x) || acts(load.force->y) || acts(load.force->z)));
+  });
+}
+
+/// Position at the end of the run of a vertex that pins hold along all axes; nothing for any other vertex.
+std::optional<fabric::Vector> fixed_place(const SpringsScene& scene, std::size_t vertex) {
+  const fabric::Vector& rest = scene.mesh.rest[vertex];
+  fabric::Vector place = values_at(scene.initial.displacement, scene.mesh)[vertex];
+  for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += (1.0 + scene.initial.prestretch) * rest[axis];
+  unsigned fixed = 0;
+  for (const Pin& pin : scene.pins) {
+    if (std::ranges::count(selected(pin.where, scene.mesh), static_cast<int>(vertex)) == 0) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (pin.axes.find("xyz"[axis]) == std::string::npos) continue;
+      fixed |= 1U << axis;
+      if (const std::string& motion = pin.motion.of(axis); !motion.empty())
+        place[axis] = rest[axis] + values_at(motion, scene.mesh, scene.time.end_time)[vertex];
+    }
+  }
+  return fixed == 7U ? std::optional(place) : std::nullopt;
+}
+
+/// Checks that the closed forms of hanging strings hold: of the catenary, and of the stretch below one end.
+void check_hanging(const Table& root, const SpringsScene& scene) {
+  const Verify& verify = scene.verify;
+  if (!verify.catenary && !verify.stretch) return;
+  const std::size_t last = scene.mesh.rest.size() - 1;
+  const std::optional<fabric::Vector> begin = fixed_place(scene, 0), end = fixed_place(scene, last);
+  const std::vector<double>& g = scene.loads[0].gravity;
+  for (const auto& [name, tolerance] :
+       {std::pair{"verify.catenary", verify.catenary}, std::pair{"verify.stretch", verify.stretch}})
+    if (tolerance) require(root, !is_zero(g), name, "gravity other than 0");
+  if (verify.stretch)
+    require(root, begin && !end, "verify.stretch",
+            "a pin that holds the first end of the string, and none that holds the other");
+  if (!verify.catenary) return;
+  require(root, begin && end, "verify.catenary", "pins that hold both ends of the string");
+  require(root, scene.payloads.empty(), "verify.catenary", "a string without payloads");
+  fabric::Vector normal{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+    normal[a] = ((*end)[b] - (*begin)[b]) * g[c] - ((*end)[c] - (*begin)[c]) * g[b];
+  }
+  require(root, !is_zero({normal.begin(), normal.end()}), "verify.catenary",
+          "ends that are not one above the other at the end: the error is relative to their span");
+}
+
+/// Checks that the closed form of a pulled sheet holds, and that it is pulled at all.
+void check_pulled(const Table& root, const SpringsScene& scene, const std::string& name) {
+  require(
+      root,
+      (scene.source.strip || scene.source.rectangle) && fabric::has_triangles(scene.fabric.material.model),
+      name, "mesh.strip or mesh.rectangle, and model quadratic or biquadratic");
+  require(root, std::ranges::any_of(scene.pins, [](const Pin& pin) { return !pin.motion.x.empty(); }), name,
+          "a pin with motion.x, which pulls");
+  require(root,
+          std::ranges::any_of(scene.pins,
+                              [&scene](const Pin& pin) {
+                                return !is_zero(values_at(pin.motion.x, scene.mesh, scene.time.end_time));
+                              }),
+          name, "a motion.x that is not 0 at the end");
+  require(root, even_line_stiffness(scene.mesh).has_value(), name,
+          "reinforcements that run along x from end to end, with the same stiffness all the way");
 }
 
 void check_frequency(const Table& root, const SpringsScene& scene) {
@@ -54,14 +132,10 @@ void check_verify(const Table& root, const SpringsScene& scene) {
     require(root, has_rows, name, rows);
     require(root, scene.damping.absolute == 0.0 && scene.damping.relative == 0.0, name,
             "a scene without damping");
-    const bool steady =
-        std::ranges::none_of(scene.pins, [](const Pin& pin) { return pin.motion.given(); }) &&
-        std::ranges::all_of(scene.loads, [](const Load& load) {
-          return load.follower_pressure.empty() && !depends_on_time(load.pressure) &&
-                 (!load.force || !(depends_on_time(load.force->x) || depends_on_time(load.force->y) ||
-                                   depends_on_time(load.force->z)));
-        });
-    require(root, steady, name, "pins that stay and loads that do not change");
+    require(root, conserves_energy(scene), name,
+            "pins that stay and loads that do not change; a follower pressure needs cloth that is closed or "
+            "whose "
+            "rim is held");
   }
   for (const auto& [name, tolerance] : {std::pair{"verify.energy_balance", verify.energy_balance},
                                         std::pair{"verify.intersections", verify.intersections}})
@@ -81,28 +155,31 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   if (verify.angular_momentum) require(root, has_rows, "verify.angular_momentum", rows);
   for (const auto& [name, tolerance] :
        {std::pair{"verify.young", verify.young}, std::pair{"verify.poisson", verify.poisson}}) {
-    if (!tolerance) continue;
-    require(root, (source.strip || source.rectangle) && fabric::has_triangles(scene.fabric.material.model),
-            name, "mesh.strip or mesh.rectangle, and model quadratic or biquadratic");
-    require(root, std::ranges::any_of(scene.pins, [](const Pin& pin) { return !pin.motion.x.empty(); }), name,
-            "a pin with motion.x, which pulls");
-    require(root, even_line_stiffness(scene.mesh).has_value(), name,
-            "reinforcements that run along x from end to end, with the same stiffness all the way");
+    if (tolerance) check_pulled(root, scene, name);
   }
   for (const auto& [name, tolerance] :
        {std::pair{"verify.hencky", verify.hencky}, std::pair{"verify.catenary", verify.catenary},
         std::pair{"verify.stretch", verify.stretch}})
     if (tolerance) require(root, scene.reinforcements.empty(), name, "a scene without reinforcement");
-  if (verify.hencky)
+  if (verify.hencky) {
     require(root,
             source.disk && fabric::has_triangles(scene.fabric.material.model) && scene.loads.size() == 1 &&
                 constant_value(scene.loads[0].pressure),
             "verify.hencky", "mesh.disk, model quadratic or biquadratic, and one load, a constant pressure");
+    require(root, constant_value(scene.loads[0].pressure) != 0.0, "verify.hencky", "a pressure other than 0");
+    require(root, scene.initial.prestretch == 0.0 && scene.fabric.material.bending_stiffness == 0.0,
+            "verify.hencky", "a membrane without prestretch and without bending stiffness");
+    require(root, !scene.pins.empty(), "verify.hencky", "a pin, which clamps the rim");
+  }
   for (const auto& [name, tolerance] :
        {std::pair{"verify.catenary", verify.catenary}, std::pair{"verify.stretch", verify.stretch}})
     if (tolerance)
       require(root, source.string && scene.loads.size() == 1 && !scene.loads[0].gravity.empty(), name,
               "mesh.string and one load, gravity");
+  check_hanging(root, scene);
+  if (verify.equilibrium)
+    require(root, has_reaction_or_load(scene), "verify.equilibrium",
+            "a pin, or a dead pressure or force: the error is relative to the largest reaction or dead load");
   if (verify.frequency) {
     require(root, has_rows, "verify.frequency", rows);
     check_frequency(root, scene);
@@ -121,6 +198,10 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   if (verify.front_speed) {
     require(root, has_rows, "verify.front_speed", rows);
     require(root, scene.output.probes.size() >= 2, "verify.front_speed", "two output.probes");
+    const auto place = [&scene](std::size_t k) {
+      return nearest_vertex(scene.mesh, scene.output.probes[k].at);
+    };
+    require(root, place(0) != place(1), "verify.front_speed", "two output.probes at different vertices");
   }
 }
 

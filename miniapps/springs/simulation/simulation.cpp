@@ -7,6 +7,7 @@
 #include "common/program/stopwatch.hpp"
 #include "common/scene/node.hpp"
 #include "kernels/fabric/contact/features.hpp"
+#include "miniapps/springs/simulation/energy_balance.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -58,7 +59,10 @@ const char* failure_reason_text(fabric::FailureReason reason) {
 }  // namespace
 
 Simulation::Simulation(const SpringsScene& scene, const framework::SimulationSettings& settings)
-    : _scene(scene), _settings(settings), _problem(make_problem(scene)) {
+    : _scene(scene),
+      _settings(settings),
+      _problem(make_problem(scene)),
+      _pressure(pressure_with_potential(scene)) {
   _solver = fabric::create_solver(settings.backend, _problem.parameters);
 }
 

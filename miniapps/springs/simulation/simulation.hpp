@@ -73,6 +73,7 @@ class Simulation final : public framework::Simulation {
   const SpringsScene& _scene;
   framework::SimulationSettings _settings;
   Problem _problem;
+  const double _pressure;  ///< Pa, with a potential
   std::unique_ptr<fabric::Solver> _solver;
   std::int64_t _stop_step = 0;
   double _stop_time = 0.0;

@@ -4,6 +4,7 @@
 
 #include "kernels/mesh/edges.hpp"
 #include "miniapps/springs/simulation/contact_state.hpp"
+#include "miniapps/springs/simulation/energy_balance.hpp"
 #include "miniapps/springs/simulation/history.hpp"
 #include "miniapps/springs/simulation/simulation.hpp"
 #include "miniapps/springs/vectors.hpp"
@@ -64,9 +65,10 @@ StateTotals Simulation::totals() {
                      sum.momentum, sum.angular_momentum, {},
                      sum.contact,  sum.friction,         0};
   const bool counts = _scene.verify.intersections.has_value();
-  if (_scene.output.probes.empty() && !counts) return totals;
+  if (_scene.output.probes.empty() && !counts && _pressure == 0.0) return totals;
   std::vector<Vector> x(_problem.x.size()), v(x.size());
   _solver->download(x, v);
+  if (_pressure != 0.0) totals.potential -= _pressure * enclosed_volume(_problem.parameters.mesh, x);
   if (counts) totals.intersections = contact_state(_scene, _problem.to_scene(x)).intersections;
   for (const int vertex : _problem.probes) totals.probes.push_back(x[static_cast<std::size_t>(vertex)]);
   return totals;
@@ -179,8 +181,15 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
   set("elastic", now.elastic);
   if (contact) set("friction_work", now.friction_work);
   set("kinetic", now.kinetic);
+  const bool has_rows = _scene.output.history_every > 0;
+  const run::History history = has_rows ? run::read_history(directory->file("history.csv")) : run::History{};
+  if (has_rows && conserves_energy(_scene))
+    if (const std::optional<EnergyLoss> loss = energy_loss(history)) {
+      set("lost", loss->energy);
+      set("lost_share", loss->share);
+    }
   set("potential", now.potential);
-  springs_app::verify(_scene, final_state(), directory->file("history.csv"), result);
+  springs_app::verify(_scene, final_state(), history, result);
   return ExitCode::ok;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
+#include "common/run/history_reader.hpp"
 #include "common/run/result_document.hpp"
 #include "miniapps/springs/scene/scene.hpp"
 
@@ -20,10 +20,19 @@ struct FinalState {
   std::vector<double> von_mises;      ///< of every vertex, N/m; empty unless the scene verifies one
 };
 
-/// Adds errors and checks of the scene's [verify]; `history` is the history.csv of the run. Throws `Failure`
-/// (io_error).
-void verify(const SpringsScene& scene, const FinalState& state, const std::filesystem::path& history,
+/// Adds errors and checks of the scene's [verify]; `history` is the history.csv of the run, or empty.
+void verify(const SpringsScene& scene, const FinalState& state, const run::History& history,
             run::ResultDocument& result);
+
+/// Energy that steps in time lost in a scene that `conserves_energy`.
+struct EnergyLoss {
+  double energy =
+      0.0;             ///< J, between the first row of the history and the last, without contact and friction
+  double share = 0.0;  ///< of the largest kinetic energy of a row or of all released energy
+};
+
+/// Nothing if nothing moved.
+[[nodiscard]] std::optional<EnergyLoss> energy_loss(const run::History& history);
 
 /// Young's modulus (N/m) and Poisson's ratio of a rectangle pulled along x by its last column.
 struct Response {

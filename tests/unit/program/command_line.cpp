@@ -92,6 +92,10 @@ TEST(MiniAppOptions, NamesTheOptionInError) {
   EXPECT_NE(usage_failure({"sod", "lax"}).find("unexpected argument 'lax'"), std::string::npos);
   EXPECT_NE(usage_failure({"sod", "--backend", "gpu"}).find("gpu"), std::string::npos);
   EXPECT_NE(usage_failure({"sod", "--out"}).find("--out"), std::string::npos);
+  EXPECT_EQ(usage_failure({"sod", "--backend", "serial", "--backend", "openmp"}),
+            "--backend is given 2 times; give it once");
+  EXPECT_EQ(usage_failure({"sod", "--out", "a", "--out", "b", "--out=c"}),
+            "--out is given 3 times; give it once");
   EXPECT_NE(usage_failure({"sod", "--set", "mesh.cells"}).find("'mesh.cells'"), std::string::npos);
   EXPECT_NE(usage_failure({"sod", "--overwrite", "--restart", "auto"}).find("--restart"), std::string::npos);
   EXPECT_NE(usage_failure({"sod", "--check", "--print-scene"}).find("--check"), std::string::npos);

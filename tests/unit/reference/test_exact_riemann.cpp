@@ -112,6 +112,22 @@ TEST(ExactRiemann, IsSymmetricUnderReflection) {
   }
 }
 
+/// The solution is the initial state just outside of its outermost waves, and another state just inside.
+TEST(ExactRiemann, OutermostWavesBoundTheInitialStates) {
+  for (const StarCase& c : star_cases()) {
+    const ExactRiemann solution(c.left, c.right, c.gamma);
+    const double left = solution.left_wave().value(), right = solution.right_wave().value();
+    const double step = 1e-6 * (right - left);
+    EXPECT_EQ(solution.sample(left - step).p, c.left.p) << c.name;
+    EXPECT_EQ(solution.sample(right + step).p, c.right.p) << c.name;
+    EXPECT_NE(solution.sample(left + step).p, c.left.p) << c.name;
+    EXPECT_NE(solution.sample(right - step).p, c.right.p) << c.name;
+  }
+  const ExactRiemann contact({1, 0.5, 1}, {0.2, 0.5, 1}, 1.4), vacuum({1, 0, 1}, {0, 0, 0}, 1.4);
+  EXPECT_FALSE(contact.left_wave() || contact.right_wave() || vacuum.right_wave());
+  EXPECT_DOUBLE_EQ(vacuum.left_wave().value(), -std::sqrt(1.4));
+}
+
 TEST(ExactRiemann, FormsAVacuumBetweenRapidlySeparatingStates) {
   const ExactRiemann limit({7, -1, .2}, {7, 1, .2}, 1.4);
   EXPECT_NEAR(limit.star_pressure(), 0.0, 1e-30);

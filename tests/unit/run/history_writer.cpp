@@ -86,6 +86,10 @@ TEST(HistoryWriter, RefusesToContinueOtherColumns) {
   });
   EXPECT_NE(sentence.find("other columns"), std::string::npos) << sentence;
   EXPECT_EQ(content(directory / "history.csv"), "time [s],mass [kg]\n0.1,1\n");
+  EXPECT_EQ(failure_of(ExitCode::io_error,
+                       [&directory] { require_same_columns(directory / "history.csv", columns); }),
+            sentence);
+  EXPECT_NO_THROW(require_same_columns(directory / "absent.csv", columns));
 }
 
 TEST(HistoryWriter, ReplacesTheRowsOfAFormerRun) {

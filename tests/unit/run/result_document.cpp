@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "common/run/files/atomic_file.hpp"
 #include "common/version.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
@@ -147,6 +148,22 @@ TEST(ResultDocument, ChecksReportTheirMeasurements) {
   EXPECT_EQ(result.checks[3].measured(), "19.2 in [19.199999981, 19.200000019]");
   result.add_check("drag", std::nan(""), 1.0, Measurement{std::nan(""), 1.0, 3.0});
   EXPECT_EQ(result.checks[4].measured(), "not measured");
+}
+
+TEST(ResultDocument, KnowsTheResultOfAFinishedRun) {
+  const test::TemporaryDirectory directory;
+  const auto file = directory / "result.json";
+  EXPECT_FALSE(is_of_finished_run(file));
+  for (const auto& [code, finished] :
+       {std::pair{ExitCode::ok, true}, std::pair{ExitCode::verification_failed, true},
+        std::pair{ExitCode::interrupted, false}, std::pair{ExitCode::io_error, false}}) {
+    ResultDocument result = new_result("drogue-gas", "sod");
+    result.exit_code = code;
+    write_result(file, result);
+    EXPECT_EQ(is_of_finished_run(file), finished) << status_name(code);
+  }
+  write_file_atomically(file, "{ \"status\": \"o");
+  EXPECT_FALSE(is_of_finished_run(file));
 }
 
 TEST(ResultDocument, HoldsBuildFactsAndPeakMemory) {

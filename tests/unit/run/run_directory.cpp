@@ -67,8 +67,9 @@ TEST(RunDirectory, ResumeKeepsTheFormerRun) {
   const TemporaryDirectory parent;
   write_file_atomically(parent / "restart.h5", "state");
   write_file_atomically(parent / "result.json", "of the former end");
+  for (const char* picture : {"history.png", "fields.gif"}) write_file_atomically(parent / picture, "former");
   RunDirectory run(parent.path(), ExistingRun::resume);
-  run.begin();
+  EXPECT_EQ(run.begin(), (std::vector<std::string>{"fields.gif", "history.png"}));
   EXPECT_EQ(content(parent / "restart.h5"), "state");
   EXPECT_FALSE(std::filesystem::exists(parent / "result.json"));
 }

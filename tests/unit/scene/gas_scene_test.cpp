@@ -159,6 +159,29 @@ TEST(GasScene, ReferenceRunInheritsGasAndDomain) {
   EXPECT_TRUE(holds(error_of({"verify.reference.cells=6400"}), "with exact = \"reference\""));
 }
 
+/// Rarefaction and shock of Sod's tube leave x = 0 at -1.18322 and 1.75216 m/s.
+TEST(GasScene, RefusesAnExactRiemannSolutionThatTheEndsDisturb) {
+  const auto error = [](std::vector<std::string> sets) {
+    sets.emplace_back("verify.exact=riemann");
+    return error_of(sets);
+  };
+  EXPECT_EQ(error({}), "");
+  EXPECT_EQ(error({"run.end_time=2"}), "") << "waves leave through an outflow";
+  EXPECT_TRUE(holds(error({"boundary.left=periodic", "boundary.right=periodic"}), "a second jump"));
+  EXPECT_EQ(error({"boundary.left=reflecting", "run.end_time=0.845"}), "");
+  EXPECT_TRUE(holds(error({"boundary.left=reflecting", "run.end_time=0.846"}), "from t = 0.84515"));
+  EXPECT_EQ(error({"boundary.right=reflecting", "run.end_time=0.570"}), "");
+  EXPECT_TRUE(holds(error({"boundary.right=reflecting", "run.end_time=0.571"}), "from t = 0.57072"));
+  EXPECT_TRUE(holds(error({"boundary.left=reflecting", "initial.riemann.left.u=0.1"}), "from the start"));
+  // A contact alone, which moves away from the wall.
+  EXPECT_EQ(error({"boundary.left=reflecting", "run.end_time=9", "initial.riemann.right.p=1"}), "");
+}
+
+TEST(GasScene, NamesTheLineThatAMissingTableNeeds) {
+  const std::string without_gas = least.substr(0, least.find("[gas]")) + least.substr(least.find("[mesh]"));
+  EXPECT_TRUE(holds(error_of({}, without_gas), "missing table \"gas\": The gas; add the line [gas]"));
+}
+
 TEST(GasScene, RefusesContradictions) {
   EXPECT_TRUE(holds(error_of({"scheme.weno=js", "scheme.weno_power=2"}), "with weno = \"z\""));
   EXPECT_TRUE(holds(error_of({"scheme.cfl=0.5", "scheme.fixed_dt=1e-3"}), "without fixed_dt"));
@@ -169,6 +192,7 @@ TEST(GasScene, RefusesContradictions) {
   EXPECT_TRUE(holds(error_of({"verify.exact=advection"}), "needs initial.expression and periodic"));
   EXPECT_TRUE(holds(error_of({"initial.expression={rho=\"1\",p=\"1\"}", "verify.exact=riemann"}),
                     "needs initial.riemann"));
+  EXPECT_EQ(error_of({"boundary.left=reflecting"}), "") << "nothing to compare with";
   EXPECT_TRUE(holds(error_of({"mesh.domain=[1, 1.0000000000001]"}), "cannot be divided"));
   EXPECT_TRUE(holds(error_of({"mesh.domain=[-1e308, 1e308]"}), "cannot be divided"));
 }

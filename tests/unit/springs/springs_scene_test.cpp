@@ -70,9 +70,9 @@ TEST(SpringsScene, MinimalSceneHasTheDocumentedDefaults) {
   EXPECT_EQ(scene.fabric.material.poisson, 0.3);
   EXPECT_EQ(scene.fabric.area_density, 0.756);
   EXPECT_EQ(scene.fabric.mass, fabric::Lumping::area);
-  EXPECT_EQ(scene.time.integrator, fabric::Integrator::rk4);
+  EXPECT_EQ(scene.time.integrator, fabric::Integrator::verlet);
   EXPECT_FALSE(scene.time.dt.has_value());
-  EXPECT_EQ(scene.time.safety, 0.8);
+  EXPECT_EQ(scene.time.safety, 0.4);
   EXPECT_TRUE(scene.output.fields.empty());
   EXPECT_EQ(scene.mesh.rest.size(), 1027U);
 }
@@ -285,6 +285,65 @@ TEST(SpringsScene, CompletesAndChecksOutput) {
       holds(error_of({"material.model=linear-vector", "time.end_time=0", "output.fields=[\"von_mises\"]"}),
             "not along edges"));
   EXPECT_TRUE(holds(error_of({"time.dt=1e-300"}), "more than 1e15 steps"));
+}
+
+/// Checks that divide by a quantity which the scene makes zero, or whose closed form does not hold.
+TEST(SpringsScene, RefusesChecksOutsideTheirValidity) {
+  const auto refusal = [](std::vector<std::string> sets, const std::string& text = least) {
+    return error_of(sets, text);
+  };
+  const std::string equilibrium = "verify.equilibrium=1";
+  EXPECT_TRUE(holds(refusal({equilibrium, "load=[{follower_pressure=1}]"}), "a pin, or a dead pressure"));
+  EXPECT_TRUE(holds(refusal({equilibrium, "load=[{gravity=[0,0,-1]}]"}), "a pin, or a dead pressure"));
+  EXPECT_TRUE(holds(refusal({equilibrium, "load=[{force={z=\"t\"}}]"}), "a pin, or a dead pressure"));
+  EXPECT_EQ(refusal({equilibrium, "load=[{pressure=1}]"}), "");
+  EXPECT_EQ(refusal({equilibrium, "load=[{follower_pressure=1}]", "pin=[{where=\"x>0.3\"}]"}), "");
+
+  const std::string rim = "pin=[{where=\"sqrt(x^2+y^2)>0.4-1e-9\"}]", hencky = "verify.hencky=1";
+  EXPECT_EQ(refusal({hencky, rim, "load=[{pressure=1}]"}), "");
+  EXPECT_TRUE(holds(refusal({hencky, "load=[{pressure=1}]"}), "clamps the rim"));
+  EXPECT_TRUE(holds(refusal({hencky, rim, "load=[{pressure=0}]"}), "other than 0"));
+  EXPECT_TRUE(holds(refusal({hencky, rim, "load=[{pressure=1}]", "initial.prestretch=0.1"}), "prestretch"));
+
+  const std::string rope_scene =
+      "app = \"springs\"\n[mesh]\nstring = { from = [0,0,0], to = [1,0,0], vertices = 5 }\n"
+      "[time]\nend_time = 1\n[[load]]\ngravity = [0,0,-9.81]\n";
+  const std::string ends = "pin=[{where=\"x==0||x==1\"}]", begin = "pin=[{where=\"x==0\"}]";
+  const auto catenary = [&](std::vector<std::string> sets) {
+    sets.emplace_back("verify.catenary=1");
+    return refusal(sets, rope_scene);
+  };
+  EXPECT_EQ(catenary({ends}), "");
+  EXPECT_TRUE(holds(catenary({begin}), "both ends"));
+  EXPECT_TRUE(holds(catenary({ends, "mass=[{where=\"x==0.5\",add=1}]"}), "without payloads"));
+  EXPECT_TRUE(holds(catenary({ends, "load=[{gravity=[0,0,0]}]"}), "gravity other than 0"));
+  EXPECT_TRUE(holds(catenary({ends, "initial.displacement={x=\"-x\",z=\"x\"}"}), "one above the other"));
+  EXPECT_EQ(refusal({begin, "verify.stretch=1"}, rope_scene), "");
+  EXPECT_TRUE(holds(refusal({ends, "verify.stretch=1"}, rope_scene), "none that holds the other"));
+  EXPECT_TRUE(holds(refusal({begin, "verify.stretch=1", "load=[{gravity=[0,0,0]}]"}, rope_scene),
+                    "gravity other than 0"));
+
+  const std::string sheet = "app = \"springs\"\n[mesh]\nrectangle = { vertices = 9 }\n[time]\nend_time = 1\n";
+  EXPECT_TRUE(holds(refusal({"verify.young=1", "pin=[{where=\"x==1\",motion={x=\"t*(1-t)\"}}]"}, sheet),
+                    "not 0 at the end"));
+  const auto front = [&](const std::string& probes) {
+    return refusal({"verify.front_speed={value=1,tolerance=1}", "output.probes=[" + probes + "]"}, sheet);
+  };
+  EXPECT_EQ(front("{at=[0,0,0]},{at=[1,0,0]}"), "");
+  EXPECT_TRUE(holds(front("{at=[0,0,0]},{at=[0.1,0,0]}"), "different vertices"));
+}
+
+TEST(SpringsScene, EnergyDriftNeedsLoadsWithAPotential) {
+  const auto drift = [](std::vector<std::string> sets) {
+    sets.emplace_back("verify.energy_drift=1");
+    return error_of(sets);
+  };
+  const std::string rim = "pin=[{where=\"sqrt(x^2+y^2)>0.4-1e-9\"}]", blown = "load=[{follower_pressure=10}]";
+  EXPECT_EQ(drift({rim, blown}), "");
+  EXPECT_TRUE(holds(drift({blown}), "rim is held"));
+  EXPECT_TRUE(holds(drift({"pin=[{where=\"sqrt(x^2+y^2)>0.4-1e-9\",axes=\"xy\"}]", blown}), "rim is held"));
+  EXPECT_TRUE(holds(drift({rim, "load=[{follower_pressure=\"10*x\"}]"}), "rim is held"));
+  EXPECT_TRUE(holds(drift({rim, "load=[{follower_pressure=\"10*t\"}]"}), "rim is held"));
 }
 
 TEST(SpringsScene, RefusesChecksWithoutTheirQuantity) {
