@@ -26,7 +26,8 @@ def _version() -> str:
         check=False,
     )
     import h5py
-    import matplotlib
+
+    from .style import matplotlib
 
     # An installed package has no CMakeLists.txt: there the launcher sets DROGUE_VERSION.
     number = os.environ.get("DROGUE_VERSION")
