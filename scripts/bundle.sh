@@ -71,7 +71,7 @@ find "$out" -type f -perm -u+x -exec ldd {} + | awk '/=> \// { print $3 }' | sor
     install -m 644 "$library" "$out/lib/"
   fi
 done
-python3 -B scripts/lib/drop_runpath.py "$out"/lib/*
+python3 -IB scripts/lib/drop_runpath.py "$out"/lib/*
 
 for app in gas springs options parachute perf; do
   launcher="$out/bin/drogue-$app"

@@ -35,7 +35,8 @@ done
 say "running the scenes"
 python="$root/build/venv/bin/python3"
 [ -x "$python" ] || python=python3
-"$python" -c 'import h5py, jinja2, matplotlib, PIL' 2>/dev/null ||
+"$python" -P -c 'import importlib.util, sys; sys.exit(not all(map(importlib.util.find_spec, sys.argv[1:])))' \
+  h5py jinja2 matplotlib PIL ||
   fail "$python lacks the packages of the pictures: install those of scripts/requirements.txt, or start without --system."
-PYTHONPATH="$root/scripts${PYTHONPATH:+:$PYTHONPATH}" exec "$python" -m plot.demo \
+exec "$python" -I -X utf8 "$root/scripts/plot/start.py" plot.demo \
   --bin "$root/build/$preset/bin" --out "${DROGUE_DEMO_OUT:-$root/out/demo}" ${scenes[@]+"${scenes[@]}"}

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -33,13 +34,22 @@ bool is_leftover(const std::string& name) {
                      [&name](const std::string& file) { return name.starts_with("." + file + "."); });
 }
 
+/// Name of a picture without its format and, in `.fields.1234.png` of a drogue-plot that was killed, without
+/// the process.
+std::string picture_name(const std::filesystem::path& file) {
+  std::filesystem::path name = file.stem();
+  if (!name.string().starts_with('.')) return name.string();
+  const std::string process = name.extension().string();
+  if (process.size() < 2 || process.find_first_not_of("0123456789", 1) != std::string::npos) return {};
+  return name.stem().string().substr(1);
+}
+
 /// True for a picture that drogue-plot made of a former run.
 bool is_picture(const std::filesystem::path& file) {
-  const std::string stem = file.stem().string();
-  const std::string kind = file.extension().string();
-  const bool named =
-      stem == "fields" || stem == "history" || stem == "study" || stem.starts_with("space_time_");
-  return named && (kind == ".png" || kind == ".pdf" || kind == ".svg" || kind == ".gif" || kind == ".mp4");
+  constexpr std::array formats = {".png", ".pdf", ".svg", ".gif", ".mp4"};
+  const std::string name = picture_name(file);
+  return std::ranges::count(formats, file.extension().string()) != 0 &&
+         (std::ranges::count(picture_names(), name) != 0 || name.starts_with("space_time_"));
 }
 
 /// Succeeds if there is no such file.
@@ -52,6 +62,12 @@ void remove_file(const std::filesystem::path& file) {
 const std::vector<std::string>& run_file_names() {
   static const std::vector<std::string> names = {"scene.toml",  "result.json", "history.csv", "fields.h5",
                                                  "fields.xdmf", "restart.h5",  "study.csv",   "study.json"};
+  return names;
+}
+
+const std::vector<std::string>& picture_names() {
+  static const std::vector<std::string> names = {"fields",   "history",  "study", "profiles",
+                                                 "spectrum", "canopies", "forces"};
   return names;
 }
 

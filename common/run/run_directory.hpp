@@ -55,6 +55,10 @@ class RunDirectory {
 /// are ever removed.
 const std::vector<std::string>& run_file_names();
 
+/// Names of the pictures that drogue-plot makes of a run, without their formats; `space_time_FIELD` is one
+/// too. They are those of scripts/plot/picture_names.py.
+const std::vector<std::string>& picture_names();
+
 /// True if `directory` holds a file of a run.
 bool holds_run(const std::filesystem::path& directory);
 

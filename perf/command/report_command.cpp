@@ -35,18 +35,28 @@ void write(const fs::path& file, const std::string& text) {
   std::printf("%s\n", file.c_str());
 }
 
+/// Time of the last change of a file; of none, the least one.
+fs::file_time_type changed(const fs::path& file) {
+  std::error_code none;
+  return fs::last_write_time(file, none);
+}
+
 ExitCode write_report(const std::string& folder, const std::string& out) {
   const std::vector<MeasuredCase> records = read_folder(folder);
   std::error_code error;
   if (fs::create_directories(out, error); error)
     throw Failure(ExitCode::io_error, "the folder '" + out + "' cannot be made: " + error.message());
+  const fs::path page = fs::path(out) / "report.html";
+  const fs::file_time_type former = changed(page);
   const auto code = static_cast<ExitCode>(run_drogue_plot({folder, "--report", "--out", out}));
   // It also checks the facts of each kind of record, and states the reasons of these codes itself.
-  if (code == ExitCode::invalid_scene) return code;
+  if (code == ExitCode::invalid_scene || code == ExitCode::interrupted) return code;
   write(fs::path(out) / "records.csv", to_csv(records));
   write(fs::path(out) / "reframe.json", to_reframe(records));
-  if (code == ExitCode::ok || code == ExitCode::usage || code == ExitCode::io_error) return code;
-  throw Failure(ExitCode::io_error, "no page was made: drogue-plot is not beside this program, or failed");
+  if (code == ExitCode::ok && changed(page) != former) return code;
+  if (code == ExitCode::usage || code == ExitCode::io_error) return ExitCode::io_error;
+  throw Failure(ExitCode::io_error,
+                "report.html was not made: drogue-plot is not beside this program, or failed");
 }
 
 }  // namespace

@@ -6,9 +6,9 @@ python_environment() {
   if environment_is_whole; then return 0; fi
   say "making the Python environment"
   rm -rf "$deps/venv"
-  run_logged venv python3 -m venv "$deps/venv"
+  run_logged venv python3 -I -m venv "$deps/venv"
   # shellcheck disable=SC2086  # one word a requirement
-  run_logged pip-tools "$deps/venv/bin/python" -m pip install --quiet --disable-pip-version-check $FETCH_REQUIREMENTS
+  run_logged pip-tools "$deps/venv/bin/python" -I -m pip install --quiet --disable-pip-version-check $FETCH_REQUIREMENTS
 }
 
 environment_is_whole() {
@@ -19,7 +19,7 @@ environment_is_whole() {
 # beside a build.
 picture_packages() {
   if environment_is_whole; then return 0; fi
-  run_logged pip-pictures "$deps/venv/bin/python" -m pip install --quiet --disable-pip-version-check -r "$root/scripts/requirements.txt"
+  run_logged pip-pictures "$deps/venv/bin/python" -I -m pip install --quiet --disable-pip-version-check -r "$root/scripts/requirements.txt"
   printf '%s\n' "$environment_stamp" >"$deps/venv/.stamp"
 }
 
@@ -41,7 +41,7 @@ fetch_kokkos() {
     say "fetching Kokkos $KOKKOS_VERSION"
     # A requirement with its hash: pip refuses another file before anything of it runs.
     printf '%s==%s --hash=sha256:%s\n' "$KOKKOS_PACKAGE" "$KOKKOS_PACKAGE_VERSION" "$KOKKOS_SHA256" >"$deps/kokkos-requirement.txt"
-    run_logged kokkos-fetch "$deps/venv/bin/python" -m pip download --disable-pip-version-check --no-deps \
+    run_logged kokkos-fetch "$deps/venv/bin/python" -I -m pip download --disable-pip-version-check --no-deps \
       --no-build-isolation --no-binary "$KOKKOS_PACKAGE" --dest "$deps" --require-hashes -r "$deps/kokkos-requirement.txt"
   fi
   check_archive "$archive"

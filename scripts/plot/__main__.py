@@ -1,4 +1,4 @@
-"""Entry point of `python -m plot`: runs the program, in an interpreter that has the required packages."""
+"""Entry point of drogue-plot: runs the program, in an interpreter that has the required packages."""
 
 import contextlib
 import importlib.util
@@ -6,6 +6,7 @@ import os
 import sys
 from pathlib import Path
 
+from .failure import USAGE
 from .program import run_program
 
 _NEEDED = ("numpy", "matplotlib", "h5py", "PIL")
@@ -13,6 +14,13 @@ _NEEDED = ("numpy", "matplotlib", "h5py", "PIL")
 
 def _run_with_packages() -> int:
     if all(importlib.util.find_spec(name) for name in _NEEDED):
+        try:
+            from . import style  # noqa: F401  it imports all but h5py
+            import h5py  # noqa: F401
+        except ImportError as error:
+            reason = str(error).strip().splitlines()[0]
+            print(f"drogue-plot: a Python package cannot be imported: {reason}.", file=sys.stderr)
+            return USAGE
         from .cli import main
 
         return main()
@@ -24,16 +32,14 @@ def _run_with_packages() -> int:
     with contextlib.suppress(OSError):
         if python.is_file() and "DROGUE_PLOT_MOVED" not in os.environ:
             os.environ["DROGUE_PLOT_MOVED"] = "1"
-            os.environ["PYTHONPATH"] = os.pathsep.join(
-                filter(None, [str(source / "scripts"), os.environ.get("PYTHONPATH")])
-            )
-            os.execv(python, [str(python), "-m", "plot", *sys.argv[1:]])
+            start = Path(__file__).with_name("start.py")
+            os.execv(python, [str(python), "-I", "-X", "utf8", str(start), "plot", *sys.argv[1:]])
     print(
         f"drogue-plot: Python packages are missing ({', '.join(_NEEDED)}): run scripts/setup.sh, or set DROGUE_VENV "
         "to an environment made from scripts/requirements.txt.",
         file=sys.stderr,
     )
-    return 2
+    return USAGE
 
 
 sys.exit(run_program(_run_with_packages))

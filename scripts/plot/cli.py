@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 from .failure import INVALID, OK, USAGE, Failure
+from .picture_names import SPACE_TIME, picture_name
 from .program import require_one_rank, write_line
 
 SPACE_TIME_SNAPSHOTS = 8  # smallest number of snapshots for a space-time map
@@ -26,7 +27,8 @@ def _version() -> str:
         check=False,
     )
     import h5py
-    import matplotlib
+
+    from .style import matplotlib
 
     # An installed package has no CMakeLists.txt: there the launcher sets DROGUE_VERSION.
     number = os.environ.get("DROGUE_VERSION")
@@ -255,7 +257,7 @@ def draw(options: argparse.Namespace):
     out = options.out or options.directory
 
     def save(figure, name, few_colours=True):
-        return style.save_figure(figure, out / f"{name}.{options.format}", options.dpi, few_colours)
+        return style.save_figure(figure, out / f"{picture_name(name)}.{options.format}", options.dpi, few_colours)
 
     if is_flow(run):
         yield from _flow_pictures(run, options, out, save)

@@ -5,16 +5,14 @@ import os
 import re
 from pathlib import Path
 
-import matplotlib
+from .plain_matplotlib import matplotlib  # before all that imports matplotlib  isort: skip
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from PIL import Image
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
-from PIL import Image  # noqa: E402
-
-from .failure import IO_ERROR, Failure  # noqa: E402
-from .program import at_signal  # noqa: E402
+from .failure import IO_ERROR, Failure
+from .program import at_signal
 
 # Okabe and Ito (2008), ordered such that neighbours also differ in lightness.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#5B4A9C", "#7A7A7A")

@@ -69,6 +69,34 @@ class Report(perf_program.PerfTest):
                 self.assertEqual("", process.stdout)
                 self.assertEqual(["a.jsonl"], [file.name for file in self.folder.iterdir()])
 
+    def test_exits_with_6_where_no_page_was_made(self):
+        program = self.folder / "bin" / "drogue-perf"
+        program.parent.mkdir()
+        shutil.copy(perf_program.PROGRAM, program)
+        shutil.copy(RECORDS + "/old.jsonl", self.folder / "a.jsonl")
+        former = "the page of a former report"
+        (self.folder / "report.html").write_text(former, encoding="utf-8")
+        for script in (None, "exit 0", "exit 1", "exit 2", "kill -KILL $$"):
+            with self.subTest(script):
+                if script:
+                    program.with_name("drogue-plot").write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
+                    program.with_name("drogue-plot").chmod(0o755)
+                done = subprocess.run([program, "report", "."], cwd=self.folder, capture_output=True, text=True, check=False)
+                self.assertEqual(6, done.returncode, done.stdout + done.stderr)
+                self.assertEqual(["./records.csv", "./reframe.json"], done.stdout.splitlines())
+                # drogue-plot gives its own reason with code 2.
+                said = "" if script == "exit 2" else "drogue-perf: report.html was not made: "
+                self.assertTrue(done.stderr.startswith(said) and done.stderr.count("\n") == (script != "exit 2"), done.stderr)
+        self.assertEqual(former, (self.folder / "report.html").read_text(encoding="utf-8"))
+
+    def test_executes_no_file_of_the_working_folder(self):
+        self.require_packages()
+        shutil.copy(RECORDS + "/old.jsonl", self.folder / "a.jsonl")
+        for name in ("plot", "csv", "numpy"):
+            (self.folder / f"{name}.py").write_text("raise SystemExit(0)\n", encoding="utf-8")
+        made = self.expect(0, "report", ".", environment={"MPLBACKEND": "module://matplotlib_inline.backend_inline"}).stdout
+        self.assertEqual("./report.html", made.splitlines()[0])
+
     def test_refuses_folders_without_valid_records(self):
         self.assertIn("there is no folder 'missing'", self.expect(2, "report", "missing").stderr)
         self.assertIn("holds no records", self.expect(2, "report", ".").stderr)

@@ -80,6 +80,8 @@ class Directory(gas_program.GasTest):
     def test_overwrite_removes_only_the_former_run(self):
         self.coarse(sets=["output.restart_every=20"])
         (self.folder / "out/sod/notes.txt").write_text("mine")
+        for name in ("profiles.png", "forces.pdf", "canopies.svg", "spectrum.png", "space_time_rho.png", "fields.mp4"):
+            (self.folder / "out/sod" / name).write_text("of the former run")
         self.expect(0, "sod", "--backend", "serial", "--overwrite", sets=[gas_program.NO_FIELDS])
         self.assertEqual(["history.csv", "notes.txt", "restart.h5", "result.json", "scene.toml"], self.names())
 

@@ -40,9 +40,13 @@ TEST(RunDirectory, OverwriteRemovesKnownNamesOnly) {
   const TemporaryDirectory parent;
   for (const std::string& name : run_file_names()) write_file_atomically(parent / name, "former");
   write_file_atomically(parent / ".result.json.77.tmp", "left by a kill");
-  const std::vector<std::string> pictures = {"fields.png", "space_time_rho.png", "fields.gif"};
+  std::vector<std::string> pictures = {"space_time_rho.png", "fields.gif", "fields.mp4", "history.pdf",
+                                       ".fields.77.gif"};
+  for (const std::string& name : picture_names()) pictures.push_back(name + ".png");
   for (const std::string& name : pictures) write_file_atomically(parent / name, "former");
-  const std::vector<std::string> foreign = {"notes.txt", ".mine.tmp", "photo.png", "fields.png.bak"};
+  const std::vector<std::string> foreign = {"notes.txt",      ".mine.tmp",     "photo.png",
+                                            "fields.png.bak", "my-fields.png", ".fields.old.png",
+                                            ".photo.77.png",  "profiles.txt"};
   for (const std::string& name : foreign) write_file_atomically(parent / name, "mine");
   RunDirectory run(parent.path(), ExistingRun::overwrite);
   run.begin();
