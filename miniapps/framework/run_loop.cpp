@@ -1,9 +1,11 @@
 #include "miniapps/framework/run_loop.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "common/program/progress.hpp"
 #include "common/program/signals.hpp"
+#include "common/program/stopwatch.hpp"
 #include "kernels/device/profiling_counters.hpp"
 
 namespace drogue::framework {
@@ -19,7 +21,8 @@ class RunLoop {
         _wanted(simulation.output()),
         _end(simulation.end_time().time),
         _now(simulation.now()),
-        _progress(request.quiet) {}
+        _progress(request.quiet),
+        _phases_before(simulation.phases().phases()) {}
 
   /// However the run ends, the result shows how far it came.
   ~RunLoop() {
@@ -27,7 +30,7 @@ class RunLoop {
     _result.steps = now.step;
     _result.time = now.time;
     _simulation.describe(_result);
-    if (_output) _result.timing.io_s = _output->waited();
+    describe_times();
     _result.describe_ledger(device::profiling_counters());
   }
   RunLoop(const RunLoop&) = delete;
@@ -41,6 +44,14 @@ class RunLoop {
   }
 
  private:
+  void describe_times() {
+    const run::ResultDocument::WallTimes phases = _simulation.phases();
+    run::ResultDocument::WallTimes& timing = _result.timing;
+    timing.compute_s = phases.compute_s, timing.bound_s = phases.bound_s;
+    timing.h2d_s = phases.h2d_s, timing.d2h_s = phases.d2h_s;
+    timing.io_s = std::max(0.0, _stopwatch.seconds() - (phases.phases() - _phases_before));
+  }
+
   [[nodiscard]] bool ended() const { return _stop == Stop::interrupted || _stop == Stop::failed; }
 
   void open_files() {
@@ -104,6 +115,8 @@ class RunLoop {
   const double _end;
   SimulationTime _now;
   ProgressLine _progress;
+  const double _phases_before;  ///< that setup has taken, s
+  const Stopwatch _stopwatch;
   std::optional<RunOutput> _output;
   Stop _stop = Stop::target;
   bool _warm = false;
