@@ -1,4 +1,4 @@
-# Build facts that programs print. The git hash is read at build time, so a commit recompiles one small file.
+# Build facts that programs print. Git hash and flags are read at build time, so that a commit recompiles one small file.
 
 set(DROGUE_VERSION_SOURCE "${PROJECT_BINARY_DIR}/generated/common/version.cpp")
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
@@ -30,7 +30,7 @@ set(_template "${PROJECT_BINARY_DIR}/generated/common/version.cpp.in")
 configure_file("${PROJECT_SOURCE_DIR}/common/version.cpp.in" "${_template}" @ONLY)
 add_custom_target(drogue_version
   COMMAND "${CMAKE_COMMAND}" -DSOURCE=${PROJECT_SOURCE_DIR} -DTEMPLATE=${_template} -DOUTPUT=${DROGUE_VERSION_SOURCE}
-          -P "${PROJECT_SOURCE_DIR}/cmake/write_version.cmake"
+          -DCOMMANDS=${PROJECT_BINARY_DIR}/compile_commands.json -P "${PROJECT_SOURCE_DIR}/cmake/write_version.cmake"
   BYPRODUCTS "${DROGUE_VERSION_SOURCE}"
-  COMMENT "Reading the git hash"
+  COMMENT "Reading git hash and compiler flags"
   VERBATIM)

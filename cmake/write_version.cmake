@@ -1,4 +1,5 @@
-# Run at build time with SOURCE, TEMPLATE, OUTPUT: fills in the git hash, touching OUTPUT only when it changes.
+# Run at build time with SOURCE, TEMPLATE, OUTPUT, COMMANDS: fills in the git hash and the flags of the kernels, touching OUTPUT
+# only when they change. COMMANDS: compile_commands.json; without it the flags stay those of the variables of CMake.
 
 set(hash unknown)
 execute_process(COMMAND git -C "${SOURCE}" rev-parse --short=12 HEAD
@@ -13,6 +14,36 @@ if(status EQUAL 0)
 endif()
 file(READ "${TEMPLATE}" text)
 string(REPLACE "<git hash>" "${hash}" text "${text}")
+
+# Kernels inherit options from targets of Kokkos, such as -march=native and -fopenmp, which no variable holds. Instances are
+# compiled by the compiler of the device, if there is one.
+set(command "")
+foreach(object IN ITEMS "drogue_kernels\\.dir/.*(/instances/|_united|unity_)" "drogue_kernels\\.dir/")
+  if(NOT command AND EXISTS "${COMMANDS}")
+    file(STRINGS "${COMMANDS}" command REGEX "\"command\": .* -o [^ ]*${object}" LIMIT_COUNT 1)
+  endif()
+endforeach()
+if(command)
+  string(REGEX REPLACE "^[^:]*: \"(.*)\",?$" "\\1" command "${command}")
+  string(REPLACE "\\\"" "\"" command "${command}")
+  separate_arguments(words UNIX_COMMAND "${command}")
+  list(POP_FRONT words)
+  set(flags "")
+  set(takes_value OFF)
+  foreach(word IN LISTS words)
+    if(takes_value)
+      set(takes_value OFF)
+    elseif(word MATCHES "^(-o|-c|-x|-I|-isystem|-include|-D|-MF|-MT)$")
+      set(takes_value ON)
+    # Includes, definitions and warnings change no machine code, NDEBUG excepted.
+    elseif(word STREQUAL "-DNDEBUG" OR NOT word MATCHES "^(-Xcompiler=)?-([IDWM]|isystem|-diag|-Werror|forward)")
+      list(APPEND flags "${word}")
+    endif()
+  endforeach()
+  list(JOIN flags " " flags)
+  string(REGEX REPLACE "[\\\\\"]" "" flags "${flags}")
+  string(REGEX REPLACE "\\.flags = \"[^\"]*\"" ".flags = \"${flags}\"" text "${text}")
+endif()
 set(old "")
 if(EXISTS "${OUTPUT}")
   file(READ "${OUTPUT}" old)

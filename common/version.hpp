@@ -9,7 +9,8 @@ struct BuildInfo {
   std::string_view version;   ///< of the project, "0.1.0"
   std::string_view git;       ///< 12 digits, "-dirty" after them if files were changed; "unknown" without git
   std::string_view compiler;  ///< "GNU 12.2.0", in a CUDA build with nvcc and the architecture
-  std::string_view flags;     ///< of the host compiler
+  std::string_view
+      flags;  ///< of the compile commands of the kernels, but what they include, define and warn of
   std::string_view build_type;  ///< "Release"
   std::string_view kokkos;
   std::string_view kokkos_kernels;

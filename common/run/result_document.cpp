@@ -52,7 +52,7 @@ Json timing_json(const ResultDocument::WallTimes& timing) {
   return {{"wall_s", number(timing.wall_s)},       {"setup_s", number(timing.setup_s)},
           {"compute_s", number(timing.compute_s)}, {"h2d_s", number(timing.h2d_s)},
           {"d2h_s", number(timing.d2h_s)},         {"io_s", number(timing.io_s)},
-          {"bound_s", number(timing.bound_s)}};
+          {"bound_s", number(timing.bound_s)},     {"verify_s", number(timing.verify_s)}};
 }
 
 Json ledger_json(const ResultDocument::ProfilingCounters& ledger) {

@@ -79,10 +79,17 @@ struct ResultDocument {
   std::map<std::string, double> errors;
   std::vector<Check> checks;
   Metrics metrics;  ///< limiter counts, energies and the like, after `checks`
+  /// Parts of the wall time, s, which do not overlap: `wall_s` is their sum.
   struct WallTimes {
-    double wall_s = 0, setup_s = 0, compute_s = 0, h2d_s = 0, d2h_s = 0, io_s = 0;
-    double bound_s =
-        0;  ///< bounds of the stable step, no part of `compute_s`; the first are in `setup_s` too
+    double wall_s = 0;
+    double setup_s = 0;           ///< from the start of the run to its first step, without the other parts
+    double compute_s = 0;         ///< steps
+    double h2d_s = 0, d2h_s = 0;  ///< copies of the state to the device and back
+    double io_s = 0;              ///< all else from the first step to the last file
+    double bound_s = 0;           ///< bounds of the stable step
+    double verify_s = 0;          ///< checks, with the runs of references
+    /// Sum of the phases that a simulation measures itself.
+    [[nodiscard]] double phases() const { return compute_s + h2d_s + d2h_s + bound_s; }
   } timing;
   struct ProfilingCounters {
     std::int64_t kernel_launches = 0, fences = 0, device_allocations_after_warmup = 0, h2d_bytes = 0,

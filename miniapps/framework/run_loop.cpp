@@ -1,11 +1,13 @@
 #include "miniapps/framework/run_loop.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 
 #include "common/program/progress.hpp"
 #include "common/program/signals.hpp"
+#include "common/program/stopwatch.hpp"
 #include "kernels/device/profiling_counters.hpp"
 
 namespace drogue::framework {
@@ -22,7 +24,8 @@ class RunLoop {
         _end(simulation.end_time().time),
         _now(simulation.now()),
         _begin(_now.step),
-        _progress(request.quiet) {}
+        _progress(request.quiet),
+        _phases_before(simulation.phases().phases()) {}
 
   /// However the run ends, the result shows how far it came.
   ~RunLoop() {
@@ -30,7 +33,7 @@ class RunLoop {
     _result.steps = now.step;
     _result.time = now.time;
     _simulation.describe(_result);
-    if (_output) _result.timing.io_s = _output->waited();
+    describe_times();
     _result.describe_ledger(device::profiling_counters());
   }
   RunLoop(const RunLoop&) = delete;
@@ -51,6 +54,14 @@ class RunLoop {
     if (_wanted.restart_every == 0) return false;
     const bool is_later = _now.step > _begin && !_wanted.restart_every;
     return is_later || !std::filesystem::exists(_request.files.directory->file("restart.h5"));
+  }
+
+  void describe_times() {
+    const run::ResultDocument::WallTimes phases = _simulation.phases();
+    run::ResultDocument::WallTimes& timing = _result.timing;
+    timing.compute_s = phases.compute_s, timing.bound_s = phases.bound_s;
+    timing.h2d_s = phases.h2d_s, timing.d2h_s = phases.d2h_s;
+    timing.io_s = std::max(0.0, _stopwatch.seconds() - (phases.phases() - _phases_before));
   }
 
   [[nodiscard]] bool ended() const { return _stop == Stop::interrupted || _stop == Stop::failed; }
@@ -118,6 +129,8 @@ class RunLoop {
   SimulationTime _now;
   const std::int64_t _begin;  // step
   ProgressLine _progress;
+  const double _phases_before;  ///< that setup has taken, s
+  const Stopwatch _stopwatch;
   std::optional<RunOutput> _output;
   Stop _stop = Stop::target;
   bool _warm = false;

@@ -5,7 +5,6 @@
 #include <memory>
 #include <utility>
 
-#include "common/program/stopwatch.hpp"
 #include "common/run/fields/fields_writer.hpp"
 #include "common/run/files/io_error.hpp"
 
@@ -82,29 +81,23 @@ void RunOutput::write_row(const HistoryRow& row) {
 void RunOutput::write_fields() {
   if (!_fields) return;
   const SimulationTime now = _simulation.now();
-  {
-    const ScopedStopwatch stopwatch(_waited);
-    _writer.wait_for_slot();
-  }
+  _writer.wait_for_slot();
   const auto task = [this, now, write = _simulation.snapshot()] {
     _fields->begin_step(now.time, now.step);
     write(*_fields);
     _fields->end_step();
   };
   if (!_simulation.writes_on_calling_thread()) return _writer.submit(task);
-  const ScopedStopwatch stopwatch(_waited);
   task();
 }
 
 void RunOutput::write_restart() {
-  const ScopedStopwatch stopwatch(_waited);
   _writer.finish();
   if (_history) _history->flush();  // a restart must find every row before it
   write_restart_file(_restart_file, _fingerprint, _simulation);
 }
 
 void RunOutput::finish() {
-  const ScopedStopwatch stopwatch(_waited);
   _writer.finish();
   if (_history) _history->finish();
 }

@@ -51,9 +51,6 @@ class RunOutput {
   /// Blocks until everything is on disk.
   void finish();
 
-  /// Time that the steps have waited for files, s.
-  [[nodiscard]] double waited() const { return _waited; }
-
  private:
   Simulation& _simulation;
   std::filesystem::path _restart_file;
@@ -61,7 +58,6 @@ class RunOutput {
   std::optional<run::HistoryWriter> _history;
   std::unique_ptr<run::FieldSink> _fields;
   double _last_row_time = -1.0;
-  double _waited = 0.0;
   run::BackgroundWriter _writer;  // last: its thread uses the others until it ends
 };
 

@@ -77,16 +77,18 @@ class SceneRun {
     session.describe(_result);
     if (!_options.quiet) session.print_shared_cores(_app.program());
     _result.precision = scene->precision();
-    const Stopwatch setup;
     const std::unique_ptr<Simulation> simulation =
         scene->create({backend, _options.baseline, _options.quiet, _communicator});
     set_up(*simulation, files);
-    _result.timing.setup_s = setup.seconds();
     begin_directory();
     _directory.write_scene(scene->print());
+    _result.timing.setup_s = _stopwatch.seconds() - simulation->phases().phases();
     _result.exit_code = run_to_end(*simulation, {files, _options.quiet, true, {}}, _result);
     if (_result.exit_code != ExitCode::ok) return;
-    _result.exit_code = simulation->verify(&_directory, _result);
+    {
+      const ScopedStopwatch stopwatch(_result.timing.verify_s);
+      _result.exit_code = simulation->verify(&_directory, _result);
+    }
     if (_result.exit_code == ExitCode::interrupted)
       write_restart_file(_directory.file("restart.h5"), files.fingerprint, *simulation);
     if (const std::string failed = _result.failed_check(); !failed.empty())

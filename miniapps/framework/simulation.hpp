@@ -119,8 +119,11 @@ class Simulation {
   /// One sentence on the failure. `restart_written`: restart.h5 holds the last good state.
   [[nodiscard]] virtual std::string failure_text(bool /*restart_written*/) { return "the run failed"; }
 
-  /// Fills in time step sizes, wall times (s) and metrics; `steps` and `time` are set.
+  /// Fills in time step sizes and metrics; `steps` and `time` are set.
   virtual void describe(run::ResultDocument&) {}
+
+  /// Wall times of steps, copies and bounds so far, which do not overlap; the other times are 0.
+  [[nodiscard]] virtual run::ResultDocument::WallTimes phases() const { return {}; }
 
   /// Computes errors and adds the checks of the scene's [verify]. `directory` holds the files of the run;
   /// null if the run writes none. Returns `interrupted` after a signal, otherwise `ok`, also if checks fail.

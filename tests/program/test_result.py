@@ -16,7 +16,7 @@ KEYS = ["schema", "program", "version", "git", "scene", "backend", "device", "dr
         "ledger", "peak_bytes", "provenance"]
 PARTS = {
     "limiter": ["touches", "cells"],
-    "timing": ["wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s", "bound_s"],
+    "timing": ["wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s", "bound_s", "verify_s"],
     "ledger": ["kernel_launches", "fences", "device_allocations_after_warmup", "h2d_bytes", "d2h_bytes"],
     "peak_bytes": ["host", "device"],
     "provenance": ["compiler", "flags", "kokkos", "cpu", "gpu", "driver", "date"],

@@ -152,7 +152,6 @@ std::string Simulation::failure_text(bool) {
 
 void Simulation::describe(run::ResultDocument& result) {
   const gas::RestartState now = _solver->restart_state();
-  const gas::PhaseTimes phases = _solver->phase_times();
   result.driver = _solver->driver();
   result.dt_min = now.dt_min;
   result.dt_max = now.dt_max;
@@ -160,9 +159,12 @@ void Simulation::describe(run::ResultDocument& result) {
   // Orders for smooth flow; SSP Runge-Kutta has the third with three stages as with four.
   result.metrics.set("order", "space", std::int64_t{5});
   result.metrics.set("order", "time", std::int64_t{3});
-  result.timing.compute_s = _settings.baseline ? phases.compute : _compute_s;
-  result.timing.h2d_s = _settings.baseline ? phases.h2d : _h2d_s;
-  result.timing.d2h_s = _settings.baseline ? phases.d2h : 0.0;
+}
+
+run::ResultDocument::WallTimes Simulation::phases() const {
+  if (!_settings.baseline) return {.compute_s = _compute_s, .h2d_s = _h2d_s};
+  const gas::PhaseTimes phases = _solver->phase_times();
+  return {.compute_s = phases.compute, .h2d_s = phases.h2d, .d2h_s = phases.d2h};
 }
 
 }  // namespace drogue::gas_app

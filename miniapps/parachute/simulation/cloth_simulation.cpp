@@ -236,8 +236,10 @@ void ClothSimulation::describe(run::ResultDocument& result) {
   result.dt_min = _block.dt_min;
   result.dt_max = _block.dt_max;
   result.metrics.set("canopies", "vertices", static_cast<std::int64_t>(_sheets.positions.size()));
-  result.timing.compute_s = _compute_s;
-  result.timing.h2d_s = _h2d_s;
+}
+
+run::ResultDocument::WallTimes ClothSimulation::phases() const {
+  return {.compute_s = _compute_s, .h2d_s = _h2d_s};
 }
 
 ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {

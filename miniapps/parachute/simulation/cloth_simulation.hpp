@@ -39,6 +39,7 @@ class ClothSimulation final : public framework::Simulation {
   [[nodiscard]] framework::FieldsTask snapshot() override;
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;
+  [[nodiscard]] run::ResultDocument::WallTimes phases() const override;
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
  private:

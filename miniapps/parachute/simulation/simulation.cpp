@@ -263,8 +263,10 @@ void Simulation::describe(run::ResultDocument& result) {
     if (_scene.is_explicit())
       result.metrics.set("canopies", "added_mass_ratio", _scene.largest_added_mass_ratio());
   }
-  result.timing.compute_s = _compute_s;
-  result.timing.h2d_s = _h2d_s;
+}
+
+run::ResultDocument::WallTimes Simulation::phases() const {
+  return {.compute_s = _compute_s, .h2d_s = _h2d_s};
 }
 
 }  // namespace drogue::parachute_app

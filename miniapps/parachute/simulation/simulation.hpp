@@ -37,6 +37,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] framework::FieldsTask snapshot() override;
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;
+  [[nodiscard]] run::ResultDocument::WallTimes phases() const override;
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
   /// Errors against the exact solution of the scene at the present time, by the names of the tolerances.

@@ -284,10 +284,10 @@ void Simulation::describe(run::ResultDocument& result) {
   result.metrics.set("order", "time", order_in_time(_scene));
   result.dt_min = _dt_min;
   result.dt_max = _dt_max;
-  result.timing.compute_s = _compute_s;
-  result.timing.h2d_s = _h2d_s;
-  result.timing.d2h_s = _d2h_s;
-  result.timing.bound_s = _bound_s;
+}
+
+run::ResultDocument::WallTimes Simulation::phases() const {
+  return {.compute_s = _compute_s, .h2d_s = _h2d_s, .d2h_s = _d2h_s, .bound_s = _bound_s};
 }
 
 }  // namespace drogue::springs_app

@@ -47,6 +47,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] framework::FieldsTask snapshot() override;
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;
+  [[nodiscard]] run::ResultDocument::WallTimes phases() const override;
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
   /// Totals of the current state, and the work done so far. Blocks.

@@ -43,7 +43,7 @@ TEST(ResultDocument, HoldsEveryFieldOfTheSchema) {
   EXPECT_EQ(json["limiter"]["touches"].dump(), "3");
   EXPECT_EQ(keys(json["checks"][0]), sorted({"name", "value", "tolerance", "passed"}));
   EXPECT_EQ(keys(json["timing"]),
-            sorted({"wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s", "bound_s"}));
+            sorted({"wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s", "bound_s", "verify_s"}));
   EXPECT_EQ(keys(json["ledger"]), sorted({"kernel_launches", "fences", "device_allocations_after_warmup",
                                           "h2d_bytes", "d2h_bytes"}));
   EXPECT_EQ(keys(json["peak_bytes"]), sorted({"host", "device"}));

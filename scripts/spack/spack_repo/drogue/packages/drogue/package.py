@@ -1,4 +1,7 @@
-"""Spack recipe: `spack repo add scripts/spack`, then `spack dev-build drogue@main` in a clone."""
+"""Recipe for Spack 1.0 or newer, in a clone: `spack repo add scripts/spack/spack_repo/drogue`, `spack dev-build drogue@main`."""
+
+from spack_repo.builtin.build_systems.cmake import CMakePackage
+from spack_repo.builtin.build_systems.cuda import CudaPackage
 
 from spack.package import *
 
@@ -16,9 +19,10 @@ class Drogue(CMakePackage, CudaPackage):
     depends_on("c", type="build")
     depends_on("cxx", type="build")
     depends_on("cmake@3.25:", type="build")
-    depends_on("kokkos@4.5: +serial cxxstd=20")
+    # Kokkos 5 is not tried.
+    depends_on("kokkos@4.5:4 +serial cxxstd=20")
     depends_on("kokkos+openmp", when="+openmp")
-    depends_on("kokkos-kernels@4.5:")
+    depends_on("kokkos-kernels@4.5:4")
     depends_on("mpi")
     depends_on("hdf5@1.10: +mpi")
     variant("hypre", default=True, description="hypre as a pressure solver of flows")
@@ -31,15 +35,18 @@ class Drogue(CMakePackage, CudaPackage):
     depends_on("boost@1.74:")
     depends_on("googletest@1.12:", type="build")
     depends_on("python@3.11:", type=("build", "run"))
+    depends_on("py-numpy", type="run")
     depends_on("py-matplotlib", type="run")
     depends_on("py-h5py", type="run")
+    depends_on("py-jinja2", type="run")
+    depends_on("py-pillow", type="run")
 
     # The mdspan View of this release is miscompiled by nvcc as C++20.
-    conflicts("^kokkos@4.7.0", when="+cuda")
+    conflicts("^kokkos@4.7.00", when="+cuda")
     conflicts("%gcc@:11")
     for _arch in ("80", "86", "89", "90", "100"):
         depends_on(
-            f"kokkos+cuda~wrapper cmake_lang=cuda cuda_arch={_arch}", when=f"+cuda cuda_arch={_arch}"
+            f"kokkos+cuda~wrapper+cmake_lang cuda_arch={_arch}", when=f"+cuda cuda_arch={_arch}"
         )
     conflicts("cuda_arch=none", when="+cuda", msg="name one GPU architecture, for example cuda_arch=90")
 
