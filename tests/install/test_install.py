@@ -78,7 +78,7 @@ class Install(unittest.TestCase):
         common = ["sine", "--backend", "serial", "--out", "heat"]
         self.assertIn("linf", run(0, *common))
         folder = self.work / "heat"
-        self.assertEqual({"fields.h5", "fields.xdmf", "history.csv", "result.json", "scene.toml"},
+        self.assertEqual({"fields.h5", "fields.xdmf", "history.csv", "restart.h5", "result.json", "scene.toml"},
                          {path.name for path in folder.iterdir()})
         reported = json.loads((folder / "result.json").read_text(encoding="utf-8"))
         self.assertEqual(("drogue-heat", "ok", 0.02), (reported["program"], reported["status"], reported["time"]))

@@ -70,7 +70,7 @@ class PrintScene(gas_program.GasTest):
 
     def test_prints_assigned_values(self):
         for sets in (['scheme.weno="js"'], ['scheme.weno="teno5"', "scheme.fixed_dt=1e-4"], [gas_program.NO_FIELDS],
-                     ["tuning.stage.block=64"], ["tuning.seed.pinned=true"], ['boundary.left="periodic"', 'boundary.right="periodic"'],
+                     ["tuning.stage.block=64"], ["tuning.seed.pinned=true"], ['boundary.left="periodic"', 'boundary.right="periodic"', "verify={}"],
                      ["run.end_time=0.123456789012345678", "output.times=[1e-300, 0.1]"]):
             with self.subTest(sets=sets):
                 self.assert_resolves_to_itself(self.printed("sod", sets=sets))

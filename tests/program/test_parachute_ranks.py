@@ -214,6 +214,18 @@ class Failures(RanksTest):
             with self.subTest(victim):
                 self.interrupt(victim)
 
+    def test_ranks_that_wait_leave_their_core_to_others(self):
+        """Open MPI lists its parameters that the environment sets."""
+        for given, expected in (({}, "true"), ({"OMPI_MCA_mpi_yield_when_idle": "0"}, "false")):
+            environment = {**RANK_ENVIRONMENT, "OMPI_MCA_mpi_show_mca_params": "enviro"}
+            environment.pop("OMPI_MCA_mpi_yield_when_idle", None)
+            line = [LAUNCHER, "--oversubscribe", "-n", "2", PROGRAM, self.write(VORTICES), *QUIET, "--overwrite", "--out", "out"]
+            run = subprocess.run(list(map(str, line)), cwd=self.folder, capture_output=True, text=True, check=True, timeout=120,
+                                 stdin=subprocess.DEVNULL, env={**environment, **given})
+            if "mpi_show_mca_params" not in run.stderr:
+                self.skipTest("this MPI does not list its parameters")
+            self.assertIn(f"mpi_yield_when_idle={expected} (environment)", run.stderr)
+
     def test_mpirun_passes_the_notice_of_a_batch_system_on(self):
         """Slurm's --signal=USR1@60 reaches mpirun, which forwards it to all ranks."""
         self.interrupt(None)

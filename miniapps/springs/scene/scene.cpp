@@ -28,11 +28,12 @@ std::string print_springs_scene(const SpringsScene& scene) {
 framework::SceneIdentity scene_identity(SpringsScene scene) {
   scene.description.clear();
   scene.output = {};
+  scene.output.restart_every = 0;  // its former default, which older restart files know
   scene.verify = {};
   scene.driver = fabric::Driver::automatic;
   scene.time.end_time = 0.0;
   scene.time.dt.reset();
-  scene.time.safety = Time{}.safety;
+  scene.time.safety = 0.8;  // as above
   // The content of a mesh file counts, not its path.
   std::string contents;
   if (!scene.source.file.empty()) {

@@ -252,8 +252,10 @@ void declare_output(Table& table, Output& output) {
 }
 
 void declare_time(Table& table, Time& time) {
-  table.value("integrator", scene::choice_codec(time.integrator, integrator_choices),
-              "Classical Runge-Kutta, or velocity Verlet");
+  table.value(
+      "integrator", scene::choice_codec(time.integrator, integrator_choices),
+      "Velocity Verlet, which keeps energy in violent motion, or classical Runge-Kutta, for vibrations "
+      "that its steps resolve");
   table.value("dt", real_or_auto_codec(time.dt), "Step; auto: from the fastest frequency")
       .unit("s")
       .above(0.0);
