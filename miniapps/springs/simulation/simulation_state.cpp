@@ -181,9 +181,11 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
   set("elastic", now.elastic);
   if (contact) set("friction_work", now.friction_work);
   set("kinetic", now.kinetic);
-  const bool has_rows = _scene.output.history_every > 0;
-  const run::History history = has_rows ? run::read_history(directory->file("history.csv")) : run::History{};
-  if (has_rows && conserves_energy(_scene))
+  const bool states_loss = _scene.output.history_every > 0 && conserves_energy(_scene);
+  run::History history;
+  if (states_loss || needs_history(_scene.verify))
+    history = run::read_history(directory->file("history.csv"));
+  if (states_loss)
     if (const std::optional<EnergyLoss> loss = energy_loss(history)) {
       set("lost", loss->energy);
       set("lost_share", loss->share);

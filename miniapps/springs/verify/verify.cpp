@@ -238,6 +238,11 @@ std::optional<double> even_line_stiffness(const fabric::Mesh& mesh) {
   return sum;
 }
 
+bool needs_history(const Verify& wanted) {
+  return wanted.frequency || wanted.front_speed || wanted.energy_drift || wanted.energy_balance ||
+         wanted.intersections || wanted.momentum || wanted.angular_momentum;
+}
+
 std::optional<EnergyLoss> energy_loss(const History& history) {
   const std::vector<double>& energy = history.at("energy");
   const double scale = energy_scale(history);

@@ -20,7 +20,11 @@ struct FinalState {
   std::vector<double> von_mises;      ///< of every vertex, N/m; empty unless the scene verifies one
 };
 
-/// Adds errors and checks of the scene's [verify]; `history` is the history.csv of the run, or empty.
+/// True if a check follows the run in its history.csv.
+[[nodiscard]] bool needs_history(const Verify& wanted);
+
+/// Adds errors and checks of the scene's [verify]; `history` is the history.csv of the run, or empty if no
+/// check `needs_history`.
 void verify(const SpringsScene& scene, const FinalState& state, const run::History& history,
             run::ResultDocument& result);
 
