@@ -137,7 +137,7 @@ def _gas_pictures(run, options, out, save):
     if len(run.snapshots) >= SPACE_TIME_SNAPSHOTS:
         mapped = options.field and view.fields or [view.fields[0]]
         for name in mapped:
-            yield save(fields_figure.space_time_figure(view, name), f"space_time_{name}")
+            yield save(fields_figure.space_time_figure(view, name), f"{SPACE_TIME}{name}")
     if len(run.snapshots) >= 2 and options.movie:
         yield from movie_file.write(out / "fields", options.movie, movie_frames.frames(view))
 
@@ -148,7 +148,7 @@ def _springs_pictures(run, options, out, save):
 
     view = fabric_figure.View(run)
     snapshot = _chosen_snapshot(run, options)
-    yield save(fabric_figure.fabric_figure(view, snapshot), "fields")
+    yield save(fabric_figure.fabric_figure(view, snapshot), "fields", few_colours=False)
     if len(run.snapshots) >= 2 and options.movie:
         yield from movie_file.write(out / "fields", options.movie, fabric_figure.frames(view))
 
@@ -158,14 +158,16 @@ def _canopy_pictures(run, options, out, save):
     from .flow import quantities
     from .flow.plane import is_flow, plane_of
     from .parachute import canopy_figure
-    from .parachute.canopies import Canopies
+    from .parachute.canopies import Canopies, plane_through_canopy
 
     known = quantities.quantities(run)
     names = _validated_fields(options.field, list(known))
     moving = [quantities.movie_name(names or list(known))] if known else []
     # Canopies are symmetric to the plane across y, through which an angled one turns.
-    plane = plane_of(run, options.slice or "y") if is_flow(run) else None
-    view = canopy_figure.View(Canopies(run), plane, [known[name] for name in names or moving])
+    canopies, plane = Canopies(run), plane_of(run, options.slice or "y") if is_flow(run) else None
+    if plane is not None and "=" not in options.slice:
+        plane = plane_through_canopy(canopies, plane)
+    view = canopy_figure.View(canopies, plane, [known[name] for name in names or moving])
     yield save(canopy_figure.canopy_figure(view, _chosen_snapshot(run, options)), "fields", few_colours=False)
     if len(run.snapshots) >= 2 and options.movie:
         view.quantities = [known[name] for name in moving]

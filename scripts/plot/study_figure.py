@@ -5,6 +5,7 @@ import difflib
 import numpy as np
 
 from . import style
+from .checks import INVARIANTS
 from .failure import IO_ERROR, USAGE, Failure
 from .run_directory import Run
 from .style import plt
@@ -24,11 +25,6 @@ _FLOW_TITLES = {
     "l1_velocity": "mean error of velocity (m/s)", "l2_velocity": "rms error of velocity (m/s)",
     "linf_velocity": "largest error of velocity (m/s)", "l2_pressure": "rms error of pressure (Pa)",
 }  # fmt: skip
-# Checks of invariants, which do not converge with the mesh.
-INVARIANTS = (
-    "conservation", "equilibrium", "energy_drift", "energy_balance", "momentum", "angular_momentum",
-    "intersections", "penetration", "divergence",
-)  # fmt: skip
 _FLOW_WORDS = {"weno-js": "WENO-JS", "weno-z": "WENO-Z", "ab2": "AB2", "rk3": "RK3"}
 SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
@@ -196,6 +192,10 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = ""):
     if len(meshes) <= 8:
         by_mesh.set_xticks(meshes, [f"{int(mesh)}" for mesh in meshes])
         by_mesh.minorticks_off()
+    else:
+        style.set_log_ticks(by_mesh.xaxis)
+    for axes in (by_time, by_mesh):
+        style.thin_labels(axes)
     backends = sorted({row.get("backend", "") for row in rows} - {""})
     details = "error against time and mesh" + (f", {', '.join(backends)}" if backends else "")
     if omitted:

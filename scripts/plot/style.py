@@ -55,22 +55,6 @@ def axis_label(name: str, units: str) -> str:
     return f"{text} ({format_units(units)})" if format_units(units) else text
 
 
-def check_label(name: str) -> str:
-    """Display name of a check of result.json."""
-    # Their values are deviations from a published density and from published points.
-    words = "max density" if name == "max_density" else name.replace("_", " ")
-    return f"{words} off by" if re.fullmatch(r"max_density|profile_\d+", name) else words
-
-
-def first_check(result: dict) -> str:
-    """Value and tolerance of the first check of result.json, as the end of a subtitle; empty without a value."""
-    checks = result.get("checks", [])
-    if not checks or checks[0]["value"] is None:
-        return ""
-    check = checks[0]
-    return f", {check_label(check['name'])} {check['value']:.2g} (tolerance {check['tolerance']:.2g})"
-
-
 def format_number(value: float) -> str:
     """Number with three significant digits, an integer from 1000 on; powers of ten as mathtext."""
     if value == 0 or not np.isfinite(value):
@@ -94,6 +78,7 @@ def heading(figure, title: str, subtitle: str, legend: list[tuple[str, str, str]
 
 
 LEGEND_GAP = 0.16  # inches
+_LABEL_GAP = 0.06  # between labels of ticks, inches
 
 
 def draw_legend(figure, y: float, legend: list[tuple[str, str, str]]) -> None:
@@ -129,9 +114,33 @@ def set_log_ticks(axis) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
+def thin_labels(axes) -> None:
+    """Removes labels of the horizontal axis that would touch one at their left. Its range and the size of the figure are final."""
+    low, high = axes.get_xlim()
+    places = [place for place in axes.xaxis.get_majorticklocs() if low <= place <= high]
+    labels, end = axes.xaxis.get_major_formatter().format_ticks(places), -np.inf
+    for k, place in enumerate(places):
+        middle = axes.transData.transform((place, axes.get_ylim()[0]))[0] / axes.figure.dpi
+        half = text_width(axes.figure, labels[k], matplotlib.rcParams["xtick.labelsize"]) / 2
+        if middle - half < end + _LABEL_GAP:
+            labels[k] = ""
+        elif labels[k]:
+            end = middle + half
+    axes.set_xticks(places, labels)
+
+
 def subtitle_width(figure, subtitle: str) -> float:
     """Figure width needed by a subtitle, inches."""
     return 0.2 + text_width(figure, subtitle, 8.5)
+
+
+_OUTLIER = 2.0  # extreme values within this factor of a percentile are inside a colour scale
+
+
+def scale_end(values: np.ndarray, percent: float, extreme: float, middle: float = 0.0) -> float:
+    """End of a colour scale: the extreme value, or a percentile if the extreme is far beyond it, seen from `middle`."""
+    end = float(np.percentile(values, percent))
+    return end if abs(extreme - middle) > _OUTLIER * abs(end - middle) > 0 else extreme
 
 
 LABEL_SIZE = 8

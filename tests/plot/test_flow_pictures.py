@@ -330,6 +330,31 @@ class FlowPictures(unittest.TestCase):
         self.assertTrue(is_periodic(still))
         self.assertIsNone(spectrum_figure(still, still.snapshots[0]))
 
+    def test_uniform_flow_has_no_spectrum(self):
+        noise = np.random.default_rng(3)
+
+        def round_off(time, x, y, z):
+            return {"velocity": vectors(0 * x, 0 * x, 2 * time + 1e-15 * noise.normal(size=x.shape))}
+
+        run = read_run(write_flow(self.folder / "run", (8, 8, 8), (1.0, 1.0, 1.0), round_off))
+        self.assertTrue(is_periodic(run))
+        self.assertIsNone(spectrum_figure(run, run.snapshots[-1]))
+
+    def test_history_shows_what_the_scene_expects(self):
+        run = read_run(write_flow(self.folder / "run", (4, 4, 1), (1.0, 1.0, 1.0), shear))
+        run.scene["verify"] = {
+            "kinetic_energy_curve": [{"points": [[0.2, 4.0], [0.4, 2.0]], "tolerance": 0.1}, {"points": [[0.6, 1]], "tolerance": 0.5}],
+            "dissipation_curve": [{"points": [[0.5, 3.0]], "tolerance": 0.2}],
+        }
+        figure = flow_history_figure(run)
+        for axes, points in zip(figure.axes, ([(0.2, 4, 0.4), (0.4, 2, 0.4), (0.6, 1, 0.5)], [(0.5, 3, 0.6)])):
+            (bars,) = axes.containers
+            np.testing.assert_allclose(bars.lines[0].get_xydata(), [point[:2] for point in points])
+            sizes = [np.ptp(mark[:, 1]) / 2 for mark in bars.lines[2][0].get_segments()]
+            np.testing.assert_allclose(sizes, [point[2] for point in points])
+        self.assertTrue(any("expected" in text.get_text() for text in figure.texts))
+        self.assertFalse(figure.axes[2].containers)
+
     def test_study_shows_rms_error_with_orders(self):
         write_flow_study(self.folder / "study.csv")
         rows = read_run(self.folder).study

@@ -5,6 +5,7 @@ import io
 import itertools
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -20,8 +21,9 @@ from plot import cli
 from plot.failure import Failure
 from plot.gas.exact_solution import exact_solution, pointwise_errors
 from plot.gas.fields_figure import View, fields_figure
-from plot.gas.history_figure import conservation
-from plot.run_directory import read_run
+from plot.gas.history_figure import conservation, history_figure
+from plot.picture_names import PICTURES, picture_name
+from plot.run_directory import Field, read_run
 from plot.study_figure import study_figure
 
 _COLOURS = {"run": (0, 0x72, 0xB2), "error": (0xD5, 0x5E, 0)}
@@ -215,6 +217,56 @@ class Pictures(unittest.TestCase):
         figure = fields_figure(View(loaded, ["rho"], exact_solution(loaded)), loaded.snapshots[-1])
         captions = "".join(text.get_text() for text in figure.texts)
         self.assertRegex(captions, r"max density off by 1\.2.* \(tolerance 0\.02\)")
+
+
+    def test_labels_of_a_study_do_not_touch(self):
+        for meshes in ((300, 350, 400, 450, 500), tuple(range(100, 210, 10)), (100, 101, 102), (50, 100, 200, 400, 3200)):
+            with self.subTest(meshes):
+                synthetic.write_study(self.folder / "study.csv", meshes=meshes)
+                figure = study_figure("sod", read_run(self.folder).study)
+                figure.canvas.draw()
+                for axes in figure.axes:
+                    low, high = axes.get_xlim()
+                    ticks = [*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks()]
+                    boxes = sorted((tick.label1.get_window_extent() for tick in ticks
+                                    if tick.label1.get_text() and low <= tick.get_loc() <= high), key=lambda box: box.x0)  # fmt: skip
+                    self.assertGreater(len(boxes), 0)
+                    for left, right in zip(boxes, boxes[1:]):
+                        self.assertLess(left.x1, right.x0)
+
+    def test_titles_of_errors_do_not_touch(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=100, snapshots=1)
+        check = {"name": "l1_density", "value": 4.91e-3, "tolerance": 5.18e-3, "passed": True}
+        errors = {f"l1_{name}": 4.91e-3 for name in ("density", "velocity", "pressure")}
+        (run / "result.json").write_text(json.dumps({"checks": [check], "errors": errors}))
+        loaded = read_run(run)
+        figure = fields_figure(View(loaded, ["rho", "u", "p"], exact_solution(loaded)), loaded.snapshots[-1])
+        figure.canvas.draw()
+        titles = [axes._left_title.get_window_extent() for axes in figure.axes[3:]]
+        self.assertIn("5.18", figure.axes[3].get_title(loc="left"))
+        for left, right in zip(titles, titles[1:]):
+            self.assertLess(left.x1, right.x0)
+
+    def test_history_names_the_signal_speed(self):
+        synthetic.write_history(self.folder / "history.csv")
+        run = read_run(self.folder)
+        run.history["max_speed"] = Field("max_speed", run.history["time"].values + 1, "m/s")
+        titles = [axes.get_title(loc="left") for axes in history_figure(run).axes]
+        self.assertIn("largest signal speed |u| + c (m/s)", titles)
+
+
+class Names(unittest.TestCase):
+    def test_programs_remove_all_pictures_of_a_former_run(self):
+        source = (packages.SOURCE / "common/run/run_directory.cpp").read_text()
+        removed = re.search(r"picture_names\(\) \{\n.*? = \{(.*?)\};", source, re.DOTALL).group(1)
+        self.assertEqual(list(PICTURES), re.findall(r'"(\w+)"', removed))
+        with self.assertRaises(ValueError):
+            picture_name("portrait")
+
+    def test_every_picture_of_the_page_is_named(self):
+        table = (packages.SOURCE / "docs/pictures.md").read_text()
+        for name in PICTURES:
+            self.assertIn(f"`{name}.png`", table)
 
 
 class Installed(unittest.TestCase):

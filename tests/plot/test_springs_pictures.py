@@ -274,6 +274,52 @@ class SpringsPictures(unittest.TestCase):
         red, green, blue = self.last_picture(run)
         return int(((red > green) & (green > blue) & (red - blue < 12) & (red > 90) & (red < 200)).sum())
 
+    def test_body_below_cloth_is_outlined(self):
+        contact = (
+            "[contact]\nobjects = [{ kind = 'disk', centre = [0.5, 0.5, -0.1], normal = [0, 0, 1], radius = 0.3 },"
+            "{ kind = 'sphere', centre = [0.5, 0.5, -0.4], radius = 0.2 }]\n"
+        )
+        bent = SQUARE + [[0, 0, 0.3], [0, 0, 0], [0, 0, 0.3], [0, 0, 0]]
+        run = read_run(write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, bent], contact=contact))
+        view = View(run)
+        figure = fabric_figure(view, run.snapshots[1])
+        (outlines,) = [item for item in figure.axes[0].collections if item.get_linestyle()[0][1] is not None]
+        disk, sphere = outlines.get_segments()
+        centre, height = view.projection[:2] @ [0.5, 0.5, -0.1], view.projection[1] @ [0, 0, 1]
+        np.testing.assert_allclose((disk.max(axis=0) - disk.min(axis=0)) / 2, [0.3, 0.3 * np.sqrt(1 - height**2)], rtol=1e-3)
+        np.testing.assert_allclose((disk.max(axis=0) + disk.min(axis=0)) / 2, centre, atol=1e-3)
+        np.testing.assert_allclose(np.linalg.norm(sphere - view.projection[:2] @ [0.5, 0.5, -0.4], axis=1), 0.2)
+        self.assertTrue(any("outline of a body" in text.get_text() for text in figure.texts))
+
+    def test_colour_scale_holds_all_values_but_a_few_that_are_far_larger(self):
+        side = np.linspace(0, 1, 21)
+        x, y = (values.ravel() for values in np.meshgrid(side, side))
+        vertices = np.stack((x, y, 0.3 * x * y), axis=1)
+        first = (21 * np.arange(20)[:, None] + np.arange(20)).ravel()
+        triangles = np.concatenate([np.stack((first, first + 1, first + 22), 1), np.stack((first, first + 22, first + 21), 1)])
+        even = np.linspace(0, 1, len(triangles))
+        for name, largest, top, end in (("even", 1.0, 1.0, "neither"), ("far", 50.0, np.percentile(even, 99.5), "max")):
+            stress = even.copy()
+            stress[-1] = largest
+            run = read_run(write_run(self.folder / name, vertices, triangles, EDGES, [vertices] * 2, stress=[3 * stress, stress]))
+            figure = fabric_figure(View(run), run.snapshots[1])
+            key = figure.axes[1]
+            self.assertAlmostEqual(top, key.get_ylim()[1], delta=5e-3)  # of the drawn snapshot alone
+            self.assertEqual(end, key._colorbar.extend)
+
+    def test_colours_of_shaded_cloth_form_equal_classes(self):
+        bent = SQUARE + [[0, 0, 0.3], [0, 0, 0], [0, 0, 0.3], [0, 0, 0]]
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, bent], stress=[[0.0, 1.0], [0.2, 1.0]])
+        self.assert_drawn(run)
+        with Image.open(run / "fields.png") as image:
+            pixels = np.asarray(image.convert("RGB")).astype(int)
+        # The colour bar is the longest column of saturated colours.
+        coloured = np.ptp(pixels, axis=2) > 40
+        key = pixels[coloured[:, (column := coloured[:, 700:].sum(axis=0).argmax() + 700)], column]
+        lengths = np.diff(np.flatnonzero(np.any(np.diff(key, axis=0) != 0, axis=1)))
+        self.assertGreater(len(lengths), 200)
+        self.assertLessEqual(lengths.max(), 4)
+
     def test_sphere_below_string_is_visible(self):
         line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
         sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]

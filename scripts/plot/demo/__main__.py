@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..failure import INTERRUPTED, IO_ERROR, OK, USAGE, Failure
-from ..style import check_label
+from ..checks import check_label, main_check
 from . import options, pictures
 from .page import write_page
 
@@ -35,7 +35,6 @@ SLOW = {
     "c9-partly-closed", "c9-angled-15", "c9-angled-60", "c9-angled-75", "c9-drop", "sphere-300", "disk-normal", "cup",
     "cup-reversed",
 }  # fmt: skip
-INVARIANTS = ("conservation", "divergence", "force_balance")
 
 
 @dataclass
@@ -54,11 +53,8 @@ class SceneRun:
 
     @property
     def main_check(self) -> dict:
-        """Check shown in the table: the first one other than those that all solutions satisfy to round-off."""
-        checks = self.result.get("checks", [])
-        return next(
-            (check for check in checks if check["name"] not in INVARIANTS), checks[0] if checks else {}
-        )
+        """Check shown in the table."""
+        return main_check(self.result)
 
     @property
     def passed(self) -> bool:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from .. import html_page
-from ..style import check_label
+from ..checks import check_label
 
 
 def pictures_by_role(run) -> dict[str, Path]:

@@ -59,6 +59,24 @@ def _panels(run: Run) -> list[tuple[str, dict[str, tuple[np.ndarray, np.ndarray]
     return panels
 
 
+def expected_points(run: Run, name: str) -> np.ndarray:
+    """Times (s), values and tolerances (n, 3) that `verify.*_curve` of the scene states for a column of the history."""
+    rows = []
+    for curve in run.scene.get("verify", {}).get(f"{name}_curve", []):
+        points = np.array(curve["points"], float)
+        rows += [(time, value, curve["tolerance"] * np.abs(points[:, 1]).max()) for time, value in points]
+    return np.array(rows).reshape(-1, 3)
+
+
+def _draw_expected(axes, points: np.ndarray) -> None:
+    """Draws what the scene expects as circles with bars of the tolerance."""
+    if len(points):
+        axes.errorbar(
+            points[:, 0], points[:, 1], points[:, 2], fmt="o", color=style.INK, markersize=3.5, markerfacecolor="white",
+            markeredgewidth=0.9, elinewidth=0.8, zorder=3,
+        )  # fmt: skip
+
+
 def _draw(axes, curves: dict[str, tuple[np.ndarray, np.ndarray]], is_log: bool) -> None:
     ends = []
     for colour, (label, (time, values)) in zip(style.PALETTE, curves.items()):
@@ -91,9 +109,14 @@ def flow_history_figure(run: Run):
     height = 1.0 + 1.45 * len(panels)
     figure, axes = plt.subplots(len(panels), 1, figsize=(5.2, height), sharex=True, squeeze=False)
     figure.subplots_adjust(left=0.16, right=0.8, top=1 - 0.9 / height, bottom=0.45 / height, hspace=0.5)
+    expected = {name: expected_points(run, name) for name in ("kinetic_energy", "dissipation")}
     for panel, (title, curves, is_log) in zip(axes[:, 0], panels):
         panel.set_title(title)
+        name = next((name for name in expected if title.startswith(name.replace("_", " "))), None)
+        if name:
+            _draw_expected(panel, expected[name])
         _draw(panel, curves, is_log)
     axes[-1, 0].set_xlabel("time (s)")
-    style.heading(figure, run.name, f"history, {len(time.values)} rows")
+    legend = [("\u25cb", "expected, with tolerance", style.INK)] if any(map(len, expected.values())) else []
+    style.heading(figure, run.name, f"history, {len(time.values)} rows", legend)
     return figure

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..failure import USAGE, Failure
-from ..run_directory import Run
+from ..run_directory import Run, Snapshot
 
 AXES = "xyz"
 
@@ -32,6 +32,10 @@ class Plane:
     run: Run
     normal: int
     index: int
+
+    def at(self, snapshot: Snapshot) -> "Plane":
+        """The plane at the time of a snapshot: this one, unless it moves."""
+        return self
 
     @property
     def across(self) -> tuple[int, int]:
@@ -69,6 +73,11 @@ class Plane:
         return np.take(values, self.index, axis=self.normal).T
 
 
+def cell_at(faces: np.ndarray, place: float) -> int:
+    """Number of the cell along an axis that holds `place`, m, or is nearest to it; the upper end belongs to the last cell."""
+    return int(np.clip(np.searchsorted(faces, place, side="right") - 1, 0, len(faces) - 2))
+
+
 def _default_normal(counts: tuple[int, int, int]) -> int:
     """Last axis with one cell, else z."""
     return next((axis for axis in (2, 1, 0) if counts[axis] == 1), 2)
@@ -98,5 +107,4 @@ def plane_of(run: Run, wanted: str = "") -> Plane:
         raise Failure(
             USAGE, f"--slice {wanted} is outside the domain, {axis} = {faces[0]:g} to {faces[-1]:g} m."
         )
-    # The upper end of the domain belongs to the last cell.
-    return Plane(run, normal, min(int(np.searchsorted(faces, value, side="right")) - 1, counts[normal] - 1))
+    return Plane(run, normal, cell_at(faces, value))

@@ -8,6 +8,7 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 
 from .. import style
+from ..checks import check_caption
 from ..movie_file import drawn_frames
 from ..run_directory import Snapshot, evenly_spaced
 from ..style import plt
@@ -19,7 +20,6 @@ from .streamlines import Streamlines
 MAX_FRAMES = 60
 _DPI = 100
 _BRIGHT = 99.5  # percentile of the values at the ends of a colour scale
-_OUTLIER = 2.0  # extreme values within this factor of the percentile are inside the scale
 _MOVIE_COLOURS = 96  # of a colour map, since a GIF has 256 with those of the text
 _ONE_SIGN = 0.02  # part of the largest size up to which values of the other sign do not count
 # Inches.
@@ -39,14 +39,8 @@ class View:
 
     def caption(self, snapshot: Snapshot) -> str:
         """Cells, place of a slice, time (s) and the first check of the run."""
-        check = style.first_check(self.plane.run.result)
+        check = check_caption(self.plane.run.result)
         return f"{self.plane.description}, t = {snapshot.time:.4g} s{check}"
-
-
-def _end(values: np.ndarray, percent: float, extreme: float, middle: float) -> float:
-    """End of a colour scale: the extreme value, or a percentile if the extreme is far beyond it, seen from `middle`."""
-    end = float(np.percentile(values, percent))
-    return end if abs(extreme - middle) > _OUTLIER * abs(end - middle) > 0 else extreme
 
 
 def colour_scale(quantity: Quantity, values: np.ndarray) -> tuple[Normalize, str, str]:
@@ -63,11 +57,11 @@ def colour_scale(quantity: Quantity, values: np.ndarray) -> tuple[Normalize, str
         margin = 0.1 * size or 1.0
         return Normalize(least - margin, largest + margin), "viridis", "neither"
     if quantity.is_deviation or (least < -_ONE_SIGN * size and largest > _ONE_SIGN * size):
-        high = _end(np.abs(finite), _BRIGHT, size, 0.0)
+        high = style.scale_end(np.abs(finite), _BRIGHT, size, 0.0)
         low, name = -high, "RdBu_r"
     else:
         middle = float(np.median(finite))
-        low, high = _end(finite, 100 - _BRIGHT, least, middle), _end(finite, _BRIGHT, largest, middle)
+        low, high = style.scale_end(finite, 100 - _BRIGHT, least, middle), style.scale_end(finite, _BRIGHT, largest, middle)
         name = "viridis"
     margin = 0.02 * (high - low)  # a range exceeded by this little is widened instead
     low, high = (least if low - margin <= least else low), (largest if largest <= high + margin else high)
@@ -90,10 +84,10 @@ def draw_slice(axes, key, plane: Plane, quantity: Quantity, snapshots: list[Snap
 
     The colour scale fits all `snapshots`.
     """
-    every = np.concatenate([plane.cut(quantity.values(snapshot)).ravel() for snapshot in snapshots])
+    every = np.concatenate([plane.at(snapshot).cut(quantity.values(snapshot)).ravel() for snapshot in snapshots])
     norm, name, ends = colour_scale(quantity, every)
     image = axes.imshow(
-        plane.cut(quantity.values(snapshots[-1])), origin="lower", extent=plane.extent, aspect="auto",
+        plane.at(snapshots[-1]).cut(quantity.values(snapshots[-1])), origin="lower", extent=plane.extent, aspect="auto",
         cmap=plt.get_cmap(name, colours), norm=norm, interpolation="nearest",
     )  # fmt: skip
     axes.grid(False)
@@ -119,7 +113,7 @@ class SheetOutline:
 
     def show(self, snapshot: Snapshot) -> None:
         """Replaces the lines by those at the time of a snapshot."""
-        plane = self._plane
+        plane = self._plane.at(snapshot)
         segments = sheet_section(plane.run, snapshot, plane.normal, plane.place)
         self._lines.set_segments(segments[..., list(plane.across)])
 

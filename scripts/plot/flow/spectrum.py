@@ -12,6 +12,7 @@ from .plane import AXES, cell_counts, dimension
 _MAX_CURVES = 6
 _SIZE = (5.2, 3.6)
 _ROUND_OFF = 1e-11  # relative to the largest value; what is smaller is not drawn
+_NOTHING = 1e-20  # relative to the square of the largest speed: a uniform flow has round-off and no spectrum
 _LEAST_SHELLS = 4  # with energy above round-off; a flow of fewer modes has no spectrum worth a figure
 
 
@@ -85,15 +86,21 @@ def _draw_mark(axes, spectra: list[Spectrum], power: float, words: str, start: f
     )  # fmt: skip
 
 
+def largest_speed(run: Run) -> float:
+    """Largest speed of the snapshots and of the history, m/s."""
+    speeds = [np.linalg.norm(snapshot.fields["velocity"].values, axis=-1).max() for snapshot in run.snapshots]
+    return max(*speeds, *run.history["max_speed"].values) if "max_speed" in run.history else max(speeds)
+
+
 def spectrum_figure(run: Run, last: Snapshot):
     """Spectra of the snapshots up to `last`, with marks of slope -5/3 and, in two dimensions, -3.
 
-    None if the last flow consists of fewer than four shells of modes.
+    None if the last flow consists of fewer than four shells of modes, or of a uniform velocity.
     """
     curves = _curves(run, last)
     top = max((spectrum.energy.max() for _, spectrum in curves), default=0.0)
     floor = _ROUND_OFF * top
-    if not curves or np.sum(curves[-1][1].energy > floor) < _LEAST_SHELLS:
+    if not curves or top * curves[-1][1].k[0] < _NOTHING * largest_speed(run) ** 2 or np.sum(curves[-1][1].energy > floor) < _LEAST_SHELLS:
         return None
     figure, axes = plt.subplots(figsize=_SIZE)
     colours = plt.get_cmap("viridis_r")(np.linspace(0.15, 1, len(curves)))

@@ -36,7 +36,8 @@ class Streamlines:
         if min(len(x), len(y)) < 2 or 30 * min(self._density) < 2:
             return
         velocity = snapshot.fields["velocity"].values
-        u, v = (self._plane.cut(velocity[..., axis]) for axis in self._plane.across)
+        plane = self._plane.at(snapshot)
+        u, v = (plane.cut(velocity[..., axis]) for axis in plane.across)
         if not (np.isfinite(u).all() and np.isfinite(v).all()) or not np.any(u) and not np.any(v):
             return
         inside = (self._seeds >= (x[0], y[0])) & (self._seeds <= (x[-1], y[-1]))

@@ -7,6 +7,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from .. import style
+from ..checks import check_label
 from ..run_directory import Run, Snapshot
 from ..style import plt
 from .exact_solution import WENO_NAMES, ExactSolution, pointwise_errors
@@ -117,7 +118,7 @@ def set_range(axes, name: str, arrays) -> None:
 def _format_checks(run: Run) -> str:
     """Values and tolerances of the checks, for a figure without an error panel."""
     return "".join(
-        f";  {style.check_label(check['name'])} {style.format_number(check['value'])} "
+        f";  {check_label(check['name'])} {style.format_number(check['value'])} "
         f"(tolerance {style.format_number(check['tolerance'])})"
         for check in run.result.get("checks", [])
         if check["name"] != "conservation" and check["value"] is not None
@@ -130,7 +131,8 @@ def _error_title(run: Run, name: str) -> str:
     if value is None:
         return "|error|"
     tolerances = [check["tolerance"] for check in run.result.get("checks", []) if check["name"] == norm]
-    tolerance = f" (tolerance {style.format_number(tolerances[0])})" if tolerances else ""
+    # Columns are narrow.
+    tolerance = rf" $\leq$ {style.format_number(tolerances[0])}" if tolerances and value <= tolerances[0] else ""
     return rf"|error|,  $L_1$ = {style.format_number(value)}{tolerance}"
 
 

@@ -7,6 +7,7 @@ from ..run_directory import Run
 from ..style import plt
 
 _CONSERVED = ("mass", "momentum", "energy")
+_LABELS = {"max_speed": "largest signal speed |u| + c"}
 # Counters that are drawn only if they are not zero throughout.
 _COUNTERS = ("limiter_touches", "redone_steps")
 
@@ -65,7 +66,7 @@ def history_figure(run: Run):
     for panel, name in zip(panels, single):
         item = run.history[name]
         panel.plot(*style.decimate(time.values, item.values), color=style.RUN_COLOUR)
-        panel.set_title(style.axis_label(item.name, item.units))
+        panel.set_title(style.axis_label(_LABELS.get(name, name), item.units))
     axes[-1, 0].set_xlabel("time (s)")
     style.heading(figure, run.name, f"history, {len(time.values)} rows")
     return figure

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..flow.plane import AXES, Plane, cell_at
 from ..flow.sheets import section
 from ..run_directory import Run, Snapshot
 
@@ -61,6 +62,36 @@ class Canopies:
         every = np.concatenate([self.positions(snapshot) for snapshot in snapshots])
         return every.min(axis=0), every.max(axis=0)
 
+    def parts(self) -> list[np.ndarray]:
+        """Vertices of the cloth of each canopy."""
+        label, former = np.arange(len(self.run.canopy_mesh["vertices"].values)), None
+        while former is None or np.any(label != former):
+            former = label.copy()
+            np.minimum.at(label, self.triangles, label[self.triangles].min(axis=1, keepdims=True))
+            label = label[label]
+        cloth = np.unique(self.triangles)
+        return [cloth[label[cloth] == first] for first in np.unique(label[cloth])]
+
     def section(self, snapshot: Snapshot, axis: int, place: float) -> np.ndarray:
         """Segments (n, 2, 3) in which the triangles meet the plane at `place` on an axis, m."""
         return section(self.positions(snapshot)[self.triangles], axis, place)
+
+
+@dataclass(frozen=True, eq=False)
+class MovingPlane(Plane):
+    """Plane that moves along its normal with the middle of the cloth of one canopy, `vertices`, if that is more than a cell away."""
+
+    vertices: np.ndarray
+
+    def at(self, snapshot: Snapshot) -> Plane:
+        middle = snapshot.canopy["position"].values[self.vertices, self.normal].mean()
+        faces = self.run.mesh[AXES[self.normal]].values
+        is_near = abs(middle - self.place) <= faces[self.index + 1] - faces[self.index]
+        return Plane(self.run, self.normal, self.index if is_near else cell_at(faces, middle))
+
+
+def plane_through_canopy(canopies: Canopies, plane: Plane) -> MovingPlane:
+    """Plane parallel to `plane` through the canopy that is nearest to it in the first snapshot."""
+    start = canopies.positions(canopies.run.snapshots[0])[:, plane.normal]
+    nearest = min(canopies.parts(), key=lambda vertices: abs(start[vertices].mean() - plane.place))
+    return MovingPlane(plane.run, plane.normal, plane.index, nearest)

@@ -8,6 +8,7 @@ from matplotlib.colors import Normalize, to_rgba
 from matplotlib.patches import Circle
 
 from .. import shading, style
+from ..checks import check_caption
 from ..flow.plane import Plane
 from ..flow.quantities import Quantity
 from ..flow.slices_figure import SheetOutline, draw_slice
@@ -20,7 +21,7 @@ from .canopies import Canopies
 MAX_FRAMES = 60
 _DPI = 100
 _AZIMUTH, _ELEVATION = -70, 14  # degrees; the vent and the opposite side of the lines stay visible
-_BRIGHT = 99.0  # percentile of the stresses at the upper end of the colour scale
+_BRIGHT = 99.0  # percentile of the stresses at the upper end of the colour scale if few are far larger
 _DARKEST = 0.7  # brightness of cloth along the light
 _PLAIN = np.array([0.80, 0.47, 0.28, 1.0])  # cloth without stress
 _LINE_PARTS = 6  # of a suspension line, each with its own depth
@@ -49,8 +50,9 @@ class View:
     def caption(self, snapshot: Snapshot) -> str:
         """Vertices, cells, place of the plane, and time (s)."""
         count = len(self.canopies.run.canopy_mesh["vertices"].values)
-        flow = f", {self.plane.description}" if self.quantities else ""
-        return f"t = {snapshot.time:.2f} s, {count} vertices{flow}"
+        flow = f", {self.plane.at(snapshot).description}" if self.quantities else ""
+        check = check_caption(self.canopies.run.result)
+        return f"t = {snapshot.time:.2f} s, {count} vertices{flow}{check}"
 
     def window(self, snapshots: list[Snapshot]) -> tuple[float, float, float, float]:
         """Shown part of the plane, m: the canopies at all times and the flow around and, along z, behind them."""
@@ -155,7 +157,7 @@ class CanopyFigure:
     def _add_stress(self, key, snapshots: list[Snapshot]) -> None:
         values = np.concatenate([self._view.canopies.stress(snapshot) for snapshot in snapshots])
         finite = values[np.isfinite(values)]
-        high = float(np.percentile(finite, _BRIGHT)) if finite.size else 0.0
+        high = style.scale_end(finite, _BRIGHT, float(finite.max())) if finite.size else 0.0
         self._map = plt.cm.ScalarMappable(Normalize(0, high or 1.0), plt.get_cmap("viridis", self._colours.stress))
         extend = "max" if finite.size and finite.max() > high else "neither"
         colorbar = self.figure.colorbar(self._map, cax=key, extend=extend, extendfrac=0.04)
@@ -166,29 +168,31 @@ class CanopyFigure:
         image = draw_slice(axes, key, self._view.plane, quantity, snapshots, self._colours.flow)
         lines = LineCollection([], colors="black", linewidth=0.4, alpha=0.6, zorder=3)
         plane = self._view.plane
-        for centre, radius in self._spheres():
-            squared = radius**2 - (centre[plane.normal] - self._view.plane.place) ** 2
-            if squared > 0:
-                where = tuple(centre[list(plane.across)])
-                axes.add_patch(Circle(where, np.sqrt(squared), facecolor=_BODY, edgecolor=style.INK, zorder=2.5))
+        spheres = [Circle(centre[list(plane.across)], radius, facecolor=_BODY, edgecolor=style.INK, zorder=2.5)
+                   for centre, radius in self._spheres()]  # fmt: skip
+        for circle in spheres:
+            axes.add_patch(circle)
         outline = SheetOutline(axes, plane)
         cut = LineCollection([], colors=_CUT, linewidth=2.0, zorder=4, capstyle="round")
         axes.add_collection(lines, autolim=False)
         axes.add_collection(cut, autolim=False)
         (payloads,) = axes.plot([], [], "o", color="black", markersize=4.5, zorder=5)
-        return quantity, image, outline, lines, cut, payloads
+        return quantity, image, outline, spheres, lines, cut, payloads
 
     def show(self, snapshot: Snapshot) -> None:
         """Replaces the drawn data by those of a snapshot."""
         canopies = self._view.canopies
         self._show_cloth(snapshot)
         positions = canopies.positions(snapshot)
-        for quantity, image, outline, lines, cut, payloads in self._slices:
+        for quantity, image, outline, spheres, lines, cut, payloads in self._slices:
             outline.show(snapshot)
-            across = list(self._view.plane.across)
-            image.set_data(self._view.plane.cut(quantity.values(snapshot)))
+            plane = self._view.plane.at(snapshot)
+            for circle, (centre, radius) in zip(spheres, self._spheres()):
+                circle.set_radius(np.sqrt(max(radius**2 - (centre[plane.normal] - plane.place) ** 2, 0.0)))
+            across = list(plane.across)
+            image.set_data(plane.cut(quantity.values(snapshot)))
             lines.set_segments(positions[canopies.lines][..., across])
-            cut.set_segments(canopies.section(snapshot, self._view.plane.normal, self._view.plane.place)[..., across])
+            cut.set_segments(canopies.section(snapshot, plane.normal, plane.place)[..., across])
             payloads.set_data(*positions[canopies.payloads][:, across].T)
         for streamlines in self._streamlines:
             streamlines.show(snapshot)

@@ -84,6 +84,18 @@ def _level_set(body, points: np.ndarray) -> np.ndarray:
     return corners[tuple(np.moveaxis(np.concatenate(across), -1, 0))]
 
 
+def outlines(scene: dict, projection: np.ndarray) -> list[np.ndarray]:
+    """Outlines (n, 2) of the disks and spheres of a scene, as `projection` (rows: right, up, towards the viewer) shows them, m."""
+    angle = np.linspace(0, 2 * np.pi, 8 * _FACETS + 1)
+    circle = np.stack((np.cos(angle), np.sin(angle)), axis=1)
+    axes = {"disk": lambda body: _frame(body["normal"])[:2], "sphere": lambda _: projection[:2]}
+    return [
+        (body["centre"] + body["radius"] * circle @ axes[body["kind"]](body)) @ projection[:2].T
+        for body in scene.get("contact", {}).get("objects", [])
+        if body["kind"] in axes
+    ]
+
+
 def facets(scene: dict, points: np.ndarray) -> np.ndarray:
     """Facets (n, 4, 3) of all contact bodies of a resolved scene; `points` (n, 3) are positions of the cloth, m."""
     make = {

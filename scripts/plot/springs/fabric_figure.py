@@ -7,6 +7,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize, to_rgba
 
 from .. import shading, style
+from ..checks import check_caption
 from ..movie_file import drawn_frames
 from ..run_directory import Run, Snapshot, evenly_spaced
 from ..style import plt
@@ -17,7 +18,8 @@ _SIZE = (5.2, 4.0)
 _DPI = 100
 _AXES = "xyz"
 _FLAT = 0.02  # ratio of extents below which the mesh is drawn in its plane
-_BRIGHT = 99.5  # percentile of all values at the upper end of the colour scale
+_BRIGHT = 99.5  # percentile of all values at the upper end of the colour scale if few are far larger
+_MOVIE_COLOURS, _MOVIE_SHADES = 48, 4  # a GIF has 256 colours with those of the text
 _AZIMUTH, _ELEVATION = -65, 28  # degrees
 _BODY_MARGIN = 0.3  # distance from the cloth up to which bodies are shown, relative to its extent
 _MAX_DIRECTIONS = 1500  # largest number of principal directions that are drawn
@@ -101,28 +103,28 @@ class View:
         return (np.stack((middle - half, middle + half), axis=1)[shown] @ self.projection.T)[:, :, :2]
 
 
-def _shades(view: View, corners: np.ndarray, colours: np.ndarray) -> np.ndarray:
-    """Shading of RGBA colours; none for flat meshes."""
-    return colours if view.labels is not None else shading.shade(corners, colours)
-
-
 class FabricFigure:
-    """Figure that shows one snapshot at a time on fixed axes and a fixed colour scale."""
+    """Figure that shows one snapshot at a time; axes and colour scale fit all `snapshots`.
 
-    def __init__(self, view: View):
-        self._view = view
-        snapshots = view.run.snapshots
+    `colours` and `shades` limit the numbers of colours and of their brightnesses (None: any).
+    """
+
+    def __init__(self, view: View, snapshots: list[Snapshot], colours: int = 256, shades: int | None = None):
+        self._view, self._levels = view, shades
         self.figure, axes = plt.subplots(figsize=_SIZE, dpi=_DPI)
         values = np.concatenate([view.values(snapshot) for snapshot in snapshots])
         # A percentile, since a few highly stressed triangles would leave all others dark.
-        low, high = float(np.nanmin(values)), float(np.nanpercentile(values, _BRIGHT))
-        self._map = plt.cm.ScalarMappable(Normalize(low, high if high > low else low + 1), "viridis")
+        finite = values[np.isfinite(values)]
+        low = float(finite.min())
+        high = style.scale_end(finite, _BRIGHT, float(finite.max()), low)
+        colour_map = plt.get_cmap("viridis", colours)
+        self._map = plt.cm.ScalarMappable(Normalize(low, high if high > low else low + 1), colour_map)
         if len(view.triangles):
             self._parts = PolyCollection([], joinstyle="round")
             self._seams = strings.lie_along_cloth(view.segments, view.triangles)
         else:
             self._parts = LineCollection([], linewidth=2.2)
-        colours = _shades(view, view.body_facets, np.tile(bodies.COLOUR, (len(view.body_facets), 1)))
+        colours = self._shades(view.body_facets, np.tile(bodies.COLOUR, (len(view.body_facets), 1)))
         self._bodies = (view.body_facets @ view.projection.T, colours)
         if not len(view.triangles):
             axes.add_collection(
@@ -131,6 +133,9 @@ class FabricFigure:
                 )
             )
         axes.add_collection(self._parts)
+        # Cloth may hide a body altogether.
+        outlines = bodies.outlines(view.run.scene, view.projection) if len(view.triangles) else []
+        axes.add_collection(LineCollection(outlines, linewidth=0.9, linestyle=(0, (4, 3)), color=style.INK, zorder=4), autolim=False)
         self._directions = LineCollection([], linewidth=0.6, color="white")
         axes.add_collection(self._directions)
         low, high = self._range(np.concatenate([view.projected(snapshot)[:, :2] for snapshot in snapshots]))
@@ -147,7 +152,8 @@ class FabricFigure:
         colorbar.set_label(style.axis_label(*view.quantity))
         colorbar.outline.set_visible(False)
         self.figure.subplots_adjust(left=0.14, right=0.94, top=0.86, bottom=0.12)
-        self._caption = style.heading(self.figure, view.run.name, "")
+        legend = [("- -", "outline of a body", style.INK)] if outlines else []
+        self._caption = style.heading(self.figure, view.run.name, "", legend)
 
     def _range(self, projected: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner of the shown region: all cloth, and the bodies near it."""
@@ -162,6 +168,10 @@ class FabricFigure:
             low, high = np.minimum(low, lowest), np.maximum(high, highest)
         margin = 0.04 * np.max(high - low)
         return low - margin, high + margin
+
+    def _shades(self, corners: np.ndarray, colours: np.ndarray) -> np.ndarray:
+        """Shading of RGBA colours; none for flat meshes."""
+        return colours if self._view.labels is not None else shading.shade(corners, colours, levels=self._levels)
 
     def show(self, snapshot: Snapshot) -> None:
         """Replaces the drawn data by those of a snapshot."""
@@ -181,7 +191,7 @@ class FabricFigure:
                 kind="stable"
             )
             parts = [*corners[..., :2], *facets[..., :2], *ends[..., :2]]
-            shades = _shades(view, view.positions(snapshot)[view.triangles], colours)
+            shades = self._shades(view.positions(snapshot)[view.triangles], colours)
             string_colours = np.tile(to_rgba(strings.COLOUR), (len(ends), 1))
             colours = np.concatenate((shades, body_colours, string_colours))[order]
             self._parts.set_verts([parts[k] for k in order])
@@ -193,16 +203,17 @@ class FabricFigure:
             self._parts.set_segments(projected[view.segments, :2])
             self._parts.set_color(colours)
         count = len(view.run.mesh["vertices"].values)
-        self._caption.set_text(f"{count} vertices, t = {snapshot.time:.4g} s{style.first_check(view.run.result)}")
+        self._caption.set_text(f"{count} vertices, t = {snapshot.time:.4g} s{check_caption(view.run.result)}")
 
 
 def fabric_figure(view: View, snapshot: Snapshot):
     """Figure of one snapshot."""
-    drawing = FabricFigure(view)
+    drawing = FabricFigure(view, [snapshot])
     drawing.show(snapshot)
     return drawing.figure
 
 
 def frames(view: View):
     """Generator of frames, (height, width, 3) bytes each, of at most MAX_FRAMES evenly spaced snapshots."""
-    return drawn_frames(FabricFigure(view), evenly_spaced(view.run.snapshots, MAX_FRAMES))
+    chosen = evenly_spaced(view.run.snapshots, MAX_FRAMES)
+    return drawn_frames(FabricFigure(view, chosen, _MOVIE_COLOURS, _MOVIE_SHADES), chosen)
