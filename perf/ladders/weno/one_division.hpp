@@ -4,6 +4,24 @@
 
 namespace drogue::perf::ladder {
 
+/// As `JiangShuCorrection`, but with the weights over their common denominator: one division.
+struct OneDivisionCorrection {
+  template <class R>
+  KOKKOS_FUNCTION static R of(const R (&d)[4]) {
+    const R second[3] = {d[1] - d[0], d[2] - d[1], d[3] - d[2]};
+    const R first[3] = {3.0 * d[1] - d[0], d[1] + d[2], d[3] - 3.0 * d[2]};
+    R square[3];
+    for (int k = 0; k < 3; ++k) {
+      const R beta = 13.0 / 12.0 * (second[k] * second[k]) + 0.25 * (first[k] * first[k]) + 1e-6;
+      square[k] = beta * beta;
+    }
+    const R w0 = 0.1 * (square[1] * square[2]), w1 = 0.6 * (square[0] * square[2]),
+            w2 = 0.3 * (square[0] * square[1]), inverse = R(1.0) / (w0 + w1 + w2);
+    return w0 * inverse * ((1.0 / 3.0) * (second[1] - second[0])) +
+           (w2 * inverse - 0.5) * ((1.0 / 6.0) * (second[2] - second[1]));
+  }
+};
+
 /// Flux by the point functions of the library: weights over a common denominator, one division per side and
 /// field; roots and reciprocals from the approximations of the hardware on a GPU.
 struct OneDivisionFlux {
