@@ -128,8 +128,7 @@ ExitCode climb(const LadderOptions& options, device::Backend backend) {
     ++record;
   }
   if (options.explain) {
-    std::printf(
-        "\nHindsights on hosts are those of one core of an AMD EPYC with AVX-512: docs/lessons/tables.md\n");
+    std::printf("\nHindsights on hosts are those of an Intel Xeon with AVX-512: docs/lessons/tables.md\n");
     for (const ladder::Rung& rung : ladder.rungs)
       std::printf("\n%s: %s\n  %s\n", rung.text.name, rung.text.idea, rung.text.hindsight);
   }

@@ -60,12 +60,12 @@ TEST(Prediction, AddsCopiesAndLaunchesToTheLongerOfMemoryAndArithmetic) {
   Ceilings machine;
   machine.launch = machine.copy = 1.0;
   machine.pageable = machine.pinned = machine.bandwidth = machine.flops = machine.divisions = 10.0;
-  machine.lanes = 4;
+  machine.lanes = 4, machine.scalar_divisions = 6.0;
   Work work;
   work.launches = 2.0, work.copies = 3.0, work.copied_bytes = 40.0, work.bytes = 50.0, work.flops = 60.0;
   EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 4.0 * 6.0);
   EXPECT_STREQ(predict(work, machine).bound, "arithmetic");
-  work.divisions = 30.0, machine.scalar_divisions = 6.0;
+  work.divisions = 30.0;
   EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 4.0 * 6.0 + 5.0);
   work.packed = true;
   EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 6.0 + 3.0);
