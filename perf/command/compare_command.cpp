@@ -18,12 +18,18 @@ namespace {
 struct CompareOptions {
   std::string before, after, filter;
   std::vector<std::string> fail_on;
-  bool github = false;
+  bool allow_missing = false, github = false;
 
-  [[nodiscard]] bool fails(Verdict verdict) const {
-    const auto named = [&](const char* name) { return std::ranges::find(fail_on, name) != fail_on.end(); };
-    return (verdict == Verdict::slower && named("slower")) ||
-           (verdict == Verdict::error_changed && named("error"));
+  [[nodiscard]] bool named(const char* name) const {
+    return std::ranges::find(fail_on, name) != fail_on.end();
+  }
+  /// True if a gate does not pass this case. One that vanished, or whose samples could not have shown a
+  /// change, has not been looked at.
+  [[nodiscard]] bool fails(const ComparedCase& row) const {
+    if (row.presence == Presence::old_alone) return !fail_on.empty() && !allow_missing;
+    if (row.speed && !has_interval(*row.speed)) return named("slower");
+    return (row.verdict == Verdict::slower && named("slower")) ||
+           (row.verdict == Verdict::error_changed && named("error"));
   }
 };
 
@@ -31,12 +37,13 @@ struct CompareOptions {
 std::string details(const ComparedCase& row) {
   if (!row.speed) return row.reason;
   const SpeedChange& speed = *row.speed;
-  char text[128];
-  if (std::isfinite(speed.high))
-    std::snprintf(text, sizeof text, "%.3f times as long  [%.3f .. %.3f]", speed.ratio, speed.low,
-                  speed.high);
+  char text[256];
+  if (has_interval(speed))
+    std::snprintf(text, sizeof text, "%.3f times as long  [%.3f .. %.3f]  %.4g -> %.4g %s", speed.ratio,
+                  speed.low, speed.high, row.old_time, row.new_time, row.unit.c_str());
   else
-    std::snprintf(text, sizeof text, "%.3f times as long  (too few samples for an interval)", speed.ratio);
+    std::snprintf(text, sizeof text, "%.3f times as long  (too few samples for an interval)  %.4g -> %.4g %s",
+                  speed.ratio, row.old_time, row.new_time, row.unit.c_str());
   return text;
 }
 
@@ -48,14 +55,15 @@ void print(const std::vector<ComparedCase>& rows) {
                 details(row).c_str());
 }
 
-/// Sentence on the cases whose verdict `--fail-on` names.
+/// Sentences on the cases that a gate does not pass.
 Failure failure(const std::vector<ComparedCase>& failed) {
   std::string sentence;
-  for (const ComparedCase& row : failed)
-    sentence += (sentence.empty() ? "" : "; ") + row.name + ": " +
-                (row.speed ? describe_change(*row.speed) + ", where " + percent(smallest_effect) +
-                                 " count as a change"
-                           : row.reason);
+  for (const ComparedCase& row : failed) {
+    sentence += (sentence.empty() ? "" : "; ") + row.name + ": " + describe(row);
+    if (row.verdict == Verdict::slower)
+      sentence += ", where " + percent(row.speed->least) + " count as a change";
+    if (row.presence == Presence::old_alone) sentence += "; --allow-missing lets it pass";
+  }
   return {ExitCode::verification_failed, sentence};
 }
 
@@ -74,6 +82,8 @@ void keep_matching(std::vector<MeasuredCase>& records, const std::regex& filter,
 }
 
 ExitCode compare_files(const CompareOptions& options, const std::regex& filter) {
+  if (options.allow_missing && options.named("missing"))
+    throw Failure(ExitCode::usage, "--allow-missing contradicts --fail-on missing");
   std::vector<MeasuredCase> after = read_records(options.after);
   const Baseline baseline = find_baseline(options.before, after.front());
   std::vector<MeasuredCase> before = read_records(baseline.file);
@@ -84,18 +94,18 @@ ExitCode compare_files(const CompareOptions& options, const std::regex& filter) 
               describe_age(before, after.back()).c_str());
   const std::vector<ComparedCase> rows = compare_records(before, after);
   print(rows);
+  std::printf("%s\n", summary(rows).c_str());
   std::vector<ComparedCase> failed;
   std::ranges::copy_if(rows, std::back_inserter(failed),
-                       [&](const ComparedCase& row) { return options.fails(row.verdict); });
+                       [&](const ComparedCase& row) { return options.fails(row); });
   if (options.github)
-    for (const ComparedCase& row : rows)
-      std::fputs(annotation(row, options.fails(row.verdict)).c_str(), stdout);
-  if (!failed.empty()) throw failure(failed);
+    for (const ComparedCase& row : rows) std::fputs(annotation(row, options.fails(row)).c_str(), stdout);
   if (std::ranges::all_of(rows, &is_not_comparable)) {
     // A gate that compared nothing has shown nothing.
     if (!options.fail_on.empty()) throw nothing_compared(rows.front());
     std::printf("no case could be compared\n");
   }
+  if (!failed.empty()) throw failure(failed);
   if (!baseline.broken.empty()) throw Failure(ExitCode::invalid_scene, baseline.broken.front());
   return ExitCode::ok;
 }
@@ -111,9 +121,13 @@ Command compare_command(CLI::App& program) {
   app->add_option("NEW", options->after, "Records after the change")->required();
   app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
   app->add_option("--fail-on", options->fail_on,
-                  "Verdicts that give exit code 5: slower, error, or both by a comma")
+                  "Verdicts that give exit code 5: slower, error, or missing, several by commas; any of them "
+                  "fails where "
+                  "a case of OLD is missing in NEW")
       ->delimiter(',')
-      ->check(CLI::IsMember({"slower", "error"}));
+      ->check(CLI::IsMember({"slower", "error", "missing"}));
+  app->add_flag("--allow-missing", options->allow_missing,
+                "With --fail-on, cases of OLD may be missing in NEW");
   app->add_flag("--github", options->github, "Print annotations for GitHub workflows too");
   return {app, [options](const std::vector<std::string>&) {
             return compare_files(*options, filter_of(options->filter));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "common/program/failure.hpp"
+#include "common/run/statistics.hpp"
 #include "common/scene/nearest.hpp"
 #include "perf/compare/comparability.hpp"
 
@@ -50,6 +52,23 @@ std::string describe_missing(const std::string& where, const std::string& elsewh
          (nearest ? "; the nearest case of the " + elsewhere + " ones is " + *nearest : "");
 }
 
+double median_of(const Runs& runs) {
+  std::vector<double> all;
+  for (const std::vector<double>& run : runs) all.insert(all.end(), run.begin(), run.end());
+  return run::median(std::move(all));
+}
+
+/// Row of a case that one file lacks.
+ComparedCase one_sided(const CaseRuns& group, Presence presence, const std::vector<CaseRuns>& others) {
+  const bool is_old = presence == Presence::old_alone;
+  ComparedCase row{group.name,
+                   Verdict::not_comparable,
+                   describe_missing(is_old ? "old" : "new", is_old ? "new" : "old", group.name, others),
+                   {}};
+  row.presence = presence;
+  return row;
+}
+
 ComparedCase compare_case(const CaseRuns& before, const CaseRuns& after) {
   if (auto reason = why_not_comparable(before.last, after.last))
     return {after.name, Verdict::not_comparable, *reason, {}};
@@ -59,7 +78,13 @@ ComparedCase compare_case(const CaseRuns& before, const CaseRuns& after) {
     return {after.name, Verdict::not_comparable, "the check of both records failed", {}};
   if (before.runs.empty() || after.runs.empty())
     return {after.name, Verdict::not_comparable, "a record without samples", {}};
-  return {after.name, Verdict::ambiguous, "", compare_speed(before.runs, after.runs)};
+  return {after.name,
+          Verdict::ambiguous,
+          "",
+          compare_speed(before.runs, after.runs),
+          median_of(before.runs),
+          median_of(after.runs),
+          after.last.unit};
 }
 
 Verdict verdict_of(SpeedVerdict speed) {
@@ -103,15 +128,10 @@ std::vector<ComparedCase> compare_records(const std::vector<MeasuredCase>& befor
   for (const CaseRuns& group : new_cases) {
     const CaseRuns* old_case = find(old_cases, group.name);
     rows.push_back(old_case ? compare_case(*old_case, group)
-                            : ComparedCase{group.name,
-                                           Verdict::not_comparable,
-                                           describe_missing("new", "old", group.name, old_cases),
-                                           {}});
+                            : one_sided(group, Presence::new_alone, old_cases));
   }
   for (const CaseRuns& group : old_cases)
-    if (!find(new_cases, group.name))
-      rows.push_back(
-          {group.name, Verdict::not_comparable, describe_missing("old", "new", group.name, new_cases), {}});
+    if (!find(new_cases, group.name)) rows.push_back(one_sided(group, Presence::old_alone, new_cases));
   std::vector<SpeedChange> changes;
   for (const ComparedCase& row : rows)
     if (row.speed) changes.push_back(*row.speed);

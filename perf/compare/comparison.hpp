@@ -15,12 +15,19 @@ enum class Verdict { same, faster, slower, ambiguous, not_comparable, error_chan
 /// Word for a verdict, as `compare` prints it: SAME, FASTER and so on. Does not throw.
 const char* word(Verdict verdict);
 
+/// Files that hold a case.
+enum class Presence { both, old_alone, new_alone };
+
 /// Case of two files of records.
 struct ComparedCase {
   std::string name;
   Verdict verdict = Verdict::not_comparable;
-  std::string reason;                ///< of `not_comparable` and `error_changed`
-  std::optional<SpeedChange> speed;  ///< of the others
+  std::string reason;                     ///< of `not_comparable` and `error_changed`
+  std::optional<SpeedChange> speed = {};  ///< of the others
+  double old_time = 0.0;                  ///< median of all samples, beside `speed`
+  double new_time = 0.0;
+  std::string unit = {};  ///< of the times
+  Presence presence = Presence::both;
 };
 
 /// Verdicts of all cases: those of `after` in its order, then those of `before` alone. Several records of a

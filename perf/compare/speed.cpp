@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "perf/compare/rank_test.hpp"
 
@@ -30,6 +31,13 @@ constexpr std::size_t least_independent = 15;
 /// Logarithm of a change that needs no agreement of blocks, if the fastest sample moves by half of it at
 /// least.
 const double large_change = std::log(1.25);
+/// Runs a side whose medians are tested, and standard errors of their difference that a change exceeds: 5
+/// have a probability of 0.25 % for four runs a side, of 0.1 % for five.
+constexpr std::size_t runs_of_a_test = 4;
+constexpr double least_errors = 5.0;
+/// Part of a change by which the fastest sample must move: of a single run a side more, since other work may
+/// last for all of a run.
+constexpr double fastest_of_one_run = 0.6, fastest_of_several = 1.0 / 3.0;
 
 /// Quantile by linear interpolation between order statistics.
 double quantile(std::vector<double> values, double level) {
@@ -99,6 +107,30 @@ double change_of_blocks(const BlockRule& rule, const Runs& before, const Runs& a
                               quantiles_of(short_blocks, after, rule.level))});
 }
 
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double squared_deviations(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean(values)) * (value - mean(values));
+  return sum;
+}
+
+/// Change of the medians of the runs of two sides, of `runs_of_a_test` at least; zero if it is no multiple of
+/// its standard error (Student), in which the noise between runs counts.
+double change_of_runs(const Runs& before, const Runs& after) {
+  if (std::min(before.size(), after.size()) < runs_of_a_test) return 0.0;
+  std::vector<double> sides[2];
+  for (const std::vector<double>& run : before) sides[0].push_back(quantile(run, 0.5));
+  for (const std::vector<double>& run : after) sides[1].push_back(quantile(run, 0.5));
+  const auto first = static_cast<double>(before.size()), second = static_cast<double>(after.size());
+  const double variance =
+      (squared_deviations(sides[0]) + squared_deviations(sides[1])) / (first + second - 2.0);
+  const double change = mean(sides[1]) - mean(sides[0]);
+  return std::abs(change) > least_errors * std::sqrt(variance * (1.0 / first + 1.0 / second)) ? change : 0.0;
+}
+
 /// Ranks of values less their mean; equal values share a rank.
 std::vector<double> centred_ranks(const std::vector<double>& values) {
   std::vector<double> ranks;
@@ -141,7 +173,7 @@ SpeedChange compare_speed(const Runs& before, const Runs& after) {
   const Runs old_runs = logarithms_of(before), new_runs = logarithms_of(after);
   const std::vector<double> old_all = joined(old_runs), new_all = joined(new_runs);
   const Shift shift = rank_shift(old_all, new_all);
-  double agreed = 0.0;
+  double agreed = change_of_runs(old_runs, new_runs);
   for (const BlockRule& rule : block_rules)
     agreed = larger(agreed, change_of_blocks(rule, old_runs, new_runs));
   // Other work on the machine prolongs most samples of a run, but seldom all: a change moves the fastest one
@@ -150,14 +182,21 @@ SpeedChange compare_speed(const Runs& before, const Runs& after) {
   const double near_end = shift.low > 0.0 ? shift.low : shift.high < 0.0 ? shift.high : 0.0;
   const bool is_large = std::abs(near_end) >= large_change && 2.0 * fastest * near_end >= near_end * near_end;
   if (is_large || (are_independent(old_runs) && are_independent(new_runs))) agreed = larger(agreed, near_end);
-  if (3.0 * fastest * shift.estimate <= shift.estimate * shift.estimate) agreed = 0.0;
+  const std::size_t runs = std::min(before.size(), after.size());
+  const double part = runs == 1 ? fastest_of_one_run : fastest_of_several;
+  if (fastest * shift.estimate <= part * shift.estimate * shift.estimate) agreed = 0.0;
   return {std::exp(shift.estimate),
           std::exp(shift.low),
           std::exp(shift.high),
           rank_test(old_all, new_all),
           agreement({shift.estimate, agreed}),
-          before == after};
+          before == after,
+          smallest_effect(runs)};
 }
+
+double smallest_effect(std::size_t runs) { return runs <= 1 ? 0.075 : runs == 2 ? 0.05 : 0.03; }
+
+bool has_interval(const SpeedChange& change) { return std::isfinite(change.high); }
 
 std::vector<SpeedVerdict> speed_verdict(const std::vector<SpeedChange>& changes) {
   std::vector<double> probabilities;
@@ -166,11 +205,13 @@ std::vector<SpeedVerdict> speed_verdict(const std::vector<SpeedChange>& changes)
   std::vector<SpeedVerdict> verdicts;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const SpeedChange& change = changes[i];
-    const double smallest = std::log1p(smallest_effect), unseen = std::log1p(largest_unseen);
-    if (probabilities[i] < false_alarm && std::abs(change.agreed) >= smallest)
+    const double agreed = std::abs(change.agreed), shift = std::abs(std::log(change.ratio));
+    const double smallest = std::log1p(smallest_effect(many_runs)), unseen = std::log1p(largest_unseen);
+    if (probabilities[i] < false_alarm && agreed >= smallest && shift >= std::log1p(change.least))
       verdicts.push_back(change.agreed > 0.0 ? SpeedVerdict::slower : SpeedVerdict::faster);
-    else if (change.identical || (std::abs(std::log(change.ratio)) < smallest &&
-                                  std::log(change.high) <= unseen && std::log(change.low) >= -unseen))
+    else if (has_interval(change) &&
+             (change.identical ||
+              (shift < smallest && std::log(change.high) <= unseen && std::log(change.low) >= -unseen)))
       verdicts.push_back(SpeedVerdict::same);
     else
       verdicts.push_back(SpeedVerdict::ambiguous);

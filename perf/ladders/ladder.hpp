@@ -34,6 +34,9 @@ struct Ceilings {
   double flops = 0.0;      ///< FP64 operations per s; on a host by packs
   double divisions = 0.0;  ///< FP64 divisions per s; on a host by packs
   int lanes = 1;           ///< doubles per pack
+  /// FP64 divisions per s without packs: of a host more than those of a pack over its lanes, since a division
+  /// of a pack takes longer than one of a number.
+  double scalar_divisions = 0.0;
 };
 
 /// Time that a model expects, and the resource that takes most of it.
@@ -43,7 +46,7 @@ struct Prediction {
 };
 
 /// Launches and copies one after the other, then the longer one of memory and arithmetic. Host code without
-/// packs uses one lane. Does not throw.
+/// packs uses one lane, and the divider for numbers. Does not throw.
 [[nodiscard]] Prediction predict(const Work& work, const Ceilings& ceilings);
 
 /// Measures the ceilings of a backend within about a second. Requires an initialised runtime. Blocking.

@@ -21,10 +21,12 @@ struct EmptyFunctor {
   KOKKOS_FUNCTION void operator()(int) const {}
 };
 
-/// x <- 1 / (x + b) in independent chains: one division and one addition per step.
-template <class ExecutionSpace>
+/// x <- 1 / (x + b) in independent chains of `R`: one division and one addition per step.
+template <class ExecutionSpace, class R>
 struct DivisionFunctor {
-  using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+  /// Read anew for every number on a host, or the compiler makes packs of the chains.
+  using Shift = std::conditional_t<device::is_host<ExecutionSpace> && device::Access<R>::lanes == 1,
+                                   volatile double, double>;
   static constexpr int lanes = device::Access<R>::lanes, chains = 8, steps = 1 << 14;
 
   Kokkos::View<double*, typename ExecutionSpace::memory_space> sum;  ///< `lanes` values per item
@@ -33,8 +35,9 @@ struct DivisionFunctor {
   KOKKOS_FUNCTION void operator()(int item) const {
     R x[chains];
     for (int c = 0; c < chains; ++c) x[c] = R(1.0 + c);
+    Shift shift = b;
     for (int step = 0; step < steps; ++step)
-      for (int c = 0; c < chains; ++c) x[c] = R(1.0) / (x[c] + R(b));
+      for (int c = 0; c < chains; ++c) x[c] = R(1.0) / (x[c] + R(shift));
     R total = x[0];
     for (int c = 1; c < chains; ++c) total += x[c];
     device::Access<R>::store(sum.data() + item * lanes, total);
@@ -60,6 +63,20 @@ inline double ceiling_seconds(CeilingKernel& kernel) {
   return fastest_seconds(5, [&] { kernel.run(); });
 }
 
+/// Divisions of all items of a backend per s.
+template <class R, class ExecutionSpace>
+double division_rate(const ExecutionSpace& space) {
+  using Divisions = DivisionFunctor<ExecutionSpace, R>;
+  const int items = space.concurrency();
+  const Divisions divisions{decltype(Divisions::sum)("drogue::perf::ladder::divisions",
+                                                     static_cast<std::size_t>(items * Divisions::lanes))};
+  const double seconds = fastest_seconds(5, [&] {
+    device::launch_each(space, "drogue::perf::ladder::divisions", items, divisions);
+    space.fence("drogue::perf::ladder: divisions are done");
+  });
+  return static_cast<double>(items) * Divisions::lanes * Divisions::chains * Divisions::steps / seconds;
+}
+
 template <class ExecutionSpace>
 Ceilings make_ceilings() {
   constexpr device::Backend backend = device::backend_of<ExecutionSpace>;
@@ -72,15 +89,10 @@ Ceilings make_ceilings() {
   const device::Instance<ExecutionSpace> instance(std::numeric_limits<int>::max());
   const ExecutionSpace& space = instance.space();
   const int items = space.concurrency();
-  using Divisions = DivisionFunctor<ExecutionSpace>;
-  c.lanes = Divisions::lanes;
-  const Divisions divisions{decltype(Divisions::sum)("drogue::perf::ladder::divisions",
-                                                     static_cast<std::size_t>(items * Divisions::lanes))};
-  c.divisions = static_cast<double>(items) * Divisions::lanes * Divisions::chains * Divisions::steps /
-                fastest_seconds(5, [&] {
-                  device::launch_each(space, "drogue::perf::ladder::divisions", items, divisions);
-                  space.fence("drogue::perf::ladder: divisions are done");
-                });
+  using Pack = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+  c.lanes = device::Access<Pack>::lanes;
+  c.divisions = division_rate<Pack>(space);
+  c.scalar_divisions = c.lanes == 1 ? c.divisions : division_rate<double>(space);
 
   constexpr int launches = 100;
   c.launch =

@@ -80,6 +80,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--report", action="store_true", help="write one page, report.html, of all records of DIR, and nothing else"
     )
+    parser.add_argument("--verdicts", type=Path, help="with --report: verdicts that drogue-perf report --baseline wrote")
     parser.add_argument("--quiet", action="store_true", help="do not print the names of the pictures")
     parser.add_argument("--version", action="store_true", help="print the versions and stop")
     options = parser.parse_args(words)
@@ -222,7 +223,7 @@ def _report(options):
     evidence = read_records(options.directory)
     if evidence is None:
         raise Failure(USAGE, f"{options.directory} holds no records (*.jsonl).")
-    yield report.write(evidence, (options.out or options.directory) / "report.html", options.dpi)
+    yield report.write(evidence, (options.out or options.directory) / "report.html", options.dpi, options.verdicts)
 
 
 def draw(options: argparse.Namespace):

@@ -1,6 +1,9 @@
 """Ladders of drogue-perf: table, records and bad input."""
 
 import os
+import pathlib
+import re
+import subprocess
 import sys
 import unittest
 
@@ -29,6 +32,19 @@ class Ladder(perf_program.PerfTest):
         process = self.expect(5, "ladder", "check", "--backend", "serial")
         self.assertEqual(4, process.stdout.count("broken: "))
         self.assertIn("4 of 4 exercises are broken", process.stderr)
+        # Speed is no part of a test: slow or fast, each exercise states both factors.
+        wanted = dict(re.findall(r"(?m)^(\w+) .*(?:slow|fast): [0-9.]+ times as fast \(goal ([0-9.]+)\)", process.stdout))
+        answers = pathlib.Path(os.environ["DROGUE_SOURCE"], "docs/lessons/answers.md").read_text(encoding="utf-8")
+        self.assertEqual(dict(re.findall(r"(?m)^\| `(\w+)` \|.*\| ([0-9.]+) \| [0-9.]+ \|$", answers)), wanted)
+        self.assertEqual(4, len(wanted))
+
+    def test_check_accepts_the_solutions(self):
+        process = subprocess.run([perf_program.PROGRAM, "ladder", "check", "--backend", "serial", "--solutions"],
+                                 cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertIn(process.returncode, (0, 5))  # by their speed on a machine that others use
+        self.assertNotIn("broken: ", process.stdout)
+        self.assertEqual(4, process.stdout.count("mended"))
+        self.assertIn("--solutions", self.expect(2, "ladder", "weno", "--solutions").stderr)
 
 
 if __name__ == "__main__":

@@ -48,7 +48,10 @@ class Compare(perf_program.PerfTest):
         text = self.compare(0, new).stdout
         self.assertEqual(dict(zip([*CASES, "new"], ["SLOWER", "ERROR-CHANGED", "FASTER", "NOT-COMPARABLE"])),
                          self.verdicts(text))
-        self.assertRegex(text, r"(?m)^gas-step/serial/1024 +SLOWER +1\.300 times as long  \[1\.\d+ \.\. 1\.\d+\]$")
+        self.assertRegex(text, r"(?m)^gas-step/serial/1024 +SLOWER +1\.300 times as long  \[1\.\d+ \.\. 1\.\d+\]"
+                               r"  0\.000101 -> 0\.0001313 s per step$")
+        self.assertIn("\n4 cases: 0 unchanged, 1 take longer, 1 take less time, 0 undecided, 1 with another error, "
+                      "1 not compared (0 vanished, 1 new); 0.954 times as long in the geometric mean of 2\n", text)
 
     def test_files_of_one_build_have_no_changes(self):
         self.assertEqual({"SAME"}, set(self.verdicts(self.compare(0, [record(case) for case in CASES],
@@ -71,7 +74,49 @@ class Compare(perf_program.PerfTest):
                     self.assertEqual({"NOT-COMPARABLE"}, set(self.verdicts(process.stdout).values()))
                     self.assertIn("no case could be compared, so that --fail-on has nothing to pass; the first, " + reason,
                                   process.stderr)
-        self.compare(0, [record("new"), record(CASES[1])], "--fail-on", "slower,error")
+        self.compare(0, [record("new"), record(CASES[1])], "--fail-on", "slower,error", "--allow-missing")
+
+    def test_gate_fails_where_a_case_vanished(self):
+        new = [record("new"), record(CASES[1])]
+        self.compare(0, new)
+        for words in ("slower", "error", "missing", "slower,error"):
+            with self.subTest(words):
+                process = self.compare(5, new, "--github", "--fail-on", words)
+                for case in (CASES[0], CASES[2]):
+                    self.assertIn(f"{case}: only in the old records", process.stderr)
+                    self.assertIn(f"::error title={case}::only in the old records", process.stdout)
+                self.assertIn("--allow-missing", process.stderr)
+                self.assertNotIn("new: only", process.stderr)
+                self.assertFalse(WORDS & set(re.findall(r"[A-Z-]+", process.stderr)))
+        for words in ("slower", "error", "slower,error"):
+            self.compare(0, new, "--fail-on", words, "--allow-missing")
+        slow = [record(case, 1.3) for case in CASES]
+        self.compare(0, slow, "--fail-on", "missing")
+        self.assertIn("contradicts", self.compare(2, new, "--fail-on", "missing", "--allow-missing").stderr)
+
+    def test_gate_fails_where_the_samples_are_too_few(self):
+        for count in (1, 3):
+            samples = [1e-4] * count
+            few = [record(case, samples=samples) for case in CASES]
+            for old, new in ((few, few), (None, few), (few, [record(case) for case in CASES])):
+                self.write("old.jsonl", old or [record(case) for case in CASES])
+                self.write("new.jsonl", new)
+                process = self.expect(0, "compare", "old.jsonl", "new.jsonl")
+                if count == 1 or old == new:
+                    self.assertEqual({"AMBIGUOUS"}, set(self.verdicts(process.stdout).values()))
+                    self.assertIn("\n3 cases: 0 unchanged, 0 take longer, 0 take less time, 3 undecided,", process.stdout)
+                    process = self.expect(5, "compare", "old.jsonl", "new.jsonl", "--fail-on", "slower", "--github")
+                    self.assertIn(f"{CASES[0]}: too few samples", process.stderr)
+                    self.assertIn(f"::error title={CASES[0]}::too few samples", process.stdout)
+                # Errors need no samples.
+                self.expect(0, "compare", "old.jsonl", "new.jsonl", "--fail-on", "error")
+
+    def test_shipped_records_of_equal_builds_do_not_differ(self):
+        folder = os.environ["DROGUE_SOURCE"] + "/docs/evidence/quick/"
+        text = self.expect(0, "compare", folder + "first.jsonl", folder + "second.jsonl", "--fail-on", "slower,error").stdout
+        found = self.verdicts(text)
+        self.assertEqual(59, len(found))
+        self.assertLessEqual(set(found.values()), {"SAME", "AMBIGUOUS"})
 
     def test_exit_code_is_5_for_a_named_verdict_alone(self):
         slow, wrong = [record(CASES[0], 1.3)], [record(CASES[0], error=2e-3)]
@@ -80,7 +125,7 @@ class Compare(perf_program.PerfTest):
                                  (5, slow, ["--fail-on", "slower", "--fail-on", "error"]),
                                  (0, [record(CASES[0], 0.7)], ["--fail-on", "slower,error"])):
             with self.subTest(words=words, code=code):
-                process = self.compare(code, new, *words)
+                process = self.compare(code, new, *words, "--allow-missing")
                 self.assertEqual(code == 5, CASES[0] in process.stderr)
                 self.assertFalse(WORDS & set(re.findall(r"[A-Z-]+", process.stderr)))
 

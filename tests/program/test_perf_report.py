@@ -35,6 +35,25 @@ class Report(perf_program.PerfTest):
         page = (self.folder / "made/report.html").read_text(encoding="utf-8")
         self.assertTrue(all(row["case"] in page for row in rows))
 
+    def test_page_shows_verdicts_against_a_baseline(self):
+        self.require_packages()
+        shutil.copy(RECORDS + "/new.jsonl", self.folder / "new.jsonl")
+        words = "report", ".", "--baseline", RECORDS + "/old.jsonl", "--out", "made"
+        self.assertIn("made/verdicts.json", self.expect(0, *words).stdout.splitlines())
+        verdicts = json.loads((self.folder / "made/verdicts.json").read_text(encoding="utf-8"))
+        found = {case["case"]: case["verdict"] for case in verdicts["cases"]}
+        text = self.expect(0, "compare", RECORDS + "/old.jsonl", "new.jsonl").stdout
+        self.assertEqual({line.split()[0]: line.split()[1] for line in text.splitlines()[2:-1]}, found)
+        self.assertEqual(text.splitlines()[-1], verdicts["summary"])
+        page = (self.folder / "made/report.html").read_text(encoding="utf-8")
+        self.assertIn('id="verdicts"', page)
+        self.assertIn(verdicts["summary"], page)
+        slower, = (case for case, verdict in found.items() if verdict == "SLOWER")
+        self.assertRegex(page, rf'(?s){slower}</td>\s*<td class="bad">SLOWER')
+        self.expect(0, "report", ".", "--out", "plain")
+        self.assertNotIn('id="verdicts"', (self.folder / "plain/report.html").read_text(encoding="utf-8"))
+        self.assertIn("missing", self.expect(2, "report", ".", "--baseline", "missing").stderr)
+
     def test_refuses_records_with_file_and_line_and_writes_nothing(self):
         self.require_packages()
         with open(RECORDS + "/old.jsonl", encoding="utf-8") as file:

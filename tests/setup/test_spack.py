@@ -1,4 +1,4 @@
-"""The Spack recipe and environment name versions, variants and packages that exist and that CMake asks for."""
+"""Versions, variants and packages of the Spack recipe and environment exist and are those of CMake."""
 
 import ast
 import os
@@ -81,14 +81,14 @@ class Spack(unittest.TestCase):
         minimum = re.search(r"cmake_minimum_required\(VERSION ([0-9.]+)\)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
         self.assertEqual(minimum, versions(specs()["cmake"][0])[0])
 
-    def test_the_miscompiled_release_is_refused(self):
+    def test_recipe_refuses_the_miscompiled_release(self):
         release = re.search(r'Kokkos_VERSION VERSION_EQUAL "([0-9.]+)"', CMAKE)[1]
         self.assertIn("^kokkos@" + re.sub(r"\.(\d)$", r".0\1", release), [spec for (spec, *_), _ in calls("conflicts")])
 
     def test_python_packages_are_those_of_the_pictures(self):
         wanted = (SOURCE / "scripts/requirements.txt").read_text(encoding="utf-8").split("# what the above pull in")[0]
         names = set(re.findall(r"(?m)^([a-z0-9-]+)==", wanted))
-        # For MP4 films alone, and asked for where it lacks.
+        # For MP4 films alone; drogue-plot names it where it lacks.
         names.remove("imageio-ffmpeg")
         self.assertGreaterEqual(names, {"numpy", "matplotlib", "h5py", "jinja2", "pillow"})
         for name in names:

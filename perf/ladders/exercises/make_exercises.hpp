@@ -3,18 +3,88 @@
 #include <memory>
 #include <utility>
 
+#include "kernels/mesh/renumbering.hpp"
 #include "perf/ladders/exercises/chunks.hpp"
 #include "perf/ladders/exercises/correction.hpp"
+#include "perf/ladders/exercises/divisions.hpp"
 #include "perf/ladders/exercises/exercises.hpp"
 #include "perf/ladders/exercises/jumps.hpp"
+#include "perf/ladders/exercises/order.hpp"
+#include "perf/ladders/exercises/sums.hpp"
 #include "perf/ladders/exercises/tension.hpp"
+#include "perf/ladders/exercises/uploads.hpp"
 #include "perf/ladders/make_rung.hpp"
 #include "perf/ladders/options/registers.hpp"
 #include "perf/ladders/springs/recomputed.hpp"
+#include "perf/ladders/transfers/one_upload.hpp"
 #include "perf/ladders/transfers/overlapped.hpp"
-#include "perf/ladders/weno/differences.hpp"
+#include "perf/ladders/weno/one_division.hpp"
 
 namespace drogue::perf::ladder {
+
+/// Exercises whose rungs are right and slow. The factors are below those of the solutions on every machine of
+/// docs/lessons/tables.md.
+template <class ExecutionSpace>
+Exercise faster_weno(ExerciseCode code) {
+  using Slow = DifferencesRung<ExecutionSpace>;
+  using Own = DifferencesRung<ExecutionSpace, DifferenceFluxWith<DivisionsExercise>>;
+  using Solution = DifferencesRung<ExecutionSpace, DifferenceFluxWith<OneDivisionCorrection>>;
+  const auto problem = std::make_shared<const WenoProblem>(make_weno_problem(4096, 4));
+  return {"divisions",
+          "perf/ladders/exercises/divisions.hpp",
+          "Leave one division of five.",
+          code == ExerciseCode::own ? make_rung<Own>(problem, weno_tolerance)
+                                    : make_rung<Solution>(problem, weno_tolerance),
+          1.1,
+          make_rung<Slow>(problem, weno_tolerance)};
+}
+
+template <class ExecutionSpace>
+Exercise faster_springs(ExerciseCode code) {
+  using Same = RecomputedRung<ExecutionSpace>;
+  const VertexOrder order = code == ExerciseCode::own ? &OrderExercise::order : &mesh::reverse_cuthill_mckee;
+  const auto made = [](VertexOrder reorder) {
+    const auto problem = std::make_shared<const SpringProblem>(make_spring_problem(20'000, 2, reorder));
+    return make_rung<Same>(problem, spring_tolerance);
+  };
+  return {"order",
+          "perf/ladders/exercises/order.hpp",
+          "Number the vertices so that neighbours share lines.",
+          made(order),
+          1.15,
+          made(nullptr)};
+}
+
+template <class ExecutionSpace>
+Exercise faster_options(ExerciseCode code) {
+  using Slow = OptionRegistersRung<ExecutionSpace, PlainJumps>;
+  using Own = OptionRegistersRung<ExecutionSpace, SumsExercise>;
+  using Solution = OptionRegistersRung<ExecutionSpace>;
+  constexpr bool host = device::is_host<ExecutionSpace>;
+  const auto problem = std::make_shared<const OptionsProblem>(make_options_problem(host ? 16 : 1024));
+  return {"sums",
+          "perf/ladders/exercises/sums.hpp",
+          "Sum for several nodes at once.",
+          code == ExerciseCode::own ? make_rung<Own>(problem, options_tolerance)
+                                    : make_rung<Solution>(problem, options_tolerance),
+          host ? 2.0 : 1.2,
+          make_rung<Slow>(problem, options_tolerance)};
+}
+
+template <class ExecutionSpace>
+Exercise faster_transfers(ExerciseCode code) {
+  using Own = OneUploadRung<ExecutionSpace, UploadsExercise>;
+  constexpr bool host = device::is_host<ExecutionSpace>;
+  const auto problem =
+      std::make_shared<const TransferProblem>(make_transfer_problem(host ? 300'007 : 4'000'103, 20));
+  return {"uploads",
+          "perf/ladders/exercises/uploads.hpp",
+          "Leave the values on the device between the steps.",
+          code == ExerciseCode::own ? make_rung<Own>(problem, transfer_tolerance)
+                                    : make_rung<OneUploadRung<ExecutionSpace>>(problem, transfer_tolerance),
+          host ? 1.1 : 4.0,
+          make_rung<PinnedRung<ExecutionSpace>>(problem, transfer_tolerance)};
+}
 
 template <class ExecutionSpace>
 std::vector<Exercise> make_exercises(ExerciseCode code) {
@@ -37,7 +107,11 @@ std::vector<Exercise> make_exercises(ExerciseCode code) {
                make_options_problem(5), options_tolerance)},
           {"chunks", "perf/ladders/exercises/chunks.hpp", "Send every value to the device.",
            rung.template operator()<OverlappedRung<Space, 8, ChunksExercise>, OverlappedRung<Space>>(
-               make_transfer_problem(5003, 3), transfer_tolerance)}};
+               make_transfer_problem(5003, 3), transfer_tolerance)},
+          faster_weno<Space>(code),
+          faster_springs<Space>(code),
+          faster_options<Space>(code),
+          faster_transfers<Space>(code)};
 }
 
 }  // namespace drogue::perf::ladder

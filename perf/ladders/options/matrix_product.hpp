@@ -35,8 +35,9 @@ class MatrixProductRung final : public OptionsRung<ExecutionSpace, Kokkos::Layou
       "matrix-product", "The jumps of all options as one product of matrices.",
       "On a host this rung loses to registers: the plain product of the library streams all "
       "values through the caches for each node. The tiles of a real matrix product are the "
-      "blocks of rung 5. On a GPU columns must share a distribution of jumps, which a batch of "
-      "different options does not (docs/options-notebook.md)."};
+      "blocks of rung 5. On an H100 it loses too: 2859 us, after 1133 us "
+      "(docs/lessons/tables.md). There columns must share a distribution of jumps, which a "
+      "batch of different options does not (docs/options-notebook.md)."};
 
   static Work work(const OptionsProblem& problem) {
     Work work = options_work(problem, 2 * option_steps, 72);

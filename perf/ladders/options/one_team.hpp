@@ -12,9 +12,10 @@ class OneTeamRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight
  public:
   static constexpr RungText text{
       "one-team", "A team per option, a thread per node.",
-      "As predicted, a host gains nothing. On a GPU one thread of 128 solves while the others "
-      "wait. On an H100 this takes 2179 us all the same, after 11302 us; the model has 227 us "
-      "for both, since it takes all threads as busy (docs/lessons/tables.md)."};
+      "A host is back at the time of a thread per option, as predicted: a team is one thread "
+      "there. On a GPU one thread of 128 solves while the others wait. On an H100 this takes "
+      "2179 us all the same, after 11302 us; the model has 227 us for both, since it takes all "
+      "threads as busy (docs/lessons/tables.md)."};
 
   static Work work(const OptionsProblem& problem) { return options_work(problem, 1, 40); }
 

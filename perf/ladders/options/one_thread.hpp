@@ -36,7 +36,7 @@ class OneThreadRung : public OptionsRung<ExecutionSpace, Layout> {
  public:
   static constexpr RungText text{
       "one-thread", "One thread per option, its nodes side by side.",
-      "On a host more than twice the prediction: a sum of 128 products is one chain of "
+      "On a host 2.60 to 2.65 times the prediction: a sum of 128 products is one chain of "
       "dependent additions, so that a core waits for each, and the compiler may not reorder it. "
       "On an H100 43454 us where the model has 227 us: neighbouring threads read numbers that "
       "lie an option apart, and one thread per option is too few to hide the latency of loads "

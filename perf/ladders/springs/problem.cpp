@@ -19,6 +19,17 @@ double squared_distance(const fabric::Vector& a, const fabric::Vector& b) {
   return sum;
 }
 
+/// The order that results from one order and a second one of its result.
+std::vector<int> reordered(const std::vector<int>& first, const std::vector<int>& second) {
+  std::vector<int> sorted = second, all(first.size());
+  std::ranges::sort(sorted);
+  std::iota(all.begin(), all.end(), 0);
+  if (sorted != all) throw std::invalid_argument("the order of the vertices does not hold each of them once");
+  std::vector<int> order;
+  for (const int k : second) order.push_back(first[static_cast<std::size_t>(k)]);
+  return order;
+}
+
 /// `order`: as `mesh::renumber` takes it.
 Numbering make_numbering(const fabric::Parameters& p, const std::vector<int>& order, long steps, double dt) {
   Numbering n{p, {}, {}, {}};
@@ -48,7 +59,7 @@ Numbering make_numbering(const fabric::Parameters& p, const std::vector<int>& or
 
 }  // namespace
 
-SpringProblem make_spring_problem(int vertices, long steps) {
+SpringProblem make_spring_problem(int vertices, long steps, VertexOrder reorder) {
   const fabric::Parameters p = sheet::parameters(vertices);
   const double young = p.material.membrane_modulus, nu = p.material.poisson;
   const double lambda = young * nu / (1.0 - nu * nu), mu = young / (1.0 + nu);
@@ -64,6 +75,7 @@ SpringProblem make_spring_problem(int vertices, long steps) {
   const Numbering renumbered = make_numbering(p, order, steps, dt);
   std::mt19937 bits(7);
   for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[bits() % (i + 1)]);
+  if (reorder != nullptr) order = reordered(order, reorder(mesh::renumber(p.mesh, order)));
   return {make_numbering(p, order, steps, dt), renumbered, steps, dt, 2.0 * (lambda + mu), mu};
 }
 

@@ -36,8 +36,12 @@ struct SpringProblem {
   double two_lambda_mu, mu;  ///< 2 (lambda + mu) and mu of the membrane with twice the shear modulus, N/m
 };
 
-/// Mesh of about `vertices` vertices. Throws std::invalid_argument for too few.
-[[nodiscard]] SpringProblem make_spring_problem(int vertices, long steps);
+/// Order of the vertices of a mesh: entry k is the present index of the vertex that becomes vertex k.
+using VertexOrder = std::vector<int> (*)(const mesh::Mesh&);
+
+/// Mesh of about `vertices` vertices; `reorder` changes the order of the scattered ones. Throws
+/// std::invalid_argument for too few vertices, and unless the order holds each vertex once.
+[[nodiscard]] SpringProblem make_spring_problem(int vertices, long steps, VertexOrder reorder = nullptr);
 
 /// Largest difference of a position from the expected one, over the largest displacement of the steps.
 /// Infinite for values that are not finite. Does not throw.

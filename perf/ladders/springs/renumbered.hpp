@@ -14,8 +14,8 @@ class RenumberedRung final
  public:
   static constexpr RungText text{
       "renumbered", "Neighbours lie beside one another in memory.",
-      "A gain that the model does not predict: neighbours share lines of memory, so that fewer "
-      "loads wait. The larger the mesh, the more it is."};
+      "A gain that the model does not predict, on a host 1.24 to 1.29 times as fast: neighbours "
+      "share lines of memory, so that fewer loads wait. The larger the mesh, the more it is."};
 
   static Work work(const SpringProblem& problem) { return RecomputedRung<ExecutionSpace>::work(problem); }
 

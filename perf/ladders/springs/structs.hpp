@@ -97,9 +97,9 @@ class StructsRung final : public SpringRung<ExecutionSpace, SheetOfStructs<Execu
  public:
   static constexpr RungText text{
       "structs", "An array of structures with stored neighbours and stiffnesses.",
-      "On a host twice the prediction: a core waits for each load of a scattered neighbour, "
-      "which the model takes for free. On an H100 64.0 us where the model has 45.2 us: threads "
-      "fetch lines of memory of which they use a part (docs/lessons/tables.md)."};
+      "On a host 2.17 to 2.43 times the prediction: a core waits for each load of a scattered "
+      "neighbour, which the model takes for free. On an H100 64.0 us where the model has 45.2 "
+      "us: threads fetch lines of memory of which they use a part (docs/lessons/tables.md)."};
 
   static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, stored_operations); }
 

@@ -4,10 +4,20 @@
 
 namespace drogue::perf::ladder {
 
+/// When values are copied: up once, down once.
+struct OneUpload {
+  template <class Up, class Compute, class Down>
+  static void run(long steps, const Up& up, const Compute& compute, const Down& down) {
+    up();
+    for (long step = 0; step < steps; ++step) compute();
+    down();
+  }
+};
+
 /// Rung 5. The device owns the values: one copy up before the first step, one down after the last.
 ///
 /// Prediction: a launch and the kernel per step, and the copies of the second rung divided by the steps.
-template <class ExecutionSpace>
+template <class ExecutionSpace, class Uploads = OneUpload>
 class OneUploadRung final : public PinnedRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
@@ -27,11 +37,14 @@ class OneUploadRung final : public PinnedRung<ExecutionSpace> {
 
   void run() override {
     const ExecutionSpace& space = this->_instance.space();
-    device::copy_in(space, this->_device, this->_host.data(), this->_host.size());
-    for (long step = 0; step < this->_problem.steps; ++step)
-      device::launch_each(space, "drogue::perf::ladder::fractions", static_cast<int>(this->_host.size()),
-                          FractionFunctor<ExecutionSpace>{this->_device});
-    device::copy_out(space, this->_host.data(), this->_device, this->_host.size());
+    Uploads::run(
+        this->_problem.steps,
+        [&] { device::copy_in(space, this->_device, this->_host.data(), this->_host.size()); },
+        [&] {
+          device::launch_each(space, "drogue::perf::ladder::fractions", static_cast<int>(this->_host.size()),
+                              FractionFunctor<ExecutionSpace>{this->_device});
+        },
+        [&] { device::copy_out(space, this->_host.data(), this->_device, this->_host.size()); });
     space.fence("drogue::perf::ladder: values are on the host");
   }
 };

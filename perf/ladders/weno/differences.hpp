@@ -97,14 +97,14 @@ using DifferenceFlux = DifferenceFluxWith<JiangShuCorrection>;
 
 /// Rung 4. The same flux from differences of neighbours (docs/gas.md, section 2).
 ///
-/// Prediction: a third fewer operations per face, the same divisions.
+/// Prediction: 26 % fewer operations per face, three divisions more.
 template <class ExecutionSpace, class Flux = DifferenceFlux>
 class DifferencesRung final : public WenoRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "differences", "The flux from differences of neighbours: fewer operations.",
-      "The gain is about that of the prediction: counting operations predicts the ratio of two "
-      "similar kernels better than the time of either."};
+      "On a host 1.14 times as fast, 1.12 to 1.14 predicted: counting operations predicts the "
+      "ratio of two similar kernels better than the time of either."};
 
   static Work work(const WenoProblem& problem) { return stage_work(problem, 1, 9, Flux::arithmetic); }
 

@@ -16,8 +16,8 @@ class FusedStagesRung final : public WenoRung<ExecutionSpace> {
  public:
   static constexpr RungText text{
       "fused-stages", "Fluxes stay in scratch memory: one kernel per stage.",
-      "As predicted, less traffic wins little where arithmetic is the bound. On a GPU half of "
-      "the launches go, which decides below 100 000 cells."};
+      "On a host less traffic gains little, as predicted, where arithmetic is the bound. On a "
+      "GPU half of the launches go, which decides below 100 000 cells."};
 
   static Work work(const WenoProblem& problem) { return stage_work(problem, 1, 9, DirectFlux::arithmetic); }
 

@@ -13,6 +13,7 @@ from . import page
 from .perf_record import STATED, Machine, Record
 from .records import Evidence
 from .section import Cell, Section, Table
+from .verdicts import read as read_verdicts
 
 MOST_BYTES = 5_000_000  # of a page
 MOST_STRIPS = 1000  # cases whose samples are drawn: a strip takes half a kilobyte
@@ -126,8 +127,11 @@ def _by_machine(records: list[Record]) -> dict[Machine, list[Record]]:
     return found
 
 
-def write(evidence: Evidence, file: Path, dpi: int) -> Path:
-    """Writes the page, which refers to no other file; returns its path. Raises Failure (IO_ERROR)."""
+def write(evidence: Evidence, file: Path, dpi: int, verdicts: Path | None = None) -> Path:
+    """Writes the page, which refers to no other file; returns its path. Raises Failure (IO_ERROR).
+
+    `verdicts`: a file of verdicts against a baseline, which the page then begins with.
+    """
     count = len(evidence.everything)
     timed = [record for record in evidence.everything if record.kind not in STATED]
     machines = [(machine, _samples_tables(own, count)) for machine, own in _by_machine(timed).items()]
@@ -148,7 +152,7 @@ def write(evidence: Evidence, file: Path, dpi: int) -> Path:
         values = {
             "machines": machines, "dates": sorted({record.run_id[0][:10] for record in evidence.everything} - {""}),
             "notes": page.notes(evidence), "folder": evidence.folder.resolve().name, "count": count,
-            "drawn": count <= MOST_STRIPS,
+            "drawn": count <= MOST_STRIPS, "verdicts": read_verdicts(verdicts) if verdicts else None,
         }  # fmt: skip
         written = html_page.write(file, "evidence/report.html.j2", pictures.filters, apps=apps, **values)
         if written.stat().st_size < MOST_BYTES:

@@ -32,7 +32,7 @@ TEST_P(Ladders, RungsEqualReference) {
 }
 
 TEST_P(Ladders, PredictionsArePositiveAndFinite) {
-  const Ceilings machine{1e-6, 1e-5, 1e9, 2e9, 1e10, 1e10, 1e9, 4};
+  const Ceilings machine{1e-6, 1e-5, 1e9, 2e9, 1e10, 1e10, 1e9, 4, 1e9};
   for (const Rung& rung : ladder.rungs) {
     const Prediction predicted = predict(rung.work, machine);
     EXPECT_GT(predicted.seconds, 0.0) << rung.text.name;
@@ -60,12 +60,16 @@ TEST(Prediction, AddsCopiesAndLaunchesToTheLongerOfMemoryAndArithmetic) {
   Ceilings machine;
   machine.launch = machine.copy = 1.0;
   machine.pageable = machine.pinned = machine.bandwidth = machine.flops = machine.divisions = 10.0;
-  machine.lanes = 4;
+  machine.lanes = 4, machine.scalar_divisions = 6.0;
   Work work;
   work.launches = 2.0, work.copies = 3.0, work.copied_bytes = 40.0, work.bytes = 50.0, work.flops = 60.0;
   EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 4.0 * 6.0);
   EXPECT_STREQ(predict(work, machine).bound, "arithmetic");
+  work.divisions = 30.0;
+  EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 4.0 * 6.0 + 5.0);
   work.packed = true;
+  EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 6.0 + 3.0);
+  work.divisions = 0.0;
   EXPECT_EQ(predict(work, machine).seconds, 3.0 + 4.0 + 2.0 + 6.0);
   EXPECT_STREQ(predict(work, machine).bound, "copies");
   work.overlapped = true;
@@ -82,9 +86,10 @@ TEST(OptionsLadder, ReferenceApproximatesMertonSeries) {
   }
 }
 
+// Or right and slow: their times are no matter of a test.
 TEST(LadderExercises, ShippedCodeIsBroken) {
   for (const Exercise& exercise : create_exercises(testing::tested_backend, ExerciseCode::own))
-    EXPECT_GT(error_of(exercise), exercise.rung.tolerance) << exercise.name;
+    EXPECT_EQ(error_of(exercise) > exercise.rung.tolerance, exercise.factor == 0.0) << exercise.name;
 }
 
 TEST(LadderExercises, SolutionsAreAccepted) {
@@ -94,7 +99,8 @@ TEST(LadderExercises, SolutionsAreAccepted) {
 
 TEST(MeasuredCeilings, ArePositive) {
   const Ceilings c = measure_ceilings(testing::tested_backend);
-  for (const double rate : {c.launch, c.copy, c.pageable, c.pinned, c.bandwidth, c.flops, c.divisions})
+  for (const double rate :
+       {c.launch, c.copy, c.pageable, c.pinned, c.bandwidth, c.flops, c.divisions, c.scalar_divisions})
     EXPECT_GT(rate, 0.0);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "common/program/failure.hpp"
 #include "perf/compare/annotation.hpp"
 #include "perf/compare/comparability.hpp"
@@ -98,6 +100,11 @@ TEST(Comparison, ListsCasesOfEitherFile) {
             "only in the new records; the nearest case of the old ones is gas-step/serial/1024");
   EXPECT_EQ(rows[1].verdict, Verdict::slower);
   EXPECT_EQ(rows[2].name, "gas-step/serial/1024");
+  EXPECT_EQ(rows[0].presence, Presence::new_alone);
+  EXPECT_EQ(rows[1].presence, Presence::both);
+  EXPECT_EQ(rows[2].presence, Presence::old_alone);
+  EXPECT_EQ(rows[1].old_time, 1.01);
+  EXPECT_EQ(rows[1].new_time, 1.3 * 1.01);
 }
 
 TEST(Comparison, RecordsWithoutSamplesHaveNoSpeed) {
@@ -131,12 +138,77 @@ TEST(Comparison, FindsAPlantedSlowdownInMeasuredRecordsAlone) {
     EXPECT_EQ(row.verdict, Verdict::same) << row.name;
 }
 
+const std::string evidence = std::string(DROGUE_SOURCE_DIR) + "/docs/evidence/";
+
+/// Records of the cases of a file, a table of all cases for each run.
+std::vector<std::vector<MeasuredCase>> runs_of(const std::string& file) {
+  std::vector<std::vector<MeasuredCase>> runs;
+  std::map<std::string, std::size_t> next;
+  for (const MeasuredCase& record : read_records(evidence + file)) {
+    const std::size_t run = next[record.name]++;
+    if (run == runs.size()) runs.emplace_back();
+    runs[run].push_back(record);
+  }
+  return runs;
+}
+
+/// Number of "slower" and "faster" among the verdicts; with `factor`, the times of `after` are so much
+/// longer.
+int changes(const std::vector<MeasuredCase>& before, std::vector<MeasuredCase> after, double factor = 1.0) {
+  for (MeasuredCase& record : after)
+    for (double& sample : record.samples) sample *= factor;
+  int count = 0;
+  for (const ComparedCase& row : compare_records(before, after))
+    count += row.verdict == Verdict::slower || row.verdict == Verdict::faster ? 1 : 0;
+  return count;
+}
+
+TEST(Comparison, EqualBuildsDoNotDiffer) {
+  const std::vector<MeasuredCase> first = read_records(evidence + "quick/first.jsonl"),
+                                  second = read_records(evidence + "quick/second.jsonl");
+  EXPECT_EQ(changes(first, second), 0);
+  EXPECT_EQ(changes(second, first), 0);
+  // A tenth is found nevertheless.
+  EXPECT_GE(changes(first, second, 1.1), 9 * static_cast<int>(first.size()) / 10);
+  EXPECT_GE(changes(first, second, 1.0 / 1.1), 9 * static_cast<int>(first.size()) / 10);
+}
+
+TEST(Comparison, IsWrongForAtMostATwentiethOfRecordedPairsOfEqualBuilds) {
+  int compared = 0, wrong = 0;
+  for (const std::string folder : {"before-coupling/cuda", "before-coupling", "restructured"})
+    for (const std::string side : {"old", "new"}) {
+      const auto runs = runs_of(folder + "/" + side + ".jsonl");
+      for (std::size_t i = 0; i < runs.size(); ++i)
+        for (std::size_t k = i + 1; k < runs.size(); ++k) {
+          compared += static_cast<int>(runs[i].size());
+          wrong += changes(runs[i], runs[k]);
+        }
+    }
+  EXPECT_EQ(compared, 580);
+  EXPECT_LE(wrong, compared / 20);
+}
+
+TEST(Comparison, ThreeRunsOfAGpuFindATwentieth) {
+  const auto runs = runs_of("before-coupling/cuda/old.jsonl"),
+             others = runs_of("before-coupling/cuda/new.jsonl");
+  for (const auto& all : {runs, others}) {
+    std::vector<MeasuredCase> before, after;
+    for (std::size_t run = 0; run < 3; ++run) {
+      before.insert(before.end(), all[run].begin(), all[run].end());
+      after.insert(after.end(), all[run + 1].begin(), all[run + 1].end());
+    }
+    EXPECT_EQ(changes(before, after), 0);
+    EXPECT_EQ(changes(before, after, 1.05), static_cast<int>(all[0].size()));
+  }
+}
+
 TEST(Annotation, EscapesWhatEndsItAndHoldsNoVerdict) {
   ComparedCase row{"a:b,c", Verdict::error_changed, "error 1 %\nnow 2", {}};
   EXPECT_EQ(annotation(row, true), "::error title=a%3Ab%2Cc::error 1 %25%0Anow 2\n");
   EXPECT_EQ(annotation(row, false).substr(0, 10), "::warning ");
   row.verdict = Verdict::same;
   EXPECT_EQ(annotation(row, false), "");
+  EXPECT_EQ(annotation({"a", Verdict::not_comparable, "gone", {}}, true), "::error title=a::gone\n");
   const ComparedCase slow{"a", Verdict::slower, "", SpeedChange{1.3, 1.2, 1.4}};
   EXPECT_EQ(annotation(slow, false),
             "::warning title=a::takes 1.300 times as long (1.200 to 1.400 with 95 %25 confidence)\n");

@@ -174,6 +174,55 @@ TEST(SpeedVerdict, MoreRunsFindSmallerChanges) {
   EXPECT_GE(of_three, 45);
 }
 
+/// Counts of verdicts on pairs of equal builds, `runs` runs a side, whose levels differ by 1.5 % from run to
+/// run, as addresses and neighbours make them; the second side `factor` times as long.
+std::map<SpeedVerdict, int> verdicts_of_runs(int runs, double factor) {
+  Random random(31);
+  std::map<SpeedVerdict, int> found;
+  for (int pair = 0; pair < pairs; ++pair) {
+    const auto side = [&](double scale) {
+      Runs made;
+      for (int run = 0; run < runs; ++run) {
+        const double level = scale * std::exp(0.015 * normal(random));
+        made.push_back(quiet(random, 30));
+        for (double& sample : made.back()) sample *= level;
+      }
+      return made;
+    };
+    const Runs before = side(1.0), after = side(factor);
+    ++found[speed_verdict({compare_speed(before, after)}).front()];
+  }
+  return found;
+}
+
+TEST(SpeedVerdict, NoiseBetweenRunsIsNoChange) {
+  for (const int runs : {1, 2, 3, 5}) {
+    std::map<SpeedVerdict, int> found = verdicts_of_runs(runs, 1.0);
+    EXPECT_LE(found[SpeedVerdict::slower] + found[SpeedVerdict::faster], pairs / 50) << runs;
+  }
+  EXPECT_GE(verdicts_of_runs(1, 1.12)[SpeedVerdict::slower], 9 * pairs / 10);
+  EXPECT_GE(verdicts_of_runs(3, 1.10)[SpeedVerdict::slower], 9 * pairs / 10);
+  EXPECT_GE(verdicts_of_runs(5, 1.08)[SpeedVerdict::slower], 9 * pairs / 10);
+  EXPECT_GE(verdicts_of_runs(5, 1.05)[SpeedVerdict::slower], pairs / 2);
+}
+
+TEST(SpeedVerdict, FewerRunsNeedALargerChange) {
+  Random random(37);
+  for (const auto& [runs, factor] : {std::pair{1, 1.06}, {2, 1.045}, {3, 1.025}})
+    for (const double beyond : {0.0, 0.03}) {
+      Runs before, after;
+      for (int run = 0; run < runs; ++run) {
+        before.emplace_back(), after.emplace_back();
+        for (int i = 0; i < 30; ++i) {
+          before.back().push_back(1.0 + 0.001 * normal(random));
+          after.back().push_back((factor + beyond) * (1.0 + 0.001 * normal(random)));
+        }
+      }
+      EXPECT_EQ(speed_verdict({compare_speed(before, after)}).front() == SpeedVerdict::slower, beyond > 0.0)
+          << runs << " " << factor + beyond;
+    }
+}
+
 TEST(SpeedVerdict, SmallChangesAreNone) {
   Random random(11);
   std::vector<double> before, after;
@@ -186,7 +235,12 @@ TEST(SpeedVerdict, SmallChangesAreNone) {
 
 TEST(SpeedVerdict, NeedsSamples) {
   EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{2.0}})}).front(), SpeedVerdict::ambiguous);
-  EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{1.0}})}).front(), SpeedVerdict::same);
+  // Not even equal samples show that nothing changed, if they are too few.
+  EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{1.0}})}).front(), SpeedVerdict::ambiguous);
+  EXPECT_EQ(speed_verdict({compare_speed({{1.0, 1.0, 1.0}}, {{1.0, 1.0, 1.0}})}).front(),
+            SpeedVerdict::ambiguous);
+  const std::vector<double> four = {1.0, 1.1, 1.2, 1.3};
+  EXPECT_EQ(speed_verdict({compare_speed({four}, {four})}).front(), SpeedVerdict::same);
 }
 
 }  // namespace
