@@ -273,7 +273,7 @@ void check_exact(const Table& root, const FlowScene& scene) {
         evaluate(SpaceTimeFunction(text), lattice_of(scene.parameters, field), scene.end_time);
     if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
       contradict(root, key,
-                 key + " = " + text + " is not finite on the grid at run.end_time = " +
+                 key + " = " + scene::shortened(text) + " is not finite on the grid at run.end_time = " +
                      scene::real_text(scene.end_time) + " s");
   };
   for (std::size_t axis = 0; axis < 3; ++axis)
