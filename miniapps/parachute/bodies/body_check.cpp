@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/scene/read.hpp"
+#include "kernels/mesh/orientation.hpp"
 #include "miniapps/framework/obj_file.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
@@ -176,18 +177,35 @@ void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
   }
 }
 
+/// Turns faces so that neighbours have their normals on one side. Which side that is does not matter: a sheet
+/// has the same law for flow in both directions.
+void orient(const Table& root, FlowScene& scene, const std::string& key, Body& body) {
+  const mesh::Orientation sides = orientation_of(body.surface);
+  const bool needs_normals = body.slips() || body.porosity.law != PorosityLaw::none;
+  if (sides.one_sided && needs_normals)
+    contradict(root, key,
+               key + ": " + body.file + " has one side, as a Moebius strip, at its triangles " +
+                   std::to_string((*sides.one_sided)[0] + 1) + " and " +
+                   std::to_string((*sides.one_sided)[1] + 1) + "; slip and porosity need two sides");
+  if (sides.one_sided || sides.turns() == 0) return;
+  turn(body.surface, sides);
+  scene.notices.push_back(key + ": " + std::to_string(sides.turns()) + " of " +
+                          std::to_string(body.surface.triangles.size()) + " triangles of " + body.file +
+                          " are turned, so that neighbours have their normals on one side");
+}
+
 /// Reads the mesh file of a body.
 void read_surface(const Table& root, FlowScene& scene, std::size_t index) {
   Body& body = scene.bodies[index];
   if (body.kind != BodyKind::file) return;
   const std::string key = "body[" + std::to_string(index) + "].file";
-  body.surface = framework::read_obj(root, key, scene.file, body.file);
+  const std::string scale = "body[" + std::to_string(index) + "].scale";
+  body.surface = framework::read_obj(root, {key, scale, body.scale}, scene.file, body.file, scene.notices);
   if (!body.surface.lines.empty() || body.surface.triangles.empty())
     contradict(root, key,
                key + ": " + body.file + " has " +
                    (body.surface.triangles.empty() ? "no face" : "lines (l), which have no area"));
-  for (mesh::Vector& x : body.surface.rest)
-    for (double& coordinate : x) coordinate *= body.scale;
+  orient(root, scene, key, body);
 }
 
 /// A sharp sheet acts on the velocity through it alone: the fluid slips along flat ones, and not along the
