@@ -749,7 +749,7 @@ class Canopies(parachute_program.FlowTest):
         sets = ["verify={{drag=[{{from=0.05,to=0.2,value={0},tolerance=0.05}}],"
                 "terminal_speed=[{{from=0.05,to=0.2,value={1},tolerance=1e-12}}],"
                 "peak_force=[{{force=[{2},{3}],time=[{4},{5}]}}]}}"]
-        scene = self.write(CANOPY)
+        scene = self.write(CANOPY.replace("history_every = 2", "history_every = 1"))
         wanted = [1, 8, 0, 1e5, 0, 0.2]
         self.start(scene, *QUIET, sets=[sets[0].format(*wanted)])
         reported, rows = self.result("out")["canopies"], self.history("out")
@@ -767,6 +767,34 @@ class Canopies(parachute_program.FlowTest):
             with self.subTest(which):
                 bad = [*good[:which], value, *good[which + 1:]]
                 self.expect(5, scene, *QUIET, "--overwrite", sets=[sets[0].format(*bad)])
+
+    def peak(self, out, scene, *sets, restart=()):
+        words = [] if restart else ["--overwrite"]
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", out, *words, *restart, sets=["verify={peak_force=[{force=[0,1e9],time=[0,1e9]}]}", *sets])
+        canopies = self.result(out)["canopies"]
+        return canopies["peak_force_0"], canopies["peak_force_0_time"]
+
+    def test_peak_forces_are_those_of_all_steps_whatever_the_rows(self):
+        for scene in (CANOPY.replace("fields =", "restart_every = 4\nfields ="), CLOTH.replace("mass = 0.1", "fixed = true").replace(
+                "end_time = 0.4", "end_time = 1.3")):
+            file = self.write(scene)
+            rest = ["run.end_time=0.2"] if "[fluid]" in scene else []
+            wanted = self.peak("every", file, "output.history_every=1", *rest)
+            rows = self.history("every")
+            forces = [math.hypot(*(rows[f"canopy_0_line_force_{axis}"][k] for axis in "xyz")) for k in range(len(rows["time"]))]
+            self.assertAlmostEqual(max(forces), wanted[0], delta=1e-12 * max(forces))
+            self.assertAlmostEqual(rows["time"][forces.index(max(forces))], wanted[1], delta=1e-12)
+            for rows_every in (0, 7, 50):
+                self.assertEqual(wanted, self.peak("rare", file, f"output.history_every={rows_every}", *rest))
+            # A run that was continued has the peaks of its first part.
+            after = wanted[1] + 0.02 if rest else 1.2
+            half = 0.5 * (wanted[1] + after)
+            outputs = f"output.times=[{half},{after}]"
+            whole = self.peak("whole", file, "output.history_every=50", f"run.end_time={after}", outputs)
+            part = self.folder / "part"
+            self.peak(part, file, "output.history_every=50", f"output.restart_every={4 if rest else 300}", f"run.end_time={half}", f"output.times=[{half}]")
+            again = self.peak(part, file, "output.history_every=50", f"run.end_time={after}", outputs, restart=("--restart", part / "restart.h5"))
+            self.assertEqual(whole, again)
 
     def test_leak_is_that_of_the_porosity(self):
         """Through open, porous and impermeable cloth, averaged over the inflated canopy."""

@@ -82,6 +82,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     _solver = flow::create_solver(settings.backend, scene.parameters);
   }
   for (const Body& body : scene.bodies) _inside.emplace_back(body, scene.parameters);
+  if (_coupled != nullptr) _coupled->watch_pulls(pulls_on_payloads(_sheets));
   if (_shared != nullptr) return;
   for (Snapshot& snapshot : _snapshots)
     for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));
