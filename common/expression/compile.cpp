@@ -88,10 +88,10 @@ class Compiler {
 
   /// A sign binds weaker than ^, which groups from the right: -x^2 = -(x^2), 2^-1 = 1/2, 2^3^2 = 2^9.
   void signed_power() {
-    bool negative = false;
-    while (at("-") || at("+")) {
-      negative = negative != at("-");
+    const bool negative = at("-");
+    if (negative || at("+")) {
       ++_next;
+      if (at("-") || at("+")) fail("two signs in a row; put what follows the first one in parentheses");
     }
     primary();
     if (take("^")) {

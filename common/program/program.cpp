@@ -7,8 +7,10 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "common/program/mpi_guard.hpp"
@@ -58,6 +60,13 @@ Failure current_failure() {
     return {ExitCode::usage, first_line(error.what())};
   } catch (const std::bad_alloc&) {
     return {ExitCode::io_error, "out of memory: use fewer cells, or run where there is more memory"};
+  } catch (const std::filesystem::filesystem_error& error) {
+    return {ExitCode::io_error, "cannot use '" + error.path1().string() + "': " + error.code().message()};
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::resource_unavailable_try_again)
+      return {ExitCode::io_error,
+              "a thread could not start: the limit of threads or memory is reached (ulimit -u, ulimit -v)"};
+    return {ExitCode::io_error, "the operating system refused: " + first_line(error.what())};
   } catch (const std::exception& error) {
     return {ExitCode::io_error, "unexpected error: " + first_line(error.what())};
   } catch (...) {

@@ -1,6 +1,7 @@
 #include "common/run/history_writer.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -119,6 +120,12 @@ void HistoryWriter::flush() {
     done += static_cast<std::size_t>(written);
   }
   _pending.clear();
+  // A file that was deleted takes rows all the same.
+  struct stat opened {
+  }, present{};
+  if (fstat(_descriptor, &opened) != 0 || stat(_file.c_str(), &present) != 0 ||
+      opened.st_ino != present.st_ino || opened.st_dev != present.st_dev)
+    throw Failure(ExitCode::io_error, "'" + _file.string() + "' was deleted or replaced during the run");
 }
 
 void HistoryWriter::finish() {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/expression/compile.hpp"
+#include "common/expression/expression.hpp"
 
 namespace drogue::scene {
 namespace {
@@ -136,9 +137,9 @@ std::string read_expression(const Node& node, const std::vector<std::string>& va
   const auto* text = node.as<std::string>();
   if (text == nullptr) return "must be a string that holds an expression, not " + describe(node);
   try {
-    expression::compile(*text, variables);
+    static_cast<void>(expression::Expression(*text, variables));
   } catch (const expression::ExpressionError& error) {
-    return "= " + toml_string(*text) + ", at character " + std::to_string(error.position()) + ": " +
+    return "= " + short_toml_string(*text) + ", at character " + std::to_string(error.position()) + ": " +
            error.what();
   }
   value = *text;

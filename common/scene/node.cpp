@@ -48,6 +48,20 @@ std::string real_text(double value) {
   return text;
 }
 
+std::string shortened(const std::string& text, std::size_t longest) {
+  if (text.size() <= longest) return text;
+  std::size_t cut = longest;
+  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U)
+    --cut;  // whole UTF-8 characters
+  return text.substr(0, cut) + "...";
+}
+
+std::string short_toml_string(const std::string& text) {
+  const std::string begin = shortened(text);
+  if (begin == text) return toml_string(text);
+  return toml_string(begin.substr(0, begin.size() - 3)) + "...";
+}
+
 std::string describe(const Node& node) {
   struct Visitor {
     std::string operator()(const Node::Table&) const { return "a table"; }
@@ -56,12 +70,7 @@ std::string describe(const Node& node) {
     std::string operator()(std::int64_t value) const { return std::to_string(value); }
     std::string operator()(double value) const { return real_text(value); }
     std::string operator()(const std::string& value) const {
-      constexpr std::size_t longest = 60;
-      if (value.size() <= longest) return "the string " + toml_string(value);
-      std::size_t cut = longest;
-      while (cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0U) == 0x80U)
-        --cut;  // whole UTF-8 characters
-      return "the string " + toml_string(value.substr(0, cut)) + "...";
+      return "the string " + short_toml_string(value);
     }
     std::string operator()(Date) const { return "a date or time"; }
   };

@@ -41,6 +41,12 @@ struct Member {
   Node node;
 };
 
+/// Text for messages: its first characters, and dots, if it is longer. Throws only std::bad_alloc.
+std::string shortened(const std::string& text, std::size_t longest = 60);
+
+/// The first 60 characters as a TOML string. Throws only std::bad_alloc.
+std::string short_toml_string(const std::string& text);
+
 /// Description of a node for messages: `the string "abc"`, `1.5`, `an array`.
 std::string describe(const Node& node);
 

@@ -35,7 +35,10 @@ namespace {
 class Place {
  public:
   static Place in_file(std::string name) { return Place(std::move(name), true); }
-  static Place of_set(std::string assignment) { return Place("--set " + std::move(assignment), false); }
+  static Place of_set(const std::string& assignment) {
+    constexpr std::size_t longest = 120;
+    return Place("--set " + shortened(assignment, longest), false);
+  }
 
   [[nodiscard]] std::string at(const toml::source_position& position) const {
     if (!_has_lines) return _name;
@@ -180,7 +183,8 @@ Node parse_value(const std::string& text, const Place& place) {
   try {
     return parse("value = " + text, place).as<Node::Table>()->front().node;
   } catch (const Failure& failure) {
-    if (!bare) throw Failure(ExitCode::invalid_scene, place.at({}) + ": the value is not TOML: " + text);
+    if (!bare)
+      throw Failure(ExitCode::invalid_scene, place.at({}) + ": the value is not TOML: " + shortened(text));
     return Node{text, place.at({})};
   }
 }
@@ -208,6 +212,9 @@ Node& step_into(Node& node, const std::string& part, const std::string& place, c
     origin = &member.origin;
     return member.node;
   }
+  if (table->empty() && part.find_first_not_of("0123456789") == std::string::npos)
+    throw Failure(ExitCode::invalid_scene, place + ": the scene has no [[" + walked + "]] to change; --set " +
+                                               walked + "=[{...}] gives it some");
   table->push_back({part, place, Node{Node::Table{}, place}});
   origin = &table->back().origin;
   return table->back().node;

@@ -67,6 +67,7 @@ struct GridTransfer {
   /// Bits of the largest magnitude to be spread and of the one in use. The first is zero between calls.
   Kokkos::View<FixedPoint[2], Memory> largest;
   Kokkos::View<TransferCounts, Memory> counts;
+  bool has_stencils = true;  ///< false: points need none, and are complete up to the sides of the domain
 };
 
 /// Throws std::invalid_argument unless the number of rows of a View, in any unit, is at least that of points
@@ -164,11 +165,24 @@ struct FreezePositionsFunctor {
   KOKKOS_FUNCTION void operator()(const int i) const {
     const spatial::Point frozen = spatial::load_vector(x, i) + time * spatial::load_vector(v, i);
     spatial::store_vector(transfer.positions, i, frozen);
-    for (int component = 0; component < 3; ++component)
-      if (!FaceStencil<kernel>(axes, frozen, component).is_complete()) {
-        Kokkos::atomic_add(&transfer.counts().incomplete_points, 1LL);
-        return;
-      }
+    if (!is_complete(frozen)) Kokkos::atomic_add(&transfer.counts().incomplete_points, 1LL);
+  }
+
+  /// True if the point, m, is within reach of the faces that it needs. Does not throw.
+  KOKKOS_FUNCTION bool is_complete(const spatial::Point& point) const {
+    if (transfer.has_stencils) {
+      for (int component = 0; component < 3; ++component)
+        if (!FaceStencil<kernel>(axes, point, component).is_complete()) return false;
+      return true;
+    }
+    constexpr double rounding = 1e-6;  // of a cell
+    const double place[3] = {point.x, point.y, point.z};
+    for (int d = 0; d < 3; ++d) {
+      const GridAxis& axis = axes.axis[d];
+      const double cell = (place[d] - axis.origin) * axis.inverse_spacing;
+      if (!axis.periodic && !(cell >= -rounding && cell <= axis.cells + rounding)) return false;
+    }
+    return true;
   }
 };
 

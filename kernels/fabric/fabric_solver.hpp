@@ -17,6 +17,7 @@
 #include "kernels/fabric/loads/dirichlet.hpp"
 #include "kernels/fabric/loads/make_loads.hpp"
 #include "kernels/fabric/loads/prescribed_motion.hpp"
+#include "kernels/fabric/peak_pulls.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/stepping/persistent_driver.hpp"
@@ -147,6 +148,17 @@ class FabricSolver {
   void stress(StressMeasure measure, std::span<Stress> of_triangles);
   void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices);
   [[nodiscard]] Totals totals();
+  void watch_pulls(std::span<const Pull> pulls) {
+    if (_parameters.integrator != Integrator::verlet)
+      throw std::invalid_argument("fabric solver: pulls are watched in steps of the velocity Verlet method");
+    _pulls = PeakPulls<ExecutionSpace>(space(), _parameters.mesh, _parameters.mesh.line_stiffness, pulls);
+    record_pulls();
+  }
+  [[nodiscard]] std::vector<PeakPull> peak_pulls() {
+    synchronize();
+    return _pulls.peaks(space());
+  }
+  void set_peak_pulls(std::span<const PeakPull> peaks) { _pulls.set_peaks(space(), peaks); }
   [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
   void contact_work(std::span<ContactWork> of_vertices);
   void set_contact_work(std::span<const ContactWork> of_vertices);
@@ -257,6 +269,10 @@ class FabricSolver {
   template <ConstitutiveModel model>
   void enqueue_symplectic_euler();
   void exchange_positions();
+  /// Enqueues the comparison of the forces of the present state with their peaks.
+  void record_pulls() const {
+    _pulls.record(space(), _x, CompletedStep<ExecutionSpace>{_monitor, _time, _parity});
+  }
   void restore_addresses();
   /// Returns to steps that the host counts; captured graphs are invalid. Replays have left messages in the
   /// persistent driver that it must not take for those of its next launch.
@@ -311,6 +327,7 @@ class FabricSolver {
   Points _damped_v;                   ///< Verlet velocities with dashpots
   std::optional<PersistentDriver<ExecutionSpace>> _persistent;
   std::unique_ptr<ContactHandler<ExecutionSpace>> _contact;  ///< empty without contact
+  PeakPulls<ExecutionSpace> _pulls;
 };
 
 // ---- set-up ----
@@ -477,6 +494,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_line_stiffness(std::span<con
                table_view(space(), "drogue::fabric::slot_values", springs.value));
   space().fence("drogue::fabric::set_line_stiffness");
   if (_contact) _contact->set_line_stiffness(of_lines);
+  _pulls.set_stiffness(space(), of_lines);
   if (_persistent) make_drivers();
 }
 
@@ -696,7 +714,11 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_model_steps(std::int64_t
   } else if constexpr (!RelaxesVelocity<VertexForce>) {
     if (_parameters.integrator == Integrator::verlet) {
       enqueue_verlet<model>(false, true);
-      for (std::int64_t k = 1; k < steps; ++k) enqueue_verlet<model>(true, true);
+      for (std::int64_t k = 1; k < steps; ++k) {
+        record_pulls();
+        enqueue_verlet<model>(true, true);
+      }
+      record_pulls();
       enqueue_verlet<model>(true, false);
     } else if (_launcher.is_persistent()) {
       enqueue_persistent_steps<model>(steps);
@@ -721,6 +743,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
     }
   }
   _contact->end_step(_x, _v);
+  record_pulls();
   end_vertex_forces();
 }
 

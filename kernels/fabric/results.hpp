@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "kernels/stepping/status.hpp"
 
@@ -29,6 +30,18 @@ struct ContactWork {
   double friction = 0.0;                            ///< J, of friction
   double kick_x = 0.0, kick_y = 0.0, kick_z = 0.0;  ///< m/s, velocity change by forces in the last step
   bool operator==(const ContactWork&) const = default;
+};
+
+/// Lines that pull on a vertex.
+struct Pull {
+  int vertex = 0;
+  std::vector<int> lines;  ///< numbers in the mesh
+};
+
+/// Largest magnitude so far of the force of a pull, and when it first acted.
+struct PeakPull {
+  double force = 0.0;  ///< N
+  double time = 0.0;   ///< s
 };
 
 /// Sums over all vertices.

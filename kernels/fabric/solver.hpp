@@ -122,6 +122,18 @@ class Solver {
   /// that are negative or not finite, and spans of the wrong length.
   virtual void set_line_stiffness(std::span<const double> of_lines) = 0;
 
+  /// Records the largest forces of lines on vertices, N, from now on, those of the present state included:
+  /// after every step of the velocity Verlet method, on the device. Replaces former pulls. Blocks. Throws
+  /// std::invalid_argument for lines that do not end at their vertex, and for other integrators.
+  virtual void watch_pulls(std::span<const Pull> pulls) = 0;
+
+  /// Peaks of the pulls that are watched. Blocks. Throws only after a failed kernel.
+  [[nodiscard]] virtual std::vector<PeakPull> peak_pulls() = 0;
+
+  /// Restores the peaks, N and s. Blocks. Throws std::invalid_argument for another number than that of the
+  /// pulls.
+  virtual void set_peak_pulls(std::span<const PeakPull> peaks) = 0;
+
   /// Name of the driver of steps: "persistent", "graph" or "plain". Does not throw.
   [[nodiscard]] virtual const char* driver() const = 0;
 

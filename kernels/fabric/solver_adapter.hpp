@@ -34,6 +34,9 @@ class SolverAdapter final : public Solver {
   }
   Totals totals() override { return _solver.totals(); }
   void set_line_stiffness(std::span<const double> of_lines) override { _solver.set_line_stiffness(of_lines); }
+  void watch_pulls(std::span<const Pull> pulls) override { _solver.watch_pulls(pulls); }
+  std::vector<PeakPull> peak_pulls() override { return _solver.peak_pulls(); }
+  void set_peak_pulls(std::span<const PeakPull> peaks) override { _solver.set_peak_pulls(peaks); }
   [[nodiscard]] const char* driver() const override { return _solver.driver(); }
   void contact_work(std::span<ContactWork> of_vertices) override { _solver.contact_work(of_vertices); }
   void set_contact_work(std::span<const ContactWork> of_vertices) override {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/orientation.hpp"
 #include "kernels/mesh/topology.hpp"
 
 namespace drogue::mesh {
@@ -35,6 +36,27 @@ struct Range {
   }
 };
 
+/// Parts of the surface and their sides.
+std::string surface_text(const Mesh& mesh) {
+  const Orientation sides = orientation_of(mesh);
+  std::size_t closed = 0, inwards = 0, free_edges = 0;
+  for (const SurfacePart& part : sides.parts) {
+    free_edges += part.free_edges;
+    if (part.free_edges == 0) ++closed;
+    if (part.volume < 0.0) ++inwards;
+  }
+  const auto count = [](std::size_t n, const std::string& what) {
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+  };
+  std::string text = "surface      " + count(sides.parts.size(), "part") + ", " + std::to_string(closed) +
+                     " closed, " + count(free_edges, "free edge");
+  if (inwards > 0) text += ", normals of " + std::to_string(inwards) + " closed inwards";
+  if (sides.one_sided) return text + ", with one side\n";
+  if (const std::size_t turns = sides.turns(); turns > 0)
+    text += ", " + count(turns, "triangle") + " turned against the others";
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string quality_report(const Mesh& mesh) {
@@ -55,7 +77,8 @@ std::string quality_report(const Mesh& mesh) {
       angles.add(std::atan2(twice, along) * 180.0 / std::numbers::pi);
     }
   }
-  if (areas.count > 0) text += areas.text("area", "m^2") + angles.text("angle", "degrees");
+  if (areas.count > 0)
+    text += surface_text(mesh) + areas.text("area", "m^2") + angles.text("angle", "degrees");
   return text;
 }
 

@@ -117,6 +117,35 @@ std::optional<std::array<int, 2>> inconsistent_triangles(const Mesh& mesh) {
   return std::nullopt;
 }
 
+double extent_of(const Mesh& mesh) {
+  if (mesh.rest.empty()) return 0.0;
+  Vector low = mesh.rest.front(), high = low;
+  for (const Vector& x : mesh.rest)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], x[axis]);
+      high[axis] = std::max(high[axis], x[axis]);
+    }
+  return length(difference(high, low));
+}
+
+std::optional<std::array<int, 2>> near_vertices(const Mesh& mesh, double distance) {
+  // Along a direction in which no rows of vertices lie, few of them share an interval of this length.
+  constexpr Vector direction = {0.47140452, 0.62360956, 0.62360957};
+  std::vector<std::pair<double, int>> order;
+  for (std::size_t i = 0; i < mesh.rest.size(); ++i) {
+    double along = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) along += direction[axis] * mesh.rest[i][axis];
+    order.push_back({along, static_cast<int>(i)});
+  }
+  std::ranges::sort(order);
+  for (std::size_t k = 0; k < order.size(); ++k)
+    for (std::size_t l = k + 1; l < order.size() && order[l].first - order[k].first <= distance; ++l) {
+      const int i = order[k].second, j = order[l].second;
+      if (rest_distance(mesh, i, j) < distance) return std::array{std::min(i, j), std::max(i, j)};
+    }
+  return std::nullopt;
+}
+
 std::optional<Defect> find_defect(const Mesh& mesh) {
   if (const auto defect = vertex_defect(mesh)) return defect;
   if (const auto defect = triangle_defect(mesh)) return defect;

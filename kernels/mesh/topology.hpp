@@ -19,6 +19,13 @@ namespace drogue::mesh {
 /// oriented mesh. Throws only std::bad_alloc.
 [[nodiscard]] std::optional<std::array<int, 2>> inconsistent_triangles(const Mesh& mesh);
 
+/// Extent of a mesh: the diagonal of the box around its vertices, m. Does not throw.
+[[nodiscard]] double extent_of(const Mesh& mesh);
+
+/// Two vertices, the smaller index first, that are nearer to each other than `distance`, m, or empty. Throws
+/// only std::bad_alloc.
+[[nodiscard]] std::optional<std::array<int, 2>> near_vertices(const Mesh& mesh, double distance);
+
 /// Kinds of defects that make a mesh unusable for cloth, in the order in which `find_defect` looks for them.
 enum class DefectKind {
   duplicate_vertex,     ///< vertex `part` has the position of vertex `other`

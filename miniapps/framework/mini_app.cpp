@@ -73,7 +73,10 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
   if (options.check || options.print_scene) {
     const std::unique_ptr<Scene> scene = app.read(file, options.set, options.baseline);
     if (options.print_scene) std::cout << scene->print();
-    if (options.check && !options.quiet) std::cout << scene->check_report();
+    if (options.check && !options.quiet) {
+      for (const std::string& notice : scene->notices()) print_notice(app.program(), notice);
+      std::cout << scene->check_report();
+    }
     return ExitCode::ok;
   }
   install_signal_handlers();

@@ -10,12 +10,14 @@
 #include "common/program/failure.hpp"
 #include "common/scene/nearest.hpp"
 #include "common/scene/node.hpp"
+#include "kernels/mesh/polygon.hpp"
+#include "kernels/mesh/topology.hpp"
 
 namespace drogue::framework {
 namespace {
 
 /// Statements that cloth has no use for.
-const std::vector<std::string> skipped = {"vn", "vt", "vp", "o", "g", "s", "usemtl", "mtllib"};
+const std::vector<std::string> skipped = {"p", "vn", "vt", "vp", "o", "g", "s", "usemtl", "mtllib"};
 
 constexpr std::size_t most_file_vertices = std::size_t{1} << 26U;
 
@@ -24,20 +26,48 @@ class ObjParser {
   ObjParser(std::string_view text, const std::string& name) : _text(text), _name(name) {}
 
   ObjContents run() {
+    if (_text.starts_with("\xFF\xFE") || _text.starts_with("\xFE\xFF"))
+      refuse_at(1, "the file is UTF-16; save it as UTF-8");
+    if (_text.starts_with("\xEF\xBB\xBF")) _text.remove_prefix(3);
     while (!_text.empty()) {
-      ++_line;
-      const std::size_t end = _text.find('\n');
-      statement(words_of(_text.substr(0, end)));
-      _text.remove_prefix(end == std::string_view::npos ? _text.size() : end + 1);
+      std::string line(next_line());
+      int continued = 0;
+      for (; is_continued(line); ++continued) {
+        line.back() = ' ';
+        line += next_line();
+      }
+      ++_line;  // errors name the first line of a statement
+      statement(words_of(line));
+      _line += continued;
     }
     _line = std::max(_line, 1);
     if (_contents.mesh.rest.empty()) refuse("the file has no vertex (v x y z)");
-    check_range(_contents.mesh.triangles, _contents.triangle_line);
+    add_triangles();
     check_range(_contents.mesh.lines, _contents.line_line);
     return std::move(_contents);
   }
 
  private:
+  /// Polygon of the file.
+  struct Face {
+    std::vector<int> corners;
+    int line;
+  };
+
+  /// Takes the next line from the text, without its end.
+  std::string_view next_line() {
+    const std::size_t end = _text.find('\n');
+    std::string_view line = _text.substr(0, end);
+    _text.remove_prefix(end == std::string_view::npos ? _text.size() : end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+  }
+
+  /// True for a line that ends with a backslash, other than that of a comment.
+  [[nodiscard]] bool is_continued(const std::string& line) const {
+    return !_text.empty() && line.ends_with('\\') && line.find('#') == std::string::npos;
+  }
+
   [[noreturn]] void refuse(const std::string& sentence) const { refuse_at(_line, sentence); }
   [[noreturn]] void refuse_at(int line, const std::string& sentence) const {
     throw Failure(ExitCode::invalid_scene, _name + ":" + std::to_string(line) + ": " + sentence);
@@ -95,17 +125,33 @@ class ObjParser {
   }
 
   void face(const std::vector<std::string_view>& words) {
-    const std::string which = part_of_file("face", _contents.mesh.triangles.size());
-    if (words.size() != 4)
-      refuse(which + " has " + std::to_string(words.size() - 1) +
-             " vertices; it must have 3: divide larger faces into triangles");
-    std::array<int, 3> triangle{};
-    for (std::size_t k = 0; k < 3; ++k) triangle[k] = index(words[k + 1], which);
-    for (std::size_t k = 0; k < 3; ++k)
-      if (triangle[k] == triangle[(k + 1) % 3])
-        refuse(which + " names vertex " + std::to_string(triangle[k] + 1) + " twice");
-    _contents.mesh.triangles.push_back(triangle);
-    _contents.triangle_line.push_back(_line);
+    const std::string which = part_of_file("face", _faces.size());
+    if (words.size() < 4)
+      refuse(which + " has " + std::to_string(words.size() - 1) + " vertices; it must have 3 or more");
+    Face face{{}, _line};
+    for (std::size_t k = 1; k < words.size(); ++k) face.corners.push_back(index(words[k], which));
+    std::vector<int> sorted = face.corners;
+    std::ranges::sort(sorted);
+    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+      refuse(which + " names vertex " + std::to_string(*twice + 1) + " twice");
+    _faces.push_back(std::move(face));
+  }
+
+  /// Divides the faces, whose vertices may follow them in the file.
+  void add_triangles() {
+    for (std::size_t k = 0; k < _faces.size(); ++k) {
+      const Face& face = _faces[k];
+      for (const int i : face.corners) require_vertex(i, part_of_file("face", k), face.line);
+      const auto triangles = mesh::triangulate(_contents.mesh.rest, face.corners);
+      if (triangles.empty())
+        refuse_at(face.line,
+                  part_of_file("face", k) + " has no area or crosses itself; divide it into triangles");
+      for (const std::array<int, 3>& triangle : triangles) {
+        _contents.mesh.triangles.push_back(triangle);
+        _contents.triangle_line.push_back(face.line);
+        _contents.face_of.push_back(k);
+      }
+    }
   }
 
   void polyline(const std::vector<std::string_view>& words) {
@@ -135,20 +181,21 @@ class ObjParser {
     return static_cast<int>(place);
   }
 
-  template <std::size_t n>
-  void check_range(const std::vector<std::array<int, n>>& parts, const std::vector<int>& lines) const {
+  void check_range(const std::vector<std::array<int, 2>>& parts, const std::vector<int>& lines) const {
     for (std::size_t k = 0; k < parts.size(); ++k)
-      for (const int i : parts[k])
-        if (static_cast<std::size_t>(i) >= _contents.mesh.rest.size()) {
-          const std::string part = n == 3 ? part_of_file("face", k) : "line";
-          refuse_at(lines[k], part + " names vertex " + std::to_string(i + 1) + "; the file has " +
-                                  std::to_string(_contents.mesh.rest.size()));
-        }
+      for (const int i : parts[k]) require_vertex(i, "line", lines[k]);
+  }
+
+  void require_vertex(int i, const std::string& part, int line) const {
+    if (static_cast<std::size_t>(i) >= _contents.mesh.rest.size())
+      refuse_at(line, part + " names vertex " + std::to_string(i + 1) + "; the file has " +
+                          std::to_string(_contents.mesh.rest.size()));
   }
 
   std::string_view _text;
   const std::string& _name;
   int _line = 0;
+  std::vector<Face> _faces;
   ObjContents _contents;
 };
 
@@ -158,26 +205,51 @@ std::string part_of_file(const std::string& kind, std::size_t k) {
   return kind + " " + std::to_string(k + 1) + " of the file";
 }
 
+namespace {
+
+/// Files whose parts were written one after the other often have two vertices where one is meant.
+void warn_of_near_vertices(const ObjContents& contents, const std::string& file,
+                           std::vector<std::string>& notices) {
+  constexpr double near = 1e-6;  // of the extent
+  const auto pair = mesh::near_vertices(contents.mesh, near * mesh::extent_of(contents.mesh));
+  if (!pair) return;
+  const auto [first, second] = *pair;
+  const auto later = static_cast<std::size_t>(second);
+  notices.push_back(file + ":" + std::to_string(contents.vertex_line[later]) + ": " +
+                    part_of_file("vertex", later) + " lies nearer to vertex " + std::to_string(first + 1) +
+                    " than 1e-6 of the extent of the mesh; if both are the same, name one in both places");
+}
+
+}  // namespace
+
 ObjContents parse_obj(std::string_view text, const std::string& name) { return ObjParser(text, name).run(); }
 
-mesh::Mesh read_obj(const scene::Table& root, const std::string& key, const std::filesystem::path& scene_file,
-                    std::string& file) {
+mesh::Mesh read_obj(const scene::Table& root, const ObjKeys& keys, const std::filesystem::path& scene_file,
+                    std::string& file, std::vector<std::string>& notices) {
   const std::filesystem::path path =
       std::filesystem::absolute(scene_file.parent_path() / file).lexically_normal();
   file = path.string();
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable))
     scene::contradict(
-        root, key,
-        key + ": " +
+        root, keys.file,
+        keys.file + ": " +
             (std::filesystem::exists(path, unreadable) ? file + " is no file but a directory or device"
                                                        : "there is no file " + file));
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   if (!stream || !(text << stream.rdbuf()))
     throw Failure(ExitCode::invalid_scene, file + ":1: the mesh file is empty or cannot be read");
-  const ObjContents contents = parse_obj(text.str(), file);
+  ObjContents contents = parse_obj(text.str(), file);
   check_obj(contents, file);
+  warn_of_near_vertices(contents, file, notices);
+  for (mesh::Vector& x : contents.mesh.rest)
+    for (double& coordinate : x) coordinate *= keys.metres;
+  const double extent = mesh::extent_of(contents.mesh);
+  if (!(extent >= 1e-60 && extent <= 1e60))
+    scene::contradict(root, keys.scale,
+                      keys.scale + " = " + scene::real_text(keys.metres) + ": " + file + " would be " +
+                          scene::real_text(extent) + " m large; it must be between 1e-60 and 1e60 m");
   return contents.mesh;
 }
 

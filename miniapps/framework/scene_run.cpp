@@ -75,7 +75,10 @@ class SceneRun {
     if (!_is_empty && !_options.restart.empty() && !_options.overwrite) require_same_scene(files.fingerprint);
     const DeviceSession session(backend, _options.kokkos);
     session.describe(_result);
-    if (!_options.quiet) session.print_shared_cores(_app.program());
+    if (!_options.quiet) {
+      for (const std::string& notice : scene->notices()) print_notice(_app.program(), notice);
+      session.print_shared_cores(_app.program());
+    }
     _result.precision = scene->precision();
     const std::unique_ptr<Simulation> simulation =
         scene->create({backend, _options.baseline, _options.quiet, _communicator});

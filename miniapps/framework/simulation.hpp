@@ -152,6 +152,9 @@ class Scene {
   /// Everything that must agree between a run and its continuation.
   [[nodiscard]] virtual SceneIdentity identity() const = 0;
 
+  /// Sentences on what a user may not have meant, which a run and `--check` print unless they are quiet.
+  [[nodiscard]] virtual std::vector<std::string> notices() const { return {}; }
+
   /// Text that `--check` prints; may be empty.
   [[nodiscard]] virtual std::string check_report() const { return {}; }
 

@@ -70,6 +70,10 @@ class TypedScene : public Scene {
 
   [[nodiscard]] std::string print() const override { return print_scene(_content, _declare); }
   [[nodiscard]] SceneIdentity identity() const override { return scene_identity(_content); }
+  [[nodiscard]] std::vector<std::string> notices() const override {
+    if constexpr (requires { _content.notices; }) return _content.notices;
+    return {};
+  }
   [[nodiscard]] std::unique_ptr<Simulation> create(const SimulationSettings& settings) const override {
     return std::make_unique<Run>(_content, settings);
   }

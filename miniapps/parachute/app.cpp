@@ -6,6 +6,7 @@
 #include "kernels/fabric/host_threads.hpp"
 #include "kernels/flow/diffusive_step.hpp"
 #include "kernels/flow/host_threads.hpp"
+#include "kernels/mesh/quality.hpp"
 #include "miniapps/framework/metrics.hpp"
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/parachute/parallel/serve.hpp"
@@ -39,6 +40,14 @@ class ParachuteScene final : public framework::TypedScene<FlowScene, Simulation>
     if (!content().has_fluid()) return std::make_unique<ClothSimulation>(content(), settings);
     if (!settings.quiet) print_diffusive_limit(content());
     return TypedScene::create(settings);
+  }
+
+  [[nodiscard]] std::string check_report() const override {
+    std::string text;
+    for (std::size_t i = 0; i < content().bodies.size(); ++i)
+      if (const Body& body = content().bodies[i]; body.kind == BodyKind::file)
+        text += "body[" + std::to_string(i) + "] " + quality_report(body.surface);
+    return text;
   }
 
   [[nodiscard]] int useful_threads(int ranks) const override {

@@ -190,7 +190,59 @@ class BadFlows(parachute_program.FlowTest):
     def test_rejects_invalid_round_bodies(self):
         self.scene.write_text(bad_bodies.ROUND, encoding="utf-8")
         self.expect(0, self.scene, "--check")
+        self.expect(0, self.scene, "--check", sets=["body[0].centre=[0.5,0.4,0.1]"])  # across periodic sides
         self.assert_lines_are_rejected(bad_bodies.ROUND, bad_bodies.BAD_ROUND_LINES)
+
+    def test_rejects_canopies_that_meet_images_of_others(self):
+        scene = bad_canopies.GOOD[:bad_canopies.GOOD.index("[verify]")].replace(
+            'x = "slip"', 'x = "periodic"').replace("centre = [-1, 0, 0]", "centre = [-1.1, 0, 0]")
+        self.scene.write_text(scene, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        away = "grid.domain=[[-1.5,1.5],[-1,1],[-1.4,1]]"
+        cells = "grid.cells=[30,20,24]"
+        self.assertIn("canopy[1] overlaps the image, beyond periodic sides, of canopy[0] at the start", self.refusal(away, cells))
+        one = scene[:scene.index("angle")] + scene[scene.index("centre"):scene.rindex("[[canopy]]")] + scene[scene.index("[coupling]"):]
+        self.scene.write_text(one, encoding="utf-8")
+        self.expect(0, self.scene, "--check", sets=[away, cells])
+        narrow = ("grid.domain=[[-1.5,-0.7],[-1,1],[-1.4,1]]", "grid.cells=[8,20,24]")
+        self.assertIn("canopy[0] overlaps the image, beyond periodic sides, of canopy[0]", self.refusal(*narrow))
+        # The lines of a canopy reach through the cloth of its image below.
+        below = ('grid.boundary.z="periodic"', "grid.domain=[[-2,2],[-1,1],[-0.4,0.6]]", "grid.cells=[40,20,10]")
+        self.assertIn("canopy[0] with its lines crosses an image beyond the periodic sides", self.refusal(*below))
+
+    def test_rejects_surfaces_with_one_side_and_turns_the_faces_of_others(self):
+        scene = bad_bodies.ROUND.replace('kind = "sphere"', 'kind = "file"\nfile = "body.obj"').replace("radius = 0.2\nedge_length = 0.05\n", "", 1)
+        self.scene.write_text(scene, encoding="utf-8")
+        mesh = self.scene.parent / "body.obj"
+        corners = "v 0.03 0 -.01\nv 0.03 0 .01\nv -.015 .026 -.01\nv -.015 .026 .01\nv -.015 -.026 -.01\nv -.015 -.026 .01\n"
+        mesh.write_text(corners + "f 1 3 2\nf 2 3 4\nf 3 5 4\nf 4 5 6\nf 5 2 6\nf 6 2 1\n", encoding="utf-8")
+        slip, no_slip = "body[0].slip=true", "body[0].slip=false"
+        self.assertIn("has one side, as a Moebius strip", self.refusal(slip))
+        self.assertIn("has one side", self.refusal(no_slip))  # a porous one
+        self.assertEqual("", self.expect(0, self.scene, "--check", sets=[no_slip, "body[0].porosity={law='none'}"]).stderr)
+        mesh.write_text(corners + "f 1 3 4 2\nf 3 4 6 5\nf 5 1 2 6\n", encoding="utf-8")
+        notice = self.start(self.scene, "--check", sets=[slip])
+        self.assertEqual(0, notice.returncode)
+        self.assertIn("body[0].file: 2 of 6 triangles of ", notice.stderr)
+        self.assertIn("surface      1 part, 0 closed, 6 free edges\n", notice.stdout)
+        self.assertEqual("", self.expect(0, self.scene, "--check", "--quiet", sets=[slip]).stderr)
+        mesh.write_text(corners + "f 1 3 4 2\nf 3 5 6 4\nf 5 1 2 6\nv 0.03 0 .01000000001\nv 0.02 0 0\nf 2 7 8\n", encoding="utf-8")
+        self.assertRegex(self.start(self.scene, "--check", sets=[slip]).stderr, r"body.obj:10: vertex 7 of the file lies nearer to vertex 2 ")
+        self.assertIn("body[0].scale = 1e-300: ", self.refusal("body[0].scale=1e-300"))
+
+    def test_rejects_elements_of_arrays_that_the_scene_lacks(self):
+        self.assertIn("the scene has no [[body]] to change", self.refusal("body[0].radius=1"))
+
+    def test_rejects_expressions_with_a_short_sentence(self):
+        for text, words in (("--x", "two signs in a row"), ("2*--x", "two signs in a row"), ("+".join(["x"] * 3000) + "+q", "unknown name"),
+                            ("+".join(["t"] * 3000), "longer than 96 operations")):
+            with self.subTest(words):
+                message = self.refusal(f'fluid.velocity=["{text}", 0, 0]')
+                self.assertIn(words, message)
+                self.assertLess(len(message), 600)
+        # The velocity along a wall belongs to faces that begin at its edge.
+        self.assertIn("fluid.velocity", self.refusal('fluid.velocity=["ln(-x)", 0, 0]'))
+        self.assertIn("is not finite at (0, ", self.refusal('grid.wall_velocity.y_low=["ln(x)+0*t", 0, 0]'))
 
     def test_rejects_invalid_springs_of_plates(self):
         self.scene.write_text(bad_bodies.PISTON, encoding="utf-8")

@@ -388,6 +388,19 @@ class Bodies(parachute_program.FlowTest):
         self.assertGreater(forces[1], 0.1)
         self.assertAlmostEqual(forces[0], forces[1], delta=1e-3 * forces[1])
         self.assertEqual(["body_0_force_x", "body_1_force_x"], [name for name in self.history("file") if "force_x" in name])
+        # Faces that are turned against the others are turned back.
+        turned = "".join(f"f {a} {c} {b}\n" if k % 2 else f"f {a} {b} {c}\n" for k, (a, b, c) in enumerate(faces))
+        (self.folder / "turned.obj").write_text("".join(f"v {x:.1f} {y} {z}\n" for x, y, z in rows) + turned, encoding="utf-8")
+        file = self.write(by_file.read_text(encoding="utf-8").replace("plate.obj", "turned.obj"), "turned.toml")
+        run = self.start(file, "--backend", "serial", "--out", "turned")
+        self.assertEqual(0, run.returncode)
+        self.assertIn("body[0].file: 96 of 192 triangles of ", run.stderr)
+        self.assertAlmostEqual(forces[0], self.history("turned")["body_0_force_x"][-1], delta=1e-9 * forces[0])
+        # Quadrilaterals are divided.
+        quads = "".join(f"f {a} {a + 13} {a + 14} {a + 1}\n" for y in range(8) for z in range(12) for a in [13 * y + z + 1])
+        (self.folder / "turned.obj").write_text("".join(f"v {x:.1f} {y} {z}\n" for x, y, z in rows) + quads, encoding="utf-8")
+        self.expect(0, file, *quiet, "--out", "turned", "--overwrite")
+        self.assertEqual(forces[0], self.history("turned")["body_0_force_x"][-1])
         # Another place of the file is the same scene, another content is not.
         text_of_scene = by_file.read_text(encoding="utf-8")
         (self.folder / "moved.obj").write_bytes((self.folder / "plate.obj").read_bytes())
@@ -458,6 +471,50 @@ class Bodies(parachute_program.FlowTest):
         self.assertAlmostEqual(mean, self.result("out")["forces"]["mean_force_0"], delta=5e-3 * mean)
         sets[-1] = sets[-1].replace("5e-3", "1e-9")
         self.expect(5, self.write(moving), *QUIET, "--overwrite", sets=sets)
+
+    def test_bodies_cross_periodic_sides(self):
+        """A sphere in the middle and one that is cut by two sides have the same drag."""
+        head = PLATE[:PLATE.index("[[body]]")].replace('y = "slip"', 'y = "periodic"').replace("cells = [16, 8, 6]", "cells = [16, 8, 8]").replace(
+            "[0, 0.6]]", "[0, 0.8]]")
+        ball = '[[body]]\nkind = "sphere"\ncentre = [0.6, 0.4, 0.4]\nradius = 0.2\nedge_length = 0.05\n'
+        scene = self.write(head + ball + PLATE[PLATE.index("[run]"):])
+        for method in ("spread", "sharp"):
+            forces = []
+            for centre in ("[0.6,0.4,0.4]", "[0.6,0.8,0]"):
+                self.expect(0, scene, *QUIET, "--overwrite", sets=[f"body[0].centre={centre}", f"coupling={{method='{method}'}}"])
+                forces.append(self.history("out")["body_0_force_x"][-1])
+            self.assertGreater(forces[0], 0.05)
+            self.assertAlmostEqual(forces[0], forces[1], delta=1e-6 * forces[0])
+
+    def test_sharp_plate_closes_a_duct_between_walls(self):
+        """The whole pressure drop of the porous law, which a gap of a cell beside the walls would let pass."""
+        whole = PLATE.replace("lengths = [0.4, 0.6]", "lengths = [0.8, 0.6]").replace("0.37", "0.4")
+        whole = whole[:whole.index('[[body]]\nkind = "plate"\nnormal = "y"')] + whole[whole.index("[run]"):]
+        message = self.expect(3, self.write(whole), *QUIET).stderr
+        self.assertIn('with coupling.method = "sharp" it may touch all sides', message)
+        force = (3 * 2 + 1 * 2**2) * 0.8 * 0.6
+        self.expect(0, self.write(whole), *QUIET, sets=[
+            "coupling={method='sharp'}", "run.end_time=1", "output.times=[1]", f"verify={{force=[{{body=0,axis='x',value={force},tolerance=1e-9}}]}}"])
+
+    def test_force_outside_of_a_body_lacks_the_inertia_inside(self):
+        """A sphere that accelerates in fluid at rest: the added mass is half of that which it displaces, and a bit more between sides."""
+        head = PLATE[:PLATE.index("[[body]]")].replace("cells = [16, 8, 6]", "cells = [24, 24, 24]").replace(
+            "[[0, 1.6], [0, 0.8], [0, 0.6]]", "[[0, 2.4], [0, 2.4], [0, 2.4]]").replace("velocity = [2, 0, 0]", "velocity = [0, 0, 0]").replace(
+            "viscosity = 0.01", "viscosity = 1e-4").replace('["inflow", "outflow"]', '"outflow"').replace('"periodic"', '"slip"')
+        ball = ('[[body]]\nkind = "sphere"\ncentre = [1.2, 1.2, 1.2]\nradius = 0.4\nretraction = 0.3\nedge_length = 0.05\nslip = true\n'
+                'motion = { x = "0.5*t^2" }\n')
+        scene = self.write(head + ball + PLATE[PLATE.index("[run]"):])
+        self.expect(0, scene, *QUIET, sets=["run.end_time=0.1", "run.max_dt=0.005", "output={history_every=1}"])
+        rows = self.history("out")
+        displaced = 1.2 * 4 / 3 * math.pi * 0.4**3
+        whole, outside = (-rows[name][-1] / displaced for name in ("body_0_force_x", "body_0_outside_force_x"))
+        self.assertAlmostEqual(1.0, whole - outside, delta=0.01)
+        self.assertAlmostEqual(0.5, outside, delta=0.05)
+        self.assertNotIn("body_0_outside_force_x", self.history_of_plate())
+
+    def history_of_plate(self):
+        self.expect(0, self.write(PLATE), *QUIET, "--overwrite", sets=["run.end_time=0.02", "output={}"])
+        return self.history("out")
 
     def test_plate_on_a_spring_moves_all_of_the_fluid(self):
         """Frequency of the mass of plate and fluid, of second order in dt, and a run that continues bit for bit."""
@@ -692,7 +749,7 @@ class Canopies(parachute_program.FlowTest):
         sets = ["verify={{drag=[{{from=0.05,to=0.2,value={0},tolerance=0.05}}],"
                 "terminal_speed=[{{from=0.05,to=0.2,value={1},tolerance=1e-12}}],"
                 "peak_force=[{{force=[{2},{3}],time=[{4},{5}]}}]}}"]
-        scene = self.write(CANOPY)
+        scene = self.write(CANOPY.replace("history_every = 2", "history_every = 1"))
         wanted = [1, 8, 0, 1e5, 0, 0.2]
         self.start(scene, *QUIET, sets=[sets[0].format(*wanted)])
         reported, rows = self.result("out")["canopies"], self.history("out")
@@ -710,6 +767,34 @@ class Canopies(parachute_program.FlowTest):
             with self.subTest(which):
                 bad = [*good[:which], value, *good[which + 1:]]
                 self.expect(5, scene, *QUIET, "--overwrite", sets=[sets[0].format(*bad)])
+
+    def peak(self, out, scene, *sets, restart=()):
+        words = [] if restart else ["--overwrite"]
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", out, *words, *restart, sets=["verify={peak_force=[{force=[0,1e9],time=[0,1e9]}]}", *sets])
+        canopies = self.result(out)["canopies"]
+        return canopies["peak_force_0"], canopies["peak_force_0_time"]
+
+    def test_peak_forces_are_those_of_all_steps_whatever_the_rows(self):
+        for scene in (CANOPY.replace("fields =", "restart_every = 4\nfields ="), CLOTH.replace("mass = 0.1", "fixed = true").replace(
+                "end_time = 0.4", "end_time = 1.3")):
+            file = self.write(scene)
+            rest = ["run.end_time=0.2"] if "[fluid]" in scene else []
+            wanted = self.peak("every", file, "output.history_every=1", *rest)
+            rows = self.history("every")
+            forces = [math.hypot(*(rows[f"canopy_0_line_force_{axis}"][k] for axis in "xyz")) for k in range(len(rows["time"]))]
+            self.assertAlmostEqual(max(forces), wanted[0], delta=1e-12 * max(forces))
+            self.assertAlmostEqual(rows["time"][forces.index(max(forces))], wanted[1], delta=1e-12)
+            for rows_every in (0, 7, 50):
+                self.assertEqual(wanted, self.peak("rare", file, f"output.history_every={rows_every}", *rest))
+            # A run that was continued has the peaks of its first part.
+            after = wanted[1] + 0.02 if rest else 1.2
+            half = 0.5 * (wanted[1] + after)
+            outputs = f"output.times=[{half},{after}]"
+            whole = self.peak("whole", file, "output.history_every=50", f"run.end_time={after}", outputs)
+            part = self.folder / "part"
+            self.peak(part, file, "output.history_every=50", f"output.restart_every={4 if rest else 300}", f"run.end_time={half}", f"output.times=[{half}]")
+            again = self.peak(part, file, "output.history_every=50", f"run.end_time={after}", outputs, restart=("--restart", part / "restart.h5"))
+            self.assertEqual(whole, again)
 
     def test_leak_is_that_of_the_porosity(self):
         """Through open, porous and impermeable cloth, averaged over the inflated canopy."""

@@ -15,6 +15,7 @@
 #include "kernels/coupling/total_force.hpp"
 #include "kernels/device/stopwatch.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
+#include "kernels/fabric/peak_pulls.hpp"
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
 
@@ -79,6 +80,18 @@ struct CheckClothFunctor {
     if (found == FailureReason::line) failed_line() = broken;
     reason() = found;
     control().trial.stop = flow::Stop::failed;
+  }
+};
+
+/// Time of pulls: a step of the flow that began with the saved one and has been completed.
+template <class ExecutionSpace>
+struct CompletedFlowStep {
+  flow::ControlView<ExecutionSpace> control;
+  SavedStep<ExecutionSpace> saved_step;
+
+  KOKKOS_FUNCTION bool operator()(double& time) const {
+    time = control().now.time;
+    return control().now.step > saved_step();
   }
 };
 
@@ -152,6 +165,11 @@ class CoupledSolver {
   [[nodiscard]] FailureReason failure_reason();
   [[nodiscard]] int failed_line();
   [[nodiscard]] const std::optional<fabric::StepFailure>& cloth_failure() const { return _cloth_failure; }
+  void watch_pulls(std::span<const fabric::Pull> pulls) {
+    _pulls = fabric::PeakPulls<ExecutionSpace>(_space, _parameters.fabric.mesh, _cuts.stiffness(), pulls);
+  }
+  [[nodiscard]] std::vector<fabric::PeakPull> peak_pulls() const { return _pulls.peaks(_space); }
+  void set_peak_pulls(std::span<const fabric::PeakPull> peaks) const { _pulls.set_peaks(_space, peaks); }
   [[nodiscard]] std::array<double, 3> total_force_on_air() const {
     std::array<double, 3> force =
         _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
@@ -188,6 +206,12 @@ class CoupledSolver {
     const std::vector<double> stiffness = _cuts.stiffness();
     _fabric.set_line_stiffness(stiffness);
     _strength.set_stiffness(_space, stiffness);
+    _pulls.set_stiffness(_space, stiffness);
+  }
+  /// Enqueues the comparison of the forces at the end of a completed step with their peaks.
+  void record_pulls() const {
+    _pulls.record(_space, _fabric.state().positions,
+                  CompletedFlowStep<ExecutionSpace>{_flow.control(), _saved_step});
   }
   [[nodiscard]] bool plan_block(const flow::Progress& now, double target);
   void set_cloth_time();
@@ -215,6 +239,7 @@ class CoupledSolver {
   MovingFrame<ExecutionSpace> _frame;
   LineCuts _cuts;
   LineStrength<ExecutionSpace> _strength;
+  fabric::PeakPulls<ExecutionSpace> _pulls;
   /// Steps of the flow and of the cloth at which the steps enqueued last began.
   std::int64_t _enqueued_step = 0, _enqueued_cloth_step = 0;
   std::int64_t _batch = 1;  ///< largest number of steps of the flow until the next poll
@@ -227,6 +252,8 @@ void CoupledSolver<ExecutionSpace>::start() {
   _flow.start();
   forget_steps();
   if (_cuts.restart_at(0.0)) set_lines();
+  _pulls.set_peaks(_space, std::vector<fabric::PeakPull>(_pulls.size()));
+  record_pulls();
 }
 
 template <class ExecutionSpace>
@@ -395,6 +422,7 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
       CheckClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.monitor(), _sheet.transfer(),
                                         _reason, _strength.broken(), _strength.failed()});
   _flow.enqueue_step();
+  record_pulls();
   _sheet.end_step(_space, velocity, density, dt, is_first, _flow.control());
 }
 

@@ -157,7 +157,9 @@ class ImmersedSheet {
     }
     copy_inverse_masses(space, cloth);
     copy_laws(space);
-    if (parameters.method == CouplingMethod::sharp) _sharp.emplace(_transfer, _surface, _air.law, density);
+    if (parameters.method != CouplingMethod::sharp) return;
+    _transfer.has_stencils = false;
+    _sharp.emplace(_transfer, _surface, _air.law, density);
   }
 
   /// VertexForce of the fabric solver.

@@ -137,6 +137,17 @@ class Solver : public flow::Solver {
   /// Energies and momenta of the cloth. Throws only after a failed kernel.
   [[nodiscard]] virtual fabric::Totals cloth_totals() = 0;
 
+  /// Records the largest forces of lines on vertices, N, at the start and the end of every step of the flow,
+  /// on the device. Call it before `start`, or before `restore` and `set_peak_pulls`. Replaces former pulls.
+  /// Throws std::invalid_argument for lines that do not end at their vertex.
+  virtual void watch_pulls(std::span<const fabric::Pull> pulls) = 0;
+
+  /// Peaks of the pulls that are watched. Throws only after a failed kernel.
+  [[nodiscard]] virtual std::vector<fabric::PeakPull> peak_pulls() = 0;
+
+  /// Restores the peaks, N and s. Throws std::invalid_argument for another number than that of the pulls.
+  virtual void set_peak_pulls(std::span<const fabric::PeakPull> peaks) = 0;
+
   /// Reason of the failure that ended the last `advance` with `Stop::failed`. Throws only after a failed
   /// kernel.
   [[nodiscard]] virtual FailureReason failure_reason() = 0;

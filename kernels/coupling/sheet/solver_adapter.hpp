@@ -93,6 +93,9 @@ class SolverAdapter final : public Solver {
   void set_block(const BlockProgress& block) override { _solver.set_block(block); }
   [[nodiscard]] FrameMotion frame() const override { return _solver.frame(); }
   void set_frame(const FrameMotion& frame) override { _solver.set_frame(frame); }
+  void watch_pulls(std::span<const fabric::Pull> pulls) override { _solver.watch_pulls(pulls); }
+  std::vector<fabric::PeakPull> peak_pulls() override { return _solver.peak_pulls(); }
+  void set_peak_pulls(std::span<const fabric::PeakPull> peaks) override { _solver.set_peak_pulls(peaks); }
   fabric::Totals cloth_totals() override { return _solver.fabric().totals(); }
   FailureReason failure_reason() override { return _solver.failure_reason(); }
   int failed_line() override { return _solver.failed_line(); }

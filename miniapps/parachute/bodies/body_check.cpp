@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/scene/read.hpp"
+#include "kernels/mesh/orientation.hpp"
 #include "miniapps/framework/obj_file.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
@@ -22,20 +23,47 @@ bool is_bounded(const flow::Parameters& p, std::size_t axis) {
   return p.cells[axis] > 1 && p.boundary[2 * axis].kind != flow::BoundaryKind::periodic;
 }
 
-/// Checks the extent of a body along an axis, m. The forces of a sheet act up to one cell beyond it. `at`:
-/// the time, where that matters.
-void check_extent(const Table& root, const flow::Parameters& p, const std::string& key,
+/// Distance that a body keeps from the sides of the domain along an axis, m. The forces of a delta function
+/// act up to one cell beyond a sheet; a sharp one acts where it separates the centres of cells.
+double margin_of(const FlowScene& scene, const Body& body, std::size_t axis) {
+  if (!is_bounded(scene.parameters, axis)) return 0.0;
+  const auto extents = body.extents()[axis];
+  const bool is_sharp = scene.coupling.method == coupling::CouplingMethod::sharp;
+  return is_sharp && extents[0] + extents[1] > 0.0 ? 0.0 : cell_width(scene.parameters, axis);
+}
+
+/// Checks the extent of a body along an axis, m. It may cross periodic sides, beyond which it has an image.
+/// `at`: the time, where that matters.
+void check_extent(const Table& root, const FlowScene& scene, const Body& body, const std::string& key,
                   const std::string& place, std::size_t axis, double low, double high,
                   const std::string& at) {
-  const double margin = is_bounded(p, axis) ? cell_width(p, axis) : 0.0;
-  const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
+  const flow::Parameters& p = scene.parameters;
+  const double margin = margin_of(scene, body, axis), width = p.high[axis] - p.low[axis];
+  const double rounding = 1e-9 * width;
+  const std::string reaches = place + " reaches from " + real_text(low) + " to " + real_text(high) +
+                              " m along " + axis_names[axis] + at;
+  if (p.cells[axis] > 1 && !is_bounded(p, axis)) {
+    if (scene.contact && (low < p.low[axis] - rounding || high > p.high[axis] + rounding))
+      contradict(root, key,
+                 reaches +
+                     ", beyond periodic sides: coupling.contact does not act between a canopy and the image "
+                     "of a body; another domain may hold both");
+    if (high - low <= width + rounding) return;
+    contradict(root, key,
+               reaches + " and would cross its image beyond the periodic sides: it must be at most " +
+                   real_text(width) + " m long");
+  }
   if (low >= p.low[axis] + margin - rounding && high <= p.high[axis] - margin + rounding) return;
+  const bool can_be_sharp = margin > 0.0 && scene.coupling.method != coupling::CouplingMethod::sharp &&
+                            !body.mount && scene.canopies.empty() && scene.flags.empty();
   contradict(root, key,
-             place + " reaches from " + real_text(low) + " to " + real_text(high) + " m along " +
-                 axis_names[axis] + at + ", beyond " +
+             reaches + ", beyond " +
                  (margin > 0.0 ? "the cells beside the sides of the domain" : "the domain") +
                  ": it must lie between " + real_text(p.low[axis] + margin) + " and " +
-                 real_text(p.high[axis] - margin) + " m");
+                 real_text(p.high[axis] - margin) + " m" +
+                 (can_be_sharp ? "; periodic sides it may cross, and with coupling.method = \"sharp\" it may "
+                                 "touch all sides along which it extends"
+                               : ""));
 }
 
 /// Checks that a body spans the single cell of a grid in two dimensions.
@@ -131,8 +159,9 @@ void check_places(const Table& root, const FlowScene& scene, const Body& body, c
       const std::string at = text.empty() ? "" : " at t = " + real_text(time) + " s",
                         resting = is_side[axis] ? ".lengths" : ".centre",
                         key = name + (text.empty() ? resting : std::string(".motion.") + axis_names[axis]);
-      if (!std::isfinite(moved)) contradict(root, key, key + " = " + text + " is not finite" + at);
-      check_extent(root, scene.parameters, key, name, axis, body.centre[axis] + moved - extents[axis][0],
+      if (!std::isfinite(moved))
+        contradict(root, key, key + " = " + scene::shortened(text) + " is not finite" + at);
+      check_extent(root, scene, body, key, name, axis, body.centre[axis] + moved - extents[axis][0],
                    body.centre[axis] + moved + extents[axis][1], at);
     }
   }
@@ -176,18 +205,35 @@ void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
   }
 }
 
+/// Turns faces so that neighbours have their normals on one side. Which side that is does not matter: a sheet
+/// has the same law for flow in both directions.
+void orient(const Table& root, FlowScene& scene, const std::string& key, Body& body) {
+  const mesh::Orientation sides = orientation_of(body.surface);
+  const bool needs_normals = body.slips() || body.porosity.law != PorosityLaw::none;
+  if (sides.one_sided && needs_normals)
+    contradict(root, key,
+               key + ": " + body.file + " has one side, as a Moebius strip, at its triangles " +
+                   std::to_string((*sides.one_sided)[0] + 1) + " and " +
+                   std::to_string((*sides.one_sided)[1] + 1) + "; slip and porosity need two sides");
+  if (sides.one_sided || sides.turns() == 0) return;
+  turn(body.surface, sides);
+  scene.notices.push_back(key + ": " + std::to_string(sides.turns()) + " of " +
+                          std::to_string(body.surface.triangles.size()) + " triangles of " + body.file +
+                          " are turned, so that neighbours have their normals on one side");
+}
+
 /// Reads the mesh file of a body.
 void read_surface(const Table& root, FlowScene& scene, std::size_t index) {
   Body& body = scene.bodies[index];
   if (body.kind != BodyKind::file) return;
   const std::string key = "body[" + std::to_string(index) + "].file";
-  body.surface = framework::read_obj(root, key, scene.file, body.file);
+  const std::string scale = "body[" + std::to_string(index) + "].scale";
+  body.surface = framework::read_obj(root, {key, scale, body.scale}, scene.file, body.file, scene.notices);
   if (!body.surface.lines.empty() || body.surface.triangles.empty())
     contradict(root, key,
                key + ": " + body.file + " has " +
                    (body.surface.triangles.empty() ? "no face" : "lines (l), which have no area"));
-  for (mesh::Vector& x : body.surface.rest)
-    for (double& coordinate : x) coordinate *= body.scale;
+  orient(root, scene, key, body);
 }
 
 /// A sharp sheet acts on the velocity through it alone: the fluid slips along flat ones, and not along the

@@ -122,7 +122,8 @@ void declare_shape(Table& table, Body& body) {
               "Side along the axis to which the cup is open", {body, {cup}})
       .required();
   declare_for(table, "file", scene::text_codec(body.file),
-              "A Wavefront OBJ file (v, f with three vertices), relative to the scene", {body, {file}})
+              "A Wavefront OBJ file (v, f), relative to the scene; larger faces are divided into triangles",
+              {body, {file}})
       .required();
   declare_for(table, "scale", scene::real_codec(body.scale), "Metres per unit of length of the file",
               {body, {file}})

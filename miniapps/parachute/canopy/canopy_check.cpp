@@ -8,9 +8,11 @@
 #include <sstream>
 #include <string>
 
+#include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
 #include "kernels/fabric/contact/features.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
+#include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/canopy/stiffness.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
@@ -201,8 +203,15 @@ bool are_near(const std::vector<Vector>& first, const std::vector<Vector>& secon
   return false;
 }
 
-/// Checks that no triangles of a canopy cross those of a body or an earlier canopy: then, vertices of both
-/// lie within an edge of each other. `cloths`: vertices of the canopies so far, the last one included.
+std::vector<Vector> displaced(std::vector<Vector> points, const Vector& by) {
+  for (Vector& x : points)
+    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] += by[axis];
+  return points;
+}
+
+/// Checks that no triangles of a canopy cross those of a body or an earlier canopy, or their images beyond
+/// periodic sides: then, vertices of both lie within an edge of each other. `cloths`: vertices of the
+/// canopies so far, the last one included.
 void check_overlaps(const Table& root, const FlowScene& scene, const std::vector<std::vector<Vector>>& cloths,
                     const std::vector<std::vector<Vector>>& bodies) {
   const std::size_t i = cloths.size() - 1;
@@ -214,9 +223,38 @@ void check_overlaps(const Table& root, const FlowScene& scene, const std::vector
                  name_of(i) + " overlaps " + what + " at the start: they come closer than " +
                      real_text(distance) + " m, the sum of their edge lengths");
   };
-  for (std::size_t k = 0; k < i; ++k) check(cloths[k], scene.canopies[k].edge_length, name_of(k));
+  const std::string image = "the image, beyond periodic sides, of ";
+  std::vector<Vector> periods = scene.has_fluid() ? periods_of(scene.parameters) : std::vector<Vector>{};
+  for (const Vector& period : periods)
+    check(displaced(cloths[i], period), canopy.edge_length, image + name_of(i));
+  for (std::size_t k = periods.size(); k-- > 0;)
+    periods.push_back({-periods[k][0], -periods[k][1], -periods[k][2]});
+  const auto check_all = [&](const std::vector<Vector>& other, double edge_length, const std::string& what) {
+    check(other, edge_length, what);
+    for (const Vector& period : periods) check(displaced(other, period), edge_length, image + what);
+  };
+  for (std::size_t k = 0; k < i; ++k) check_all(cloths[k], scene.canopies[k].edge_length, name_of(k));
   for (std::size_t k = 0; k < bodies.size(); ++k)
-    check(bodies[k], scene.bodies[k].edge_length, "body[" + std::to_string(k) + "]");
+    check_all(bodies[k], scene.bodies[k].largest_edge(), "body[" + std::to_string(k) + "]");
+}
+
+/// Checks that no line of a canopy crosses the image of cloth or a body beyond periodic sides.
+void check_images(const Table& root, const FlowScene& scene) {
+  const std::vector<Vector> periods = periods_of(scene.parameters);
+  if (periods.empty()) return;
+  const Sheets sheets =
+      make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density, scene.parameters.viscosity);
+  const auto found =
+      image_intersections(sheets.positions, sheets.fabric.mesh.triangles, sheets.fabric.mesh.lines, periods,
+                          static_cast<int>(sheets.canopies.front().begin));
+  if (found.empty()) return;
+  const auto vertex = static_cast<std::size_t>(std::max(found.front().of_segment, found.front().of_triangle));
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
+    if (vertex < sheets.canopies[i].end)
+      contradict(root, place_key(scene.canopies[i], name_of(i)),
+                 name_of(i) +
+                     " with its lines crosses an image beyond the periodic sides at the start: the "
+                     "domain must be wider, or have other sides");
 }
 
 /// The grid moves with the first payload.
@@ -244,7 +282,7 @@ void check_frame(const Table& root, const FlowScene& scene) {
   const auto require_constant = [&](const std::string& key, const VectorExpression& velocity) {
     for (const std::string& component : velocity)
       if (!component.empty() && !SpaceTimeFunction(component).constant())
-        contradict(root, key, key + " = " + component + " must be a number with " + follow);
+        contradict(root, key, key + " = " + scene::shortened(component) + " must be a number with " + follow);
   };
   require_constant("fluid.velocity", scene.velocity);
   for (std::size_t side = 0; side < 6; ++side)
@@ -341,6 +379,7 @@ void check_canopies(const Table& root, const FlowScene& scene) {
   }
   check_contact(root, scene);
   if (!scene.has_fluid()) return;
+  check_images(root, scene);
   check_frame(root, scene);
   check_method(root, scene);
 }

@@ -188,6 +188,17 @@ CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
   return result;
 }
 
+std::vector<fabric::Pull> pulls_on_payloads(const Sheets& sheets) {
+  std::vector<fabric::Pull> pulls;
+  for (const CanopyRows& rows : sheets.canopies) {
+    fabric::Pull& pull = pulls.emplace_back();
+    if (!rows.payload) continue;
+    pull.vertex = static_cast<int>(*rows.payload);
+    pull.lines = rows.riser ? std::vector{*rows.riser} : rows.suspension;
+  }
+  return pulls;
+}
+
 double force_balance(const Vector& total_on_air, std::span<const Vector> on_air) {
   Vector difference = total_on_air;
   double magnitude = 0.0;

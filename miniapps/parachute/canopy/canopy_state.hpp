@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "kernels/fabric/results.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 
 namespace drogue::parachute_app {
@@ -44,6 +45,10 @@ struct CanopyMeasures {
 /// std::bad_alloc.
 [[nodiscard]] CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
                                      const SheetState& state, bool released);
+
+/// Lines that pull on the payload of each canopy, whose force is `CanopyMeasures::line_force`; none of a
+/// sheet without payload. Throws only std::bad_alloc.
+[[nodiscard]] std::vector<fabric::Pull> pulls_on_payloads(const Sheets& sheets);
 
 /// Magnitude of the sum of a total force on the air, N, and the reactions to the forces of the vertices on
 /// it, relative to the sum of the magnitudes of these. Does not throw.

@@ -160,6 +160,11 @@ class SharedSolver final : public coupling::Solver {
     _own->coupled().cloth_stress(measure, of_triangles);
   }
   [[nodiscard]] fabric::Totals cloth_totals() override { return _own->coupled().cloth_totals(); }
+  void watch_pulls(std::span<const fabric::Pull> pulls) override { _own->coupled().watch_pulls(pulls); }
+  [[nodiscard]] std::vector<fabric::PeakPull> peak_pulls() override { return _own->coupled().peak_pulls(); }
+  void set_peak_pulls(std::span<const fabric::PeakPull> peaks) override {
+    _own->coupled().set_peak_pulls(peaks);
+  }
   [[nodiscard]] coupling::FailureReason failure_reason() override { return _own->coupled().failure_reason(); }
   [[nodiscard]] int failed_line() override { return _own->coupled().failed_line(); }
   [[nodiscard]] std::optional<fabric::StepFailure> cloth_failure() override {

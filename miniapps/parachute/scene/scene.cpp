@@ -127,7 +127,10 @@ std::filesystem::path scene_folder() {
 std::string document_flow_scene() {
   return framework::document_scene(
       declare_flow_scene, "Parachute", "FlowSceneDocument",
-      "A component of a velocity is a number or an expression in muParser syntax.\n");
+      R"(A component of a velocity is a number or an expression in muParser syntax. Expressions of t, and the velocities of
+sides unless they are numbers, are evaluated in every step: each has at most 96 operations, names and numbers, of them
+at most 32 numbers, and waits with at most 16 operands.
+)");
 }
 
 }  // namespace drogue::parachute_app

@@ -202,6 +202,7 @@ struct FlowScene {
   double end_time = 0.0;               ///< s
   framework::OutputRequest output;
   Verify verify;
+  std::vector<std::string> notices;  ///< `framework::Scene::notices`
 
   /// Added mass of a canopy, whose longest wave is its diameter, over its own mass. Does not throw.
   [[nodiscard]] double added_mass_ratio(const Canopy& canopy) const;

@@ -105,10 +105,11 @@ void set_velocity(const Table& root, const std::string& key, const VectorExpress
   }
 }
 
-/// Centres of the cell faces on a side.
-Lattice side_lattice(const flow::Parameters& p, std::size_t side) {
+/// Points of a field on a side; by default, the centres of the cell faces.
+Lattice side_lattice(const flow::Parameters& p, std::size_t side,
+                     flow::StateField field = flow::StateField::pressure) {
   const std::size_t axis = side / 2;
-  Lattice lattice = lattice_of(p, flow::StateField::pressure);
+  Lattice lattice = lattice_of(p, field);
   lattice.n[axis] = 1;
   lattice.first[axis] = side % 2 == 0 ? p.low[axis] : p.high[axis];
   return lattice;
@@ -122,16 +123,17 @@ bool is_closed(const flow::Parameters& p, std::size_t axis) {
 /// Checks a prescribed velocity at time 0, and that walls move along themselves.
 void check_velocity(const Table& root, const FlowScene& scene, const std::string& key,
                     const VectorExpression& text, std::size_t side) {
-  const Lattice lattice = side_lattice(scene.parameters, side);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const SpaceTimeFunction velocity(text[axis]);
-    const std::string component = key + "[" + std::to_string(axis) + "] = " + text[axis];
+    const std::string component = key + "[" + std::to_string(axis) + "] = " + scene::shortened(text[axis]);
     const bool is_wall = scene.parameters.boundary[side].kind == BoundaryKind::wall;
     if (is_wall && axis == side / 2 && velocity.constant() != 0.0)
       contradict(root, key, component + " is normal to the wall: it must be 0");
     if (is_closed(scene.parameters, axis) && velocity.constant() != 0.0)
       contradict(root, key,
                  component + " is normal to the slip sides of an axis with one cell: it must be 0");
+    // Tangential components belong to faces that begin at the edges of the side.
+    const Lattice lattice = side_lattice(scene.parameters, side, velocity_field(axis));
     const std::vector<double> values = evaluate(velocity, lattice, 0.0);
     const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
     if (bad != values.end())
@@ -210,8 +212,9 @@ void check_initial(const Table& root, const FlowScene& scene) {
       const auto bad = std::ranges::find_if(values, is_bad);
       if (bad == values.end()) return;
       contradict(root, key,
-                 key + "[" + std::to_string(axis) + "] = " + text + " is " + reason + " at " +
-                     place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) + " at t = 0");
+                 key + "[" + std::to_string(axis) + "] = " + scene::shortened(text) + " is " + reason +
+                     " at " + place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) +
+                     " at t = 0");
     };
     refuse([](double value) { return !std::isfinite(value); }, "not finite");
     if (is_closed(scene.parameters, axis))

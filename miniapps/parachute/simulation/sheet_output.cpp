@@ -6,6 +6,7 @@
 
 #include "kernels/mesh/edges.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
+#include "miniapps/parachute/canopy/periodic_images.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -103,7 +104,8 @@ std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets
   return canopies;
 }
 
-double count_intersections(const Sheets& sheets, const std::vector<Vector>& positions, double time) {
+double count_intersections(const Sheets& sheets, const std::vector<Vector>& positions, double time,
+                           std::span<const Vector> periods) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
   std::vector<bool> is_cut(mesh.lines.size(), false);
   for (const coupling::LineCut& cut : sheets.cuts)
@@ -112,7 +114,10 @@ double count_intersections(const Sheets& sheets, const std::vector<Vector>& posi
   std::vector<std::array<int, 2>> whole;
   for (std::size_t line = 0; line < is_cut.size(); ++line)
     if (!is_cut[line]) whole.push_back(mesh.lines[line]);
-  return static_cast<double>(reference::intersections(positions, mesh.triangles, whole).size());
+  const int bodies_end = sheets.canopies.empty() ? 0 : static_cast<int>(sheets.canopies.front().begin);
+  return static_cast<double>(
+      reference::intersections(positions, mesh.triangles, whole).size() +
+      image_intersections(positions, mesh.triangles, whole, periods, bodies_end).size());
 }
 
 run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name) {

@@ -81,6 +81,8 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
   } else {
     _solver = flow::create_solver(settings.backend, scene.parameters);
   }
+  for (const Body& body : scene.bodies) _inside.emplace_back(body, scene.parameters);
+  if (_coupled != nullptr) _coupled->watch_pulls(pulls_on_payloads(_sheets));
   if (_shared != nullptr) return;
   for (Snapshot& snapshot : _snapshots)
     for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));
@@ -152,6 +154,7 @@ std::vector<run::Column> Simulation::history_columns() const {
       columns.push_back({std::string("outflow_") + side_names[side], "m^3/s"});
   for (int body = 0; body < static_cast<int>(_scene.bodies.size()); ++body)
     for (int axis = 0; axis < 3; ++axis) columns.push_back({force_column(body, axis), "N"});
+  append_outside_columns(columns);
   append_displacement_columns(columns);
   append_canopy_columns(columns);
   append_flag_columns(columns);
@@ -167,8 +170,9 @@ framework::HistoryRow Simulation::row() {
                                 now.max_speed, now.divergence_rms, now.divergence_max}};
   for (std::size_t side = 0; side < 6; ++side)
     if (!is_periodic(_scene.parameters, side)) row.values.push_back(now.outflow[side]);
-  for (const fabric::Vector& force : body_forces())
-    row.values.insert(row.values.end(), force.begin(), force.end());
+  const std::vector<fabric::Vector> forces = body_forces();
+  for (const fabric::Vector& force : forces) row.values.insert(row.values.end(), force.begin(), force.end());
+  append_outside_forces(forces, now.step > 0 ? now.dt : 0.0, row);
   append_displacements(row);
   append_canopy_values(row);
   append_flag_values(row);

@@ -6,6 +6,7 @@
 #include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/flow/solver.hpp"
 #include "miniapps/framework/simulation.hpp"
+#include "miniapps/parachute/bodies/inside_fluid.hpp"
 #include "miniapps/parachute/parallel/rank_solver.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 #include "miniapps/parachute/simulation/sheet_output.hpp"
@@ -64,6 +65,9 @@ class Simulation final : public framework::Simulation {
   }
   [[nodiscard]] std::vector<fabric::Vector> body_forces();
   [[nodiscard]] SheetState sheet_state();
+  void append_outside_columns(std::vector<run::Column>& columns) const;
+  void append_outside_forces(const std::vector<fabric::Vector>& forces, double dt,
+                             framework::HistoryRow& row);
   void append_displacement_columns(std::vector<run::Column>& columns) const;
   void append_displacements(framework::HistoryRow& row);
   void append_flag_columns(std::vector<run::Column>& columns) const;
@@ -88,6 +92,7 @@ class Simulation final : public framework::Simulation {
 
   const FlowScene& _scene;
   Sheets _sheets;
+  std::vector<InsideFluid> _inside;      ///< of each body
   std::vector<SheetGrid> _grids;         ///< in fields.h5, beside flow and canopies
   SharedSolver* _shared = nullptr;       ///< `_solver` on several ranks
   coupling::Solver* _coupled = nullptr;  ///< `_solver` with bodies or canopies

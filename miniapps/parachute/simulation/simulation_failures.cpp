@@ -169,9 +169,10 @@ std::string Simulation::leaving_vertex_text() {
           spacing[axis];
       if (distance < least) least = distance, vertex = i, closest = side;
     }
-  return leaving_part_text(vertex) + " at " + place_text(positions[vertex]) +
-         " m comes closer than a cell to the side " + side_names[closest] + " after " + now_text() +
-         "; a larger grid.domain or a shorter run.end_time may save the run";
+  const bool is_sharp = _scene.coupling.method == coupling::CouplingMethod::sharp;
+  return leaving_part_text(vertex) + " at " + place_text(positions[vertex]) + " m " +
+         (is_sharp ? "lies beyond" : "comes closer than a cell to") + " the side " + side_names[closest] +
+         " after " + now_text() + "; a larger grid.domain or a shorter run.end_time may save the run";
 }
 
 std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {

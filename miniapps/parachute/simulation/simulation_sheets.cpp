@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 
+#include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
@@ -48,6 +49,24 @@ std::vector<Vector> Simulation::body_forces() {
     for (std::size_t k = 0; k < static_cast<std::size_t>(_scene.bodies[i].vertices()); ++k, ++force)
       for (std::size_t axis = 0; axis < 3; ++axis) sums[i][axis] -= (*force)[axis];
   return sums;
+}
+
+void Simulation::append_outside_columns(std::vector<run::Column>& columns) const {
+  for (std::size_t i = 0; i < _inside.size(); ++i)
+    for (const char* axis : axis_names)
+      if (_inside[i].moves())
+        columns.push_back({"body_" + std::to_string(i) + "_outside_force_" + axis, "N"});
+}
+
+/// Forces of the fluid outside of closed bodies that move: those of all fluid, in the last step of dt, s,
+/// without the inertia of the fluid inside.
+void Simulation::append_outside_forces(const std::vector<Vector>& forces, double dt,
+                                       framework::HistoryRow& row) {
+  for (std::size_t i = 0; i < _inside.size(); ++i) {
+    if (!_inside[i].moves()) continue;
+    const Vector inertia = _inside[i].inertia(row.time, dt);
+    for (std::size_t axis = 0; axis < 3; ++axis) row.values.push_back(forces[i][axis] + inertia[axis]);
+  }
 }
 
 void Simulation::append_displacement_columns(std::vector<run::Column>& columns) const {
@@ -104,7 +123,7 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
                                        totals.elastic, balance});
   double intersections = 0.0;
   if (_scene.verify.intersections) {
-    intersections = count_intersections(_sheets, state.positions, row.time);
+    intersections = count_intersections(_sheets, state.positions, row.time, periods_of(_scene.parameters));
     row.values.push_back(intersections);
   }
   if (_scene.frame == Frame::follow)

@@ -50,7 +50,7 @@ void check_canopies(const Verify& wanted, const CanopyRecord& record, run::Resul
   };
   for (std::size_t i = 0; i < wanted.peak_forces.size(); ++i) {
     const CanopyPeak& peak = wanted.peak_forces[i];
-    const auto [force, time] = record.peak(static_cast<std::size_t>(peak.canopy));
+    const auto [force, time] = record.peaks().at(static_cast<std::size_t>(peak.canopy));
     const std::string name = "peak_force_" + std::to_string(i);
     check_bounds(name, force, peak.force);
     if (peak.time) check_bounds(name + "_time", time, *peak.time);

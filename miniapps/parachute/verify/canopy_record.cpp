@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "common/run/statistics.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
@@ -16,7 +17,9 @@ double length_of(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
 }  // namespace
 
 CanopyRecord::CanopyRecord(const FlowScene& scene)
-    : _scene(scene), _columns(first_column + per_canopy * scene.canopies.size()) {
+    : _scene(scene),
+      _columns(first_column + per_canopy * scene.canopies.size()),
+      _peaks(scene.canopies.size()) {
   if (scene.canopies.empty()) return;
   for (std::size_t axis = 0; axis < 3; ++axis)
     _stream[axis] = SpaceTimeFunction(scene.velocity[axis]).constant().value_or(0.0);
@@ -36,8 +39,9 @@ void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies,
     }
     const double speed = length_of(u), pressure = 0.5 * _scene.parameters.density * speed * speed;
     const double drag = along == 0.0 ? 0.0 : along / (speed * pressure * _scene.canopies[i].nominal_area());
-    _values.insert(_values.end(),
-                   {drag, speed, length_of(canopy.line_force), canopy.projected_area, canopy.leak});
+    const double pull = length_of(canopy.line_force);
+    if (pull > _peaks[i].force) _peaks[i] = {pull, time};
+    _values.insert(_values.end(), {drag, speed, pull, canopy.projected_area, canopy.leak});
   }
 }
 
@@ -75,14 +79,6 @@ double CanopyRecord::relative_leak_rms(std::size_t canopy, double from, double t
   return std::sqrt(mean_square(column(Measure::leak, canopy), from, to)) / reference_flow(canopy, from, to);
 }
 
-CanopyRecord::Peak CanopyRecord::peak(std::size_t canopy) const {
-  Peak largest;
-  for (std::size_t row = 0; row < rows(); ++row)
-    if (const double force = at(row, column(Measure::line_force, canopy)); force > largest.force)
-      largest = {force, at(row, 0)};
-  return largest;
-}
-
 double CanopyRecord::largest(std::size_t column) const {
   double result = 0.0;
   for (std::size_t row = 0; row < rows(); ++row) result = run::maximum_or_nan(result, at(row, column));
@@ -94,6 +90,10 @@ double CanopyRecord::balance() const { return largest(1); }
 double CanopyRecord::intersections() const { return largest(2); }
 
 void CanopyRecord::write(run::RestartWriter& writer) const {
+  for (std::size_t i = 0; i < _peaks.size(); ++i) {
+    writer.number("peak_force_" + std::to_string(i), _peaks[i].force);
+    writer.number("peak_force_time_" + std::to_string(i), _peaks[i].time);
+  }
   writer.number("canopy_rows", static_cast<double>(rows()));
   if (_values.empty()) return;
   writer.array("canopy_record", _values.size());
@@ -101,6 +101,9 @@ void CanopyRecord::write(run::RestartWriter& writer) const {
 }
 
 void CanopyRecord::read(const run::RestartReader& reader) {
+  for (std::size_t i = 0; i < _peaks.size(); ++i)
+    _peaks[i] = {reader.number("peak_force_" + std::to_string(i)),
+                 reader.number("peak_force_time_" + std::to_string(i))};
   _values.resize(static_cast<std::size_t>(reader.number("canopy_rows")) * _columns);
   if (!_values.empty()) reader.read("canopy_record", 0, _values);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "common/run/restart/restart_file.hpp"
@@ -12,12 +13,6 @@ namespace drogue::parachute_app {
 /// them from its restart file, also for other intervals of time in [verify].
 class CanopyRecord {
  public:
-  /// Force of the lines on a payload and the time of its row.
-  struct Peak {
-    double force = 0.0;  ///< N
-    double time = 0.0;   ///< s
-  };
-
   /// Keeps a reference to `scene`.
   explicit CanopyRecord(const FlowScene& scene);
 
@@ -49,8 +44,11 @@ class CanopyRecord {
   /// Root mean square of the leak, likewise: in and out add up.
   [[nodiscard]] double relative_leak_rms(std::size_t canopy, double from, double to) const;
 
-  /// Largest force of the lines on a payload. Does not throw.
-  [[nodiscard]] Peak peak(std::size_t canopy) const;
+  /// Replaces the largest force of the lines on each payload in the rows by that in all steps so far.
+  void set_peaks(std::vector<fabric::PeakPull> peaks) { _peaks = std::move(peaks); }
+
+  /// These largest forces. Does not throw.
+  [[nodiscard]] const std::vector<fabric::PeakPull>& peaks() const { return _peaks; }
 
   /// Largest `force_balance`. Does not throw.
   [[nodiscard]] double balance() const;
@@ -58,10 +56,10 @@ class CanopyRecord {
   /// Largest number of intersections. Does not throw.
   [[nodiscard]] double intersections() const;
 
-  /// Writes all rows. Throws `Failure` (io_error).
+  /// Writes all rows and the peaks. Throws `Failure` (io_error).
   void write(run::RestartWriter& writer) const;
 
-  /// Reads all rows. Throws `Failure` (io_error).
+  /// Reads all rows and the peaks. Throws `Failure` (io_error).
   void read(const run::RestartReader& reader);
 
  private:
@@ -89,6 +87,7 @@ class CanopyRecord {
   std::size_t _columns;
   /// Row by row: time, balance, intersections; then the measures of each canopy.
   std::vector<double> _values;
+  std::vector<fabric::PeakPull> _peaks;  ///< one per canopy
 };
 
 }  // namespace drogue::parachute_app

@@ -39,6 +39,7 @@ framework::SceneIdentity scene_identity(SpringsScene scene) {
   if (!scene.source.file.empty()) {
     contents = framework::contents_of(scene.mesh);
     scene.source.file = "mesh.obj";
+    scene.source.scale = 1.0;
   }
   return {print_springs_scene(scene), contents};
 }
@@ -50,8 +51,9 @@ std::filesystem::path scene_folder() {
 std::string document_springs_scene() {
   return framework::document_scene(
       declare_springs_scene, "Springs", "SpringsSceneDocument",
-      R"(Expressions use the syntax of muParser; x, y, z are coordinates at rest, t is the time. How a scene is verified:
-[springs](springs.md).
+      R"(Expressions use the syntax of muParser; x, y, z are coordinates at rest, t is the time. Those of t, of follower pressure
+and of contact.objects are evaluated in every step: each has at most 96 operations, names and numbers, of them at most
+32 numbers, and waits with at most 16 operands. How a scene is verified: [springs](springs.md).
 )");
 }
 

@@ -30,7 +30,8 @@ struct MeshSource {
   std::optional<mesh::Strip> strip;
   std::optional<mesh::Triangle> triangle;
   std::optional<mesh::String> string;
-  std::string file;  ///< as the scene names it, relative to the scene
+  std::string file;    ///< as the scene names it, relative to the scene
+  double scale = 1.0;  ///< m per unit of length of the file
 };
 
 struct Fabric {
@@ -187,6 +188,7 @@ struct SpringsScene {
   Output output;
   Verify verify;
   fabric::Driver driver = fabric::Driver::automatic;
+  std::vector<std::string> notices;  ///< `framework::Scene::notices`
 
   /// True if the source has triangles, or lines; both for a file that is not read yet.
   [[nodiscard]] bool has_triangles() const;

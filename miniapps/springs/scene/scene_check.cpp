@@ -8,6 +8,7 @@
 #include "common/scene/read.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/orientation.hpp"
 #include "kernels/mesh/topology.hpp"
 #include "miniapps/springs/scene/expressions.hpp"
 #include "miniapps/springs/simulation/stress_fields.hpp"
@@ -34,7 +35,8 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
       contradict(root, "mesh.string", "mesh.string: from and to are the same point");
     return generate(*source.string);
   }
-  return framework::read_obj(root, "mesh.file", scene.file, source.file);
+  return framework::read_obj(root, {"mesh.file", "mesh.scale", source.scale}, scene.file, source.file,
+                             scene.notices);
 }
 
 /// Checks an expression at every vertex and time 0: finite, and below the limit of a lost state. An
@@ -126,7 +128,39 @@ void check_pins(const Table& root, const SpringsScene& scene) {
   }
 }
 
-void check_loads(const Table& root, const SpringsScene& scene) {
+/// Checks that a pressure acts on one side of the cloth: along the normals of all faces.
+void check_sides(const Table& root, SpringsScene& scene, const std::string& path) {
+  const mesh::Orientation sides = orientation_of(scene.mesh);
+  const auto faces = [](const std::array<int, 2>& pair) {
+    return "faces " + std::to_string(pair[0]) + " and " + std::to_string(pair[1]) + " of the mesh";
+  };
+  if (sides.one_sided)
+    contradict(
+        root, path,
+        path + " has no side to act on: " + faces(*sides.one_sided) +
+            " turn in opposite senses, however others are turned: the cloth has one side, as a Moebius "
+            "strip");
+  if (const auto opposed = inconsistent_triangles(scene.mesh))
+    contradict(root, path, path + " has no side to act on: " + faces(*opposed) + " turn in opposite senses");
+  const mesh::SurfacePart* outwards = nullptr;
+  const mesh::SurfacePart* inwards = nullptr;
+  for (const mesh::SurfacePart& part : sides.parts) {
+    if (part.volume > 0.0) outwards = &part;
+    if (part.volume < 0.0) inwards = &part;
+  }
+  if (inwards == nullptr) return;
+  if (outwards != nullptr)
+    contradict(
+        root, path,
+        path + " acts on opposite sides of closed parts of the cloth: the normals of the one with face " +
+            std::to_string(inwards->first) + " of the mesh point inwards, those of the one with face " +
+            std::to_string(outwards->first) + " outwards");
+  scene.notices.push_back(path +
+                          " acts inwards where it is positive: the normals of the closed cloth with face " +
+                          std::to_string(inwards->first) + " of the mesh point inwards");
+}
+
+void check_loads(const Table& root, SpringsScene& scene) {
   for (std::size_t k = 0; k < scene.loads.size(); ++k) {
     const Load& load = scene.loads[k];
     const std::string path = element("load", k);
@@ -135,10 +169,7 @@ void check_loads(const Table& root, const SpringsScene& scene) {
       if (text.empty()) continue;
       if (!scene.has_triangles())
         contradict(root, path + "." + name, path + "." + name + " needs triangles, and the mesh has none");
-      if (const auto opposed = inconsistent_triangles(scene.mesh))
-        contradict(root, path + "." + name,
-                   path + "." + name + " has no side to act on: faces " + std::to_string((*opposed)[0]) +
-                       " and " + std::to_string((*opposed)[1]) + " of the mesh turn in opposite senses");
+      check_sides(root, scene, path + "." + name);
       require_finite(root, scene, path + "." + name, text,
                      name != std::string("pressure") || depends_on_time(text));
     }
@@ -193,7 +224,7 @@ std::vector<int> require_some(const Table& root, const SpringsScene& scene, cons
   require_finite(root, scene, path, where);
   std::vector<int> vertices = selected(where, scene.mesh);
   if (vertices.empty())
-    contradict(root, path, path + " = " + scene::toml_string(where) + " holds at no vertex: " + what);
+    contradict(root, path, path + " = " + scene::short_toml_string(where) + " holds at no vertex: " + what);
   return vertices;
 }
 

@@ -137,9 +137,14 @@ void declare_mesh(Table& table, MeshSource& source) {
       },
       "A string of equal pieces");
   table
-      .value("file", scene::text_codec(source.file),
-             "A Wavefront OBJ file (v, f with three vertices, l for strings), relative to the scene")
+      .value(
+          "file", scene::text_codec(source.file),
+          "A Wavefront OBJ file (v, f, l for strings), relative to the scene; larger faces are divided into "
+          "triangles")
       .default_text("none");
+  table.value("scale", scene::real_codec(source.scale), "Metres per unit of length of the file")
+      .above(0.0)
+      .when([&source] { return !source.file.empty(); }, "with file", "file");
 }
 
 void declare_material(Table& table, SpringsScene& scene) {

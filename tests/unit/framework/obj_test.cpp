@@ -58,7 +58,12 @@ TEST(ObjFile, ErrorsNameFileLineAndPart) {
       {"v 0 0 zero\n", "m.obj:1: ", "\"zero\" is not a finite number"},
       {"v 0 0 nan\n", "m.obj:1: ", "not a finite number"},
       {three + "f 1 2\n", "m.obj:4: ", "face 1 of the file has 2 vertices"},
-      {three + "v 1 1 0\nf 1 2 4 3\n", "m.obj:5: ", "face 1 of the file has 4 vertices"},
+      {three + "v 1 1 0\nf 1 4 2 3\n", "m.obj:5: ", "face 1 of the file has no area or crosses itself"},
+      {three + "v 1 1 0\nf 1 2 4 1\n", "m.obj:5: ", "face 1 of the file names vertex 1 twice"},
+      {three + "f 1 \\\n 2 \\\n 9\n", "m.obj:4: ", "face 1 of the file names vertex 9"},
+      {three + "f 1 \\\n 2 3\nx\n", "m.obj:6: ", "unknown statement"},
+      {three + "p 1 2\nv 7 7 7\nf 1 2 3\np 4\n", "m.obj:5: ", "vertex 4 of the file belongs to no face"},
+      {"\xFF\xFEv 0 0", "m.obj:1: ", "UTF-16"},
       {three + "f 1 2 0\n", "m.obj:4: ", "vertex 0"},
       {three + "f 1 2 4\n", "m.obj:4: ", "face 1 of the file names vertex 4; the file has 3"},
       {three + "f 1 2 -4\n", "m.obj:4: ", "vertex -4"},
@@ -76,6 +81,7 @@ TEST(ObjFile, ErrorsNameFileLineAndPart) {
       {three + "v 0 0 1\nv 0 0 -1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n",
        "m.obj:8: ", "face 3 of the file is the third at the edge of vertices 1 and 2"},
       {three + "f 1 2 3\nf 3 1 2\n", "m.obj:5: ", "face 2 of the file repeats face 1"},
+      {three + "v 1 1 0\nf 1 2 4 3\nf 1 2 4\n", "m.obj:6: ", "face 2 of the file repeats face 1"},
       {three + "f 1 2 3\nl 1 2\nl 2 1\n",
        "m.obj:6: ", "from vertex 1 of the file to 2 is given twice, first in line 5"},
   };
@@ -84,6 +90,16 @@ TEST(ObjFile, ErrorsNameFileLineAndPart) {
     EXPECT_TRUE(message.starts_with(start)) << message;
     EXPECT_NE(message.find(words), std::string::npos) << message;
   }
+}
+
+TEST(ObjFile, DividesPolygonsAndNamesTheirFaces) {
+  const ObjContents contents = read_mesh(
+      "\xEF\xBB\xBF# C:\\meshes\\\nv 0 0 0\nv 1 0 0\nf 1 2 3 4\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+      "p 1\nf 2/1/1 5/2/1 \\\r\n6/3/1 \\\n3/4/1\n");
+  EXPECT_EQ(contents.mesh.triangles,
+            (std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}}));
+  EXPECT_EQ(contents.triangle_line, (std::vector<int>{4, 4, 10, 10}));
+  EXPECT_EQ(contents.face_of, (std::vector<std::size_t>{0, 0, 1, 1}));
 }
 
 TEST(ObjFile, AcceptsALineAlongATriangleEdge) { EXPECT_EQ(mesh_error(square + "l 1 2\n"), ""); }

@@ -184,8 +184,10 @@ TEST(CanopyRecord, MeansAreThoseOfAnInterval) {
   EXPECT_NEAR(record.mean_speed(0, 0.5, 5.0), (2.0 * 5.0 + 1.0 * 5.5) / 3.0, 1e-14);
   EXPECT_NEAR(record.mean_drag(0, 1.0, 3.0), 1.5, 1e-14);
   EXPECT_TRUE(std::isnan(record.mean_drag(0, 3.5, 5.0))) << "one row is no interval";
-  EXPECT_EQ(record.peak(0).force, 70.0);
-  EXPECT_EQ(record.peak(0).time, 1.0);
+  EXPECT_EQ(record.peaks().at(0).force, 70.0);
+  EXPECT_EQ(record.peaks().at(0).time, 1.0);
+  record.set_peaks({{75.0, 0.5}});  // of a step between the rows
+  EXPECT_EQ(record.peaks().at(0).force, 75.0);
   EXPECT_EQ(record.balance(), 3e-16);
   EXPECT_EQ(record.intersections(), 3.0);
   // Areas of a tenth of the line force: 7, 6 and 1 m^2.

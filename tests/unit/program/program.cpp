@@ -5,9 +5,11 @@
 #include <CLI/Error.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include "common/program/provenance.hpp"
 #include "common/version.hpp"
@@ -64,6 +66,20 @@ TEST(RunProgram, MapsUnexpectedExceptionsToADocumentedCode) {
   EXPECT_EQ(traced.code, 6);
   EXPECT_EQ(traced.error, "drogue-gas: unexpected error: bad index\n");
   EXPECT_EQ(run([]() -> ExitCode { throw 7; }).code, 6);
+}
+
+TEST(RunProgram, NamesWhatTheOperatingSystemRefused) {
+  const ChildResult thread = run([]() -> ExitCode {
+    throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+  });
+  EXPECT_EQ(thread.code, 6);
+  EXPECT_EQ(thread.error.rfind("drogue-gas: a thread could not start: ", 0), 0U) << thread.error;
+  const ChildResult folder = run([]() -> ExitCode {
+    std::filesystem::create_directory("/nowhere/out");
+    return ExitCode::ok;
+  });
+  EXPECT_EQ(folder.code, 6);
+  EXPECT_EQ(folder.error, "drogue-gas: cannot use '/nowhere/out': No such file or directory\n");
 }
 
 TEST(RunProgram, PrintsOnRankZeroOnly) {

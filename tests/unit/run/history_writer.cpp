@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 
 #include "common/run/files/atomic_file.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
@@ -41,6 +42,20 @@ TEST(HistoryWriter, KeepsRowsWhenAnExceptionUnwinds) {
       },
       Failure);
   EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],contacts\n0.5,1,0\n");
+}
+
+TEST(HistoryWriter, ReportsAFileThatWasDeletedOrReplaced) {
+  for (const bool replaced : {false, true}) {
+    const TemporaryDirectory directory;
+    HistoryWriter history(directory / "history.csv", columns);
+    append(history, 0.5, 1.0, 0.0);
+    history.flush();
+    std::filesystem::remove(directory / "history.csv");
+    if (replaced) write_file_atomically(directory / "history.csv", "another");
+    append(history, 0.6, 1.0, 0.0);
+    const std::string sentence = failure_of(ExitCode::io_error, [&] { history.finish(); });
+    EXPECT_TRUE(sentence.ends_with("history.csv' was deleted or replaced during the run")) << sentence;
+  }
 }
 
 TEST(HistoryWriter, KeepsFlushedRowsAfterAKill) {

@@ -120,8 +120,37 @@ TEST(SpringsScene, PressureRequiresConsistentOrientation) {
     EXPECT_EQ(error_of(sets, with_file, half + "f 1 3 4\n"), "");
     EXPECT_TRUE(holds(error_of(sets, with_file, half + "f 1 4 3\n"), "faces 0 and 1 of the mesh turn"));
     EXPECT_TRUE(holds(error_of(sets, with_file, moebius), "turn in opposite senses"));
+    EXPECT_TRUE(holds(error_of(sets, with_file, moebius), "as a Moebius strip"));
   }
   EXPECT_EQ(error_of({}, with_file, moebius), "");
+}
+
+TEST(SpringsScene, PressureOnClosedClothNeedsOneSense) {
+  const auto tetrahedron = [](double x, int first, bool inwards) {
+    const auto vertex = [&](double a, double b, double c) {
+      return "v " + std::to_string(x + a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
+    };
+    std::string text = vertex(0, 0, 0) + vertex(1, 0, 0) + vertex(0, 1, 0) + vertex(0, 0, 1);
+    for (std::array<int, 3> face :
+         {std::array{0, 2, 1}, std::array{0, 1, 3}, std::array{1, 2, 3}, std::array{0, 3, 2}}) {
+      if (inwards) std::swap(face[1], face[2]);
+      text += "f";
+      for (const int i : face) text += " " + std::to_string(first + i);
+      text += "\n";
+    }
+    return text;
+  };
+  const std::vector<std::string> sets = {"load=[{follower_pressure=1}]"};
+  EXPECT_EQ(error_of(sets, with_file, tetrahedron(0, 1, false) + tetrahedron(3, 5, false)), "");
+  EXPECT_EQ(error_of(sets, with_file, tetrahedron(0, 1, true)), "");
+  EXPECT_TRUE(holds(error_of(sets, with_file, tetrahedron(0, 1, false) + tetrahedron(3, 5, true)),
+                    "the one with face 4 of the mesh point inwards, those of the one with face 0 outwards"));
+}
+
+TEST(SpringsScene, ScalesMeshFiles) {
+  EXPECT_EQ(error_of({"mesh.scale=0.01"}, with_file, triangle), "");
+  EXPECT_TRUE(holds(error_of({"mesh.scale=1e-300"}, with_file, triangle), "between 1e-60 and 1e60 m"));
+  EXPECT_TRUE(holds(error_of({"mesh.scale=2"}), "mesh.scale"));
 }
 
 TEST(SpringsScene, AcceptsPinAxesInAnyOrder) {
