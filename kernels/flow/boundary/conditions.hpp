@@ -17,8 +17,8 @@ namespace drogue::flow {
 /// Conditions of the sides on a device. Values of a side whose velocity is an expression stand in a table
 /// with an entry for every point of the side, ghost cells included. Expressions are evaluated only at points
 /// of the domain: ghost cells beyond a periodic axis have the value of the point that they repeat, and those
-/// beyond another side of the domain extrapolate the two outermost points linearly. Derivatives along the
-/// edges of a side, of first order there, are the only ones that use these.
+/// beyond another side of the domain extrapolate the two outermost points linearly. Only ghost cells beyond
+/// two sides use these.
 template <class ExecutionSpace>
 struct BoundaryConditions {
   BoundaryKind kind[6];

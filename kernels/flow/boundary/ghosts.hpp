@@ -48,7 +48,8 @@ KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryCo
 }
 
 /// Fills ghost cells and boundary faces of all components, unless the step has failed: then the tables are
-/// not those of the velocity. Corners follow from the conditions of their axes in turn.
+/// not those of the velocity. On the edge between two sides a component has the velocity of the side that it
+/// is tangential to: the condition of its own axis comes last, whatever the order of the axes.
 template <class ExecutionSpace>
 struct GhostFunctor {
   MacGrid grid;
@@ -81,7 +82,8 @@ struct GhostFunctor {
     for (int c = 0; c < 3; ++c) {
       double constant = 0.0, factor = 1.0;
       int from[3] = {index[0], index[1], index[2]};
-      for (int a = 0; a < 3; ++a) {
+      for (int turn = 1; turn <= 3; ++turn) {
+        const int a = (c + turn) % 3;
         const GhostValue value = ghost_value(g, boundary, a, c, from);
         from[a] = value.index;
         constant += factor * value.constant;

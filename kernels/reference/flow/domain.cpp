@@ -91,7 +91,9 @@ double FlowDomain::normal_velocity(std::size_t side, const GridIndex& face, doub
 
 double FlowDomain::velocity(const StaggeredField& u, std::size_t component, const GridIndex& face,
                             double time) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  // The component's own axis comes last: beyond an edge between sides, the side that the component is
+  // tangential to decides.
+  for (const std::size_t axis : {(component + 1) % 3, (component + 2) % 3, component}) {
     const int n = cells(axis), i = face[axis];
     GridIndex inside = face;
     if (!is_bounded(axis)) {
