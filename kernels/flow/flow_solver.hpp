@@ -663,8 +663,10 @@ void FlowSolver<ExecutionSpace>::enqueue_momentum(const ExecutionSpace& space,
 /// Momentum stage of the state, without weights. `nu`: kinematic viscosity, m^2/s.
 template <class ExecutionSpace>
 MomentumSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::momentum_setup(double nu) const {
-  // The linear weights are recovered where all differences are far below this velocity squared, m^2/s^2.
-  constexpr double smoothness_floor = 1e-40;
+  // m^2/s^2: above zero, so that a uniform velocity is kept, and below the square of any difference that
+  // round-off leaves of a velocity above 1e-19 m/s, so that results do not depend on the unit of velocity.
+  // Its fourth power, a product of the weights, is a number.
+  constexpr double smoothness_floor = 1e-72;
   return {_grid,
           _velocity,
           _velocity,

@@ -19,7 +19,7 @@ double upwind_value(const std::array<double, 5>& q, Advection scheme) {
       13.0 / 12.0 * square(q[0] - 2.0 * q[1] + q[2]) + 0.25 * square(q[0] - 4.0 * q[1] + 3.0 * q[2]),
       13.0 / 12.0 * square(q[1] - 2.0 * q[2] + q[3]) + 0.25 * square(q[1] - q[3]),
       13.0 / 12.0 * square(q[2] - 2.0 * q[3] + q[4]) + 0.25 * square(3.0 * q[2] - 4.0 * q[3] + q[4])};
-  const double linear[3] = {0.1, 0.6, 0.3}, epsilon = 1e-40, tau = std::abs(beta[0] - beta[2]);
+  const double linear[3] = {0.1, 0.6, 0.3}, epsilon = 1e-72, tau = std::abs(beta[0] - beta[2]);
   double sum = 0.0, value = 0.0;
   for (std::size_t s = 0; s < 3; ++s) {
     const double weight = scheme == Advection::weno_js ? linear[s] / square(epsilon + beta[s])
