@@ -387,7 +387,6 @@ void FlowSolver<ExecutionSpace>::start() {
   device::copy(space(), _predicted, _velocity);
   ProjectionSetup<ExecutionSpace> projection = projection_setup(1.0);
   projection.velocity = _velocity;
-  projection.resists_backflow = false;
   projection.ends_step = true;
   enqueue_projection(space(), projection);
   finish_ghosts(space(), _velocity);
@@ -664,8 +663,10 @@ void FlowSolver<ExecutionSpace>::enqueue_momentum(const ExecutionSpace& space,
 /// Momentum stage of the state, without weights. `nu`: kinematic viscosity, m^2/s.
 template <class ExecutionSpace>
 MomentumSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::momentum_setup(double nu) const {
-  // The linear weights are recovered where all differences are far below this velocity squared, m^2/s^2.
-  constexpr double smoothness_floor = 1e-40;
+  // m^2/s^2: above zero, so that a uniform velocity is kept, and below the square of any difference that
+  // round-off leaves of a velocity above 1e-19 m/s, so that results do not depend on the unit of velocity.
+  // Its fourth power, a product of the weights, is a number.
+  constexpr double smoothness_floor = 1e-72;
   return {_grid,
           _velocity,
           _velocity,
@@ -730,7 +731,7 @@ void FlowSolver<ExecutionSpace>::enqueue_rates(const ExecutionSpace& space,
   enqueue_momentum(space, setup);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
   enqueue_net_inflow(space);
-  launch_boundary_faces(space, setup, _boundary.conditions());
+  launch_boundary_faces(space, setup, _boundary.conditions(), _parameters.advection);
 }
 
 /// Momentum stage and projection. `fraction`: of dt that the pressure of the stage acts; `time_fraction`: of
@@ -761,13 +762,19 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
 /// Projection of the predicted velocity, without a result.
 template <class ExecutionSpace>
 ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(double fraction) const {
-  ProjectionSetup<ExecutionSpace> setup{_grid,       _boundary.conditions(),
-                                        _predicted,  Values(),
-                                        _divergence, unknown(),
-                                        Values(),    _diffusion.has_value(),
-                                        _control,    kinematic_viscosity(),
-                                        fraction,    _boundary.has_outflow(),
-                                        false,       tile_rows(_parameters.block),
+  ProjectionSetup<ExecutionSpace> setup{_grid,
+                                        _boundary.conditions(),
+                                        _predicted,
+                                        Values(),
+                                        _divergence,
+                                        unknown(),
+                                        Values(),
+                                        _diffusion.has_value(),
+                                        _control,
+                                        kinematic_viscosity(),
+                                        fraction,
+                                        false,
+                                        tile_rows(_parameters.block),
                                         {}};
   copy_pressure_below(setup.pressure_below);
   return setup;

@@ -49,17 +49,20 @@ enum class BoundaryKind {
   slip,    ///< no flow through the side, no shear stress
   wall,    ///< velocity of the wall, no slip
   inflow,  ///< prescribed velocity
-  /// The normal velocity obeys its momentum equation, advected by itself, upwind of first order; tangential
-  /// velocities leave unchanged. Zero pressure; minus the dynamic pressure where fluid flows back.
+  /// The normal velocity obeys its momentum equation, and there is no shear stress; tangential velocities
+  /// leave unchanged. Zero pressure. Where fluid enters, it has the tangential velocity and the total
+  /// pressure of the fluid outside.
   outflow,
   neighbour,  ///< other ranks hold the cells beyond; only inside a solver, no side of a domain
 };
 
-/// Side of the domain: its type, and the velocity of a wall or an inflow, m/s.
+/// Side of the domain: its type, and the velocity of a wall, an inflow or the fluid outside of an outflow,
+/// m/s.
 struct Boundary {
   BoundaryKind kind = BoundaryKind::periodic;
   std::array<double, 3> velocity = {0.0, 0.0, 0.0};
-  /// Expressions of x, y, z, t for the velocity components, m/s; none, or three. They replace `velocity`.
+  /// Expressions of x, y, z, t for the velocity components of a wall or an inflow, m/s; none, or three. They
+  /// replace `velocity`.
   std::vector<device::ExpressionProgram> velocity_expressions;
 };
 

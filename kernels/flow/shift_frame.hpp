@@ -63,15 +63,23 @@ struct ShiftRatesFunctor {
               0.5 * g.inverse_h[a] * shift[a] * (velocity(at + g.stride[a]) - velocity(at - g.stride[a]));
       rate(at) += change;
     }
-    for (int a = 0; a < 3; ++a) {
-      if (g.periodic[a] || shift[a] == 0.0) continue;
-      const std::int64_t at = a * g.component + g.offset(i, j, k), stride = g.stride[a];
+    for (int side = 0; side < 6; ++side) {
+      const int axis = side / 2;
+      const bool high = side % 2 == 1;
+      if (g.n[axis] == 1 || boundary.kind[side] != BoundaryKind::outflow ||
+          index[axis] != (high ? g.n[axis] - 1 : 0))
+        continue;
+      const std::int64_t cell = axis * g.component + g.offset(i, j, k), stride = g.stride[axis],
+                         face = high ? cell + stride : cell;
+      double change = 0.0;
+      if (high ? velocity(face) > 0.0 : velocity(face) < 0.0)
+        change = shift[axis] * g.inverse_h[axis] * (velocity(cell + stride) - velocity(cell));
+      for (int a = 0; a < 3; ++a)
+        if (a != axis && shift[a] != 0.0)
+          change +=
+              0.5 * g.inverse_h[a] * shift[a] * (velocity(face + g.stride[a]) - velocity(face - g.stride[a]));
       // The rate of the low face stands in the ghost cell below it (`BoundaryFacesFunctor`).
-      if (index[a] == 0 && boundary.kind[2 * a] == BoundaryKind::outflow && velocity(at) < 0.0)
-        rate(at - stride) += shift[a] * g.inverse_h[a] * (velocity(at + stride) - velocity(at));
-      if (index[a] == g.n[a] - 1 && boundary.kind[2 * a + 1] == BoundaryKind::outflow &&
-          velocity(at + stride) > 0.0)
-        rate(at + stride) += shift[a] * g.inverse_h[a] * (velocity(at + stride) - velocity(at));
+      rate(high ? face : face - stride) += change;
     }
   }
 };

@@ -139,6 +139,18 @@ class HardCases(parachute_program.FlowTest):
         self.assertLess(speeds[-1], 1.5)
         self.assertTrue(all(math.isfinite(speed) for speed in speeds))
 
+    def test_outflows_keep_a_stream_that_a_vortex_has_left(self):
+        """Fluid that comes in slowly feels no wall."""
+        self.expect(0, "vortex-outflow", "--quiet", "--backend", "serial", "--out", "out", sets=['grid.boundary.y="outflow"', "run.end_time=7", "output={}"])
+
+    def test_backflow_keeps_the_accuracy_of_the_scheme(self):
+        """du/dt = f - u^2 / (2 L), in steps of every scheme that follow the flow."""
+        for scheme in ("time='rk3'", "time='ab2'", "time='ab2',diffusion='crank-nicolson'"):
+            with self.subTest(scheme):
+                self.run_box([32, 8, 1], (2, 1, 1), velocity="[0, 0, 0]", viscosity=0.01, end=6.0, sets=[
+                    "grid.boundary={x='outflow',y='slip'}", f"flow={{body_force=[0.5,0,0],{scheme}}}", "run.max_dt=0.02",
+                    "output={}", "verify={exact={x=1.37414646,y=0,z=0},linf_velocity=1e-4,divergence=1e-12}"])
+
     def test_inflow_profiles_that_end_at_the_sides_of_the_domain(self):
         """The profiles are undefined beyond y = 0 or y = 1."""
         for profile in ("sqrt(y*(1-y))", "y^(1/7)"):

@@ -17,12 +17,12 @@ namespace drogue::flow {
 /// Conditions of the sides on a device. Values of a side whose velocity is an expression stand in a table
 /// with an entry for every point of the side, ghost cells included. Expressions are evaluated only at points
 /// of the domain: ghost cells beyond a periodic axis have the value of the point that they repeat, and those
-/// beyond another side of the domain extrapolate the two outermost points linearly. Derivatives along the
-/// edges of a side, of first order there, are the only ones that use these.
+/// beyond another side of the domain extrapolate the two outermost points linearly. Only ghost cells beyond
+/// two sides use these.
 template <class ExecutionSpace>
 struct BoundaryConditions {
   BoundaryKind kind[6];
-  double velocity[6][3];       ///< m/s
+  double velocity[6][3];       ///< m/s; on outflows that of the fluid outside
   std::int64_t first[6];       ///< first entry of a side in `table`; -1: no table
   List<ExecutionSpace> table;  ///< m/s
 
@@ -185,11 +185,6 @@ class BoundaryTables {
   /// throw.
   void set_velocity(std::size_t side, const std::array<double, 3>& velocity) {
     for (std::size_t c = 0; c < 3; ++c) _conditions.velocity[side][c] = velocity[c];
-  }
-  [[nodiscard]] bool has_outflow() const {
-    for (const BoundaryKind kind : _conditions.kind)
-      if (kind == BoundaryKind::outflow) return true;
-    return false;
   }
   /// True if a prescribed velocity is an expression of t.
   [[nodiscard]] bool changes() const { return _changes; }

@@ -5,15 +5,24 @@
 
 namespace drogue::flow {
 
-/// Normal components of the predicted velocity on the sides: prescribed values, and at outflows the momentum
-/// equation with advection by the outward velocity, first order and upwind, so that vortices leave with the
-/// flow. The projection adds the pressure. Advances with the factors of the momentum stage. The rate of a low
-/// face is kept in the ghost cell below it, because the momentum stage overwrites the rate at the face
-/// itself.
+/// Predicted velocity on the sides, after the momentum stage, with its factors.
+///
+/// Normal components: prescribed values, and at outflows the momentum equation, with advection of first order
+/// and upwind, or central as that of the cells, so that vortices leave with the flow. The pressure on the
+/// face is part of the rate: the projection adds a pressure that is zero there. The rate of a low face is
+/// kept in the ghost cell below it, because the momentum stage overwrites the rate at the face itself.
+///
+/// Tangential components beside outflows: the momentum stage has carried in the velocity inside where fluid
+/// enters; here it becomes that of the fluid outside.
+///
+/// Kinetic energy, with half of a cell at each face on a side, does not grow between outflows of fluid at
+/// rest: with the outward velocities a inside and u on the face, central advection adds nothing where fluid
+/// enters, and -u ((a - u)^2 + 2 u^2) / 4 per area where it leaves.
 template <class ExecutionSpace>
 struct BoundaryFacesFunctor {
   MomentumSetup<ExecutionSpace> setup;
   BoundaryConditions<ExecutionSpace> boundary;
+  bool upwind;        ///< advection of the normal velocity on outflows; else central
   int side_faces[6];  ///< 0 for periodic sides and neighbours
 
   KOKKOS_FUNCTION void operator()(int face) const {
@@ -24,41 +33,122 @@ struct BoundaryFacesFunctor {
     while (face >= side_faces[side]) face -= side_faces[side++];
     using Conditions = BoundaryConditions<ExecutionSpace>;
     const int axis = side / 2, a = Conditions::first_axis(axis), b = Conditions::second_axis(axis);
-    const bool high = side % 2 == 1;
-    int index[3];
-    index[axis] = high ? g.n[axis] : 0;
-    index[a] = face % g.n[a];
-    index[b] = face / g.n[a];
-    const std::int64_t place = axis * g.component + g.offset(index[0], index[1], index[2]);
+    int cell[3];
+    cell[axis] = side % 2 == 1 ? g.n[axis] - 1 : 0;
+    cell[a] = face % g.n[a];
+    cell[b] = face / g.n[a];
     if (boundary.kind[side] == BoundaryKind::outflow) {
-      const std::int64_t inward = high ? -g.stride[axis] : g.stride[axis];
-      const double value = setup.stage(place), outward = high ? value : -value;
-      const double speed = outward > 0.0 ? outward : 0.0;
-      const double rate =
-          setup.acceleration[axis] - speed * g.inverse_h[axis] * (value - setup.stage(place + inward));
-      const StageFactors f = stage_factors(setup, control);
-      double next = value + f.rate * rate;
-      if (setup.weights.adams_bashforth) {
-        const std::int64_t kept = high ? place : place - g.stride[axis];
-        next += f.old_rate * setup.old_rate(kept);
-        setup.old_rate(kept) = rate;
-      } else {
-        next += f.state * (setup.state(place) - value);
-      }
-      if (setup.force.data() != nullptr) next += f.force * setup.force(place);
-      setup.out(place) = next;
+      const StageFactors factors = stage_factors(setup, control);
+      advance_outflow(side, cell, factors);
+      carry_in(side, cell, factors);
     } else {
-      setup.out(place) =
-          boundary.kind[side] == BoundaryKind::slip ? 0.0 : boundary.value(g, side, axis, index);
+      setup.out(place_of(side, cell)) =
+          boundary.kind[side] == BoundaryKind::slip ? 0.0 : boundary.value(g, side, axis, cell);
     }
+  }
+
+ private:
+  /// Place of the face of a cell on a side.
+  [[nodiscard]] KOKKOS_FUNCTION std::int64_t place_of(int side, const int cell[3]) const {
+    const MacGrid& g = setup.grid;
+    const int axis = side / 2;
+    return axis * g.component + g.offset(cell[0], cell[1], cell[2]) + (side % 2) * g.stride[axis];
+  }
+
+  KOKKOS_FUNCTION void advance_outflow(int side, const int cell[3], const StageFactors& f) const {
+    const MacGrid& g = setup.grid;
+    const int axis = side / 2;
+    const bool high = side % 2 == 1;
+    const std::int64_t place = place_of(side, cell), inward = high ? -g.stride[axis] : g.stride[axis];
+    const double value = setup.stage(place), outward = high ? value : -value;
+    const double inner = setup.stage(place + inward), mean = 0.5 * (value + inner);
+    // Where fluid enters, upwind advection has nothing to carry from inside, and central fluxes have a mean.
+    const double speed = outward > 0.0 ? outward : upwind ? 0.0 : high ? mean : -mean;
+    double rate = setup.acceleration[axis] - speed * g.inverse_h[axis] * (value - inner);
+    if (outward < 0.0) {
+      const double push = 2.0 * g.inverse_h[axis] * entering_pressure(side, outward);
+      rate += high ? -push : push;
+    }
+    for (int end = 0; end < 6; ++end)
+      if (end / 2 != axis && g.n[end / 2] > 1) rate += advection_from(end, side, cell, value);
+    double next = value + f.rate * rate;
+    if (setup.weights.adams_bashforth) {
+      const std::int64_t kept = high ? place : place - g.stride[axis];
+      next += f.old_rate * setup.old_rate(kept);
+      setup.old_rate(kept) = rate;
+    } else {
+      next += f.state * (setup.state(place) - value);
+    }
+    if (setup.force.data() != nullptr) next += f.force * setup.force(place);
+    setup.out(place) = next;
+  }
+
+  /// Kinematic pressure on the face of an outflow where fluid enters, (V^2 - u^2) / 2, m^2/s^2, for the
+  /// outward velocity u; V is that of the fluid outside, or zero if that leaves. So the total pressure is
+  /// that of the fluid outside.
+  [[nodiscard]] KOKKOS_FUNCTION double entering_pressure(int side, double outward) const {
+    const double velocity = boundary.velocity[side][side / 2];
+    const double outside = Kokkos::fmin(0.0, side % 2 == 1 ? velocity : -velocity);
+    return 0.5 * (outside * outside - outward * outward);
+  }
+
+  /// Rate of change of the normal velocity on a side by advection along the side, m/s^2, through the end
+  /// `end` (numbered as sides) of the cell.
+  [[nodiscard]] KOKKOS_FUNCTION double advection_from(int end, int side, const int cell[3],
+                                                      double value) const {
+    const MacGrid& g = setup.grid;
+    const std::int64_t outward = (end % 2 == 1 ? 1 : -1) * g.stride[end / 2];
+    const double speed = setup.stage(place_of(end, cell)), inward = end % 2 == 1 ? -speed : speed;
+    if (is_beside_outflow(end, cell))
+      return inward > 0.0 ? inward * g.inverse_h[end / 2] * (boundary.velocity[end][side / 2] - value) : 0.0;
+    const double weight = !upwind ? 0.5 * inward : inward > 0.0 ? inward : 0.0;
+    return weight * g.inverse_h[end / 2] * (setup.stage(place_of(side, cell) + outward) - value);
+  }
+
+  /// True for the outermost cells beside an outflow.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_beside_outflow(int side, const int cell[3]) const {
+    const int outermost = side % 2 == 1 ? setup.grid.n[side / 2] - 1 : 0;
+    return side_faces[side] > 0 && boundary.kind[side] == BoundaryKind::outflow &&
+           cell[side / 2] == outermost;
+  }
+
+  /// Replaces the tangential momentum that enters the control volumes at the low faces of a cell. That at an
+  /// edge between outflows is treated once, for all of them.
+  KOKKOS_FUNCTION void carry_in(int side, const int cell[3], const StageFactors& f) const {
+    const MacGrid& g = setup.grid;
+    for (int c = 0; c < 3; ++c) {
+      if (c == side / 2 || (cell[c] == 0 && side_faces[2 * c] > 0)) continue;
+      double rate = 0.0;
+      bool is_first = true;
+      for (int other = 0; other < 6; ++other) {
+        if (other / 2 == c || !is_beside_outflow(other, cell)) continue;
+        is_first = is_first && other >= side;
+        rate += carried_rate(other, c, cell);
+      }
+      if (!is_first || rate == 0.0) continue;
+      const std::int64_t place = c * g.component + g.offset(cell[0], cell[1], cell[2]);
+      setup.out(place) += f.rate * rate;
+      if (setup.weights.adams_bashforth) setup.old_rate(place) += rate;
+    }
+  }
+
+  /// Change of the rate of component c, m/s^2, where fluid enters its control volume through a side: with the
+  /// velocity outside in place of that inside.
+  [[nodiscard]] KOKKOS_FUNCTION double carried_rate(int side, int c, const int cell[3]) const {
+    const MacGrid& g = setup.grid;
+    const std::int64_t face = place_of(side, cell), before = face - (g.n[c] > 1 ? g.stride[c] : 0);
+    const double mean = 0.5 * (setup.stage(before) + setup.stage(face));
+    const double outward = side % 2 == 1 ? mean : -mean;
+    const double inside = setup.stage(c * g.component + g.offset(cell[0], cell[1], cell[2]));
+    return outward < 0.0 ? -outward * g.inverse_h[side / 2] * (boundary.velocity[side][c] - inside) : 0.0;
   }
 };
 
-/// Enqueues the boundary faces of the predicted velocity, after the momentum stage. Asynchronous.
+/// Enqueues the predicted velocity on the sides, after the momentum stage. Asynchronous.
 template <class ExecutionSpace>
 void launch_boundary_faces(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
-                           const BoundaryConditions<ExecutionSpace>& boundary) {
-  BoundaryFacesFunctor<ExecutionSpace> functor{setup, boundary, {}};
+                           const BoundaryConditions<ExecutionSpace>& boundary, Advection advection) {
+  BoundaryFacesFunctor<ExecutionSpace> functor{setup, boundary, advection != Advection::central, {}};
   const MacGrid& g = setup.grid;
   int total = 0;
   for (int side = 0; side < 6; ++side) {

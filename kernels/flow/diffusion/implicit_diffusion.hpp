@@ -84,12 +84,7 @@ struct DiffusionSourceFunctor {
       if (g.n[axis] == 1) continue;
       const std::int64_t stride = g.stride[axis];
       const double w = g.inverse_h[axis] * g.inverse_h[axis];
-      double below = u[-stride], above = u[stride];
-      // Outflows have no shear stress, as in the implicit term, also where ghost cells hold the velocity of
-      // fluid that flows back.
-      if (axis != component && is_beside_outflow(2 * axis, index)) below = u[0];
-      if (axis != component && is_beside_outflow(2 * axis + 1, index)) above = u[0];
-      laplacian += w * ((above - u[0]) - (u[0] - below));
+      laplacian += w * ((u[stride] - u[0]) - (u[0] - u[-stride]));
       if (g.periodic[axis]) continue;
       if (axis == component) {
         if (index[axis] == 1 && setup.is_side(2 * axis))
@@ -108,10 +103,6 @@ struct DiffusionSourceFunctor {
   }
 
  private:
-  [[nodiscard]] KOKKOS_FUNCTION bool is_beside_outflow(int side, const int index[3]) const {
-    const int axis = side / 2, outermost = side % 2 == 0 ? 0 : setup.grid.n[axis] - 1;
-    return setup.boundary.kind[side] == BoundaryKind::outflow && index[axis] == outermost;
-  }
   [[nodiscard]] KOKKOS_FUNCTION double pressure_at(int i, int j, int k) const {
     const MacGrid& g = setup.grid;
     return setup.pressure(static_cast<std::size_t>(i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k)));

@@ -11,13 +11,6 @@
 
 namespace drogue::flow {
 
-/// Kinematic pressure on the face of an outflow, m^2/s^2, for the outward velocity: zero, and minus the
-/// dynamic pressure where fluid flows back, which so enters with a total pressure of zero and cannot gain
-/// energy. Does not throw.
-KOKKOS_INLINE_FUNCTION double outflow_pressure(double outward) {
-  return outward < 0.0 ? -0.5 * outward * outward : 0.0;
-}
-
 /// Data of a projection.
 template <class ExecutionSpace>
 struct ProjectionSetup {
@@ -30,19 +23,14 @@ struct ProjectionSetup {
   List<ExecutionSpace> total_pressure;  ///< pressure of the step, m^2/s^2; empty before the end of a step
   bool is_increment;                    ///< whether `pressure` is added to `total_pressure` or replaces it
   ControlView<ExecutionSpace> control;
-  double nu;              ///< kinematic viscosity of implicit diffusion, m^2/s
-  double step_fraction;   ///< of dt that the projection covers
-  bool resists_backflow;  ///< false: the pressure on outflows is zero
-  bool ends_step;         ///< the result is the state after the step, whose rate determines the next dt
-  int rows;               ///< of the tile of a team on a device
+  double nu;             ///< kinematic viscosity of implicit diffusion, m^2/s
+  double step_fraction;  ///< of dt that the projection covers
+  bool ends_step;        ///< the result is the state after the step, whose rate determines the next dt
+  int rows;              ///< of the tile of a team on a device
   /// Pressure of the layer of cells below the low side along each axis, m^2/s^2; null unless another rank
   /// holds it.
   const double* pressure_below[3];
 
-  /// Kinematic pressure on the face of an outflow, m^2/s^2.
-  [[nodiscard]] KOKKOS_FUNCTION double outside_pressure(double outward) const {
-    return resists_backflow ? outflow_pressure(outward) : 0.0;
-  }
   /// True if the face on a side is an unknown of the projection.
   [[nodiscard]] KOKKOS_FUNCTION bool is_outflow(int side) const {
     return boundary.kind[side] == BoundaryKind::outflow;
@@ -65,7 +53,7 @@ struct DivergenceFunctor {
     if (control.trial.stop != stepping::Stop::running) return;
     const double* u = setup.predicted.data() + g.offset(i, j, k);
     const int index[3] = {i, j, k};
-    double divergence = 0.0, outside = 0.0;
+    double divergence = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       const double* low = u + axis * g.component;
       if (g.n[axis] == 1) {
@@ -76,18 +64,11 @@ struct DivergenceFunctor {
                                     ? (1 - g.n[axis]) * g.stride[axis]
                                     : g.stride[axis];
       divergence += g.inverse_h[axis] * (low[next] - low[0]);
-      if (setup.resists_backflow) {
-        const double twice_inverse = 2.0 * g.inverse_h[axis] * g.inverse_h[axis];
-        if (index[axis] == 0 && setup.is_outflow(2 * axis))
-          outside += twice_inverse * outflow_pressure(-low[0]);
-        if (index[axis] + 1 == g.n[axis] && setup.is_outflow(2 * axis + 1))
-          outside += twice_inverse * outflow_pressure(low[next]);
-      }
     }
     const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
     if (!(Kokkos::fabs(divergence) < 1e100))
       Kokkos::atomic_min(&control.first_failure, static_cast<std::uint64_t>(g.number(i, j, k)));
-    setup.divergence(cell) = divergence / (setup.step_fraction * control.trial.dt) - outside;
+    setup.divergence(cell) = divergence / (setup.step_fraction * control.trial.dt);
   }
 };
 
@@ -160,13 +141,12 @@ struct CorrectionFunctor {
         else if (setup.pressure_below[axis] != nullptr)
           below = setup.pressure_below[axis][axis == 1 ? i + g.n[0] * k : i + g.n[0] * j];
         else if (setup.is_outflow(2 * axis))
-          below = 2.0 * setup.outside_pressure(-value) - p;
+          below = -p;
         value -= dt * g.inverse_h[axis] * (p - below);
         if (index[axis] + 1 == g.n[axis] && !g.periodic[axis]) {
           const std::int64_t high = place + g.stride[axis];
           double last = setup.predicted(high);
-          if (setup.is_outflow(2 * axis + 1))
-            last += 2.0 * dt * g.inverse_h[axis] * (p - setup.outside_pressure(last));
+          if (setup.is_outflow(2 * axis + 1)) last += 2.0 * dt * g.inverse_h[axis] * p;
           setup.velocity(high) = last;
           if (!setup.is_neighbour(2 * axis + 1)) beyond = Kokkos::fabs(last);
         }

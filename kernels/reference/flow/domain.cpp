@@ -91,7 +91,9 @@ double FlowDomain::normal_velocity(std::size_t side, const GridIndex& face, doub
 
 double FlowDomain::velocity(const StaggeredField& u, std::size_t component, const GridIndex& face,
                             double time) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  // The component's own axis comes last: beyond an edge between sides, the side that the component is
+  // tangential to decides.
+  for (const std::size_t axis : {(component + 1) % 3, (component + 2) % 3, component}) {
     const int n = cells(axis), i = face[axis];
     GridIndex inside = face;
     if (!is_bounded(axis)) {
@@ -108,16 +110,6 @@ double FlowDomain::velocity(const StaggeredField& u, std::size_t component, cons
     if (kind(side) == BoundaryKind::outflow) {
       if (on_side) continue;
       inside[axis] = high ? last : 0;
-      // Fluid that enters through an outflow has no tangential velocity.
-      if (!normal) {
-        GridIndex normal_face = inside;
-        for (std::size_t a = 0; a < 3; ++a)
-          normal_face[a] = is_bounded(a) ? std::clamp(normal_face[a], 0, cells(a) - 1)
-                                         : (normal_face[a] % cells(a) + cells(a)) % cells(a);
-        normal_face[axis] = high ? n : 0;
-        const double inward = u[axis][at(axis, normal_face)] * (high ? -1.0 : 1.0);
-        if (inward > 0.0) return 0.0;
-      }
       return velocity(u, component, inside, time);
     }
     if (on_side) return normal_velocity(side, face, time);
@@ -145,8 +137,7 @@ std::vector<double> divergence(const FlowDomain& domain, const StaggeredField& u
   return result;
 }
 
-StaggeredField pressure_gradient(const FlowDomain& domain, const std::vector<double>& pressure,
-                                 const StaggeredField& outside) {
+StaggeredField pressure_gradient(const FlowDomain& domain, const std::vector<double>& pressure) {
   StaggeredField gradient = domain.zero_field();
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
     if (domain.cells(c) == 1) return;
@@ -159,8 +150,8 @@ StaggeredField pressure_gradient(const FlowDomain& domain, const std::vector<dou
       below[c] = (below[c] + domain.cells(c)) % domain.cells(c);
       gradient[c][place] = (pressure[domain.cell_at(face)] - pressure[domain.cell_at(below)]) / h;
     } else if (domain.kind(static_cast<std::size_t>(side)) == BoundaryKind::outflow) {
-      gradient[c][place] = side % 2 == 0 ? (pressure[domain.cell_at(face)] - outside[c][place]) / (0.5 * h)
-                                         : (outside[c][place] - pressure[domain.cell_at(below)]) / (0.5 * h);
+      gradient[c][place] = side % 2 == 0 ? pressure[domain.cell_at(face)] / (0.5 * h)
+                                         : -pressure[domain.cell_at(below)] / (0.5 * h);
     }
   });
   return gradient;

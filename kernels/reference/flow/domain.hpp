@@ -67,9 +67,8 @@ class FlowDomain {
 /// Divergence at the cells, 1/s.
 [[nodiscard]] std::vector<double> divergence(const FlowDomain& domain, const StaggeredField& u);
 
-/// Gradient of a kinematic pressure at the faces, m/s^2: zero on sides with a prescribed normal velocity.
-/// `outside`: values on the faces of outflows, m^2/s^2.
-[[nodiscard]] StaggeredField pressure_gradient(const FlowDomain& domain, const std::vector<double>& pressure,
-                                               const StaggeredField& outside);
+/// Gradient of a kinematic pressure that is zero on outflows, at the faces, m/s^2: zero on sides with a
+/// prescribed normal velocity.
+[[nodiscard]] StaggeredField pressure_gradient(const FlowDomain& domain, const std::vector<double>& pressure);
 
 }  // namespace drogue::reference

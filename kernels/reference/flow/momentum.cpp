@@ -19,7 +19,7 @@ double upwind_value(const std::array<double, 5>& q, Advection scheme) {
       13.0 / 12.0 * square(q[0] - 2.0 * q[1] + q[2]) + 0.25 * square(q[0] - 4.0 * q[1] + 3.0 * q[2]),
       13.0 / 12.0 * square(q[1] - 2.0 * q[2] + q[3]) + 0.25 * square(q[1] - q[3]),
       13.0 / 12.0 * square(q[2] - 2.0 * q[3] + q[4]) + 0.25 * square(3.0 * q[2] - 4.0 * q[3] + q[4])};
-  const double linear[3] = {0.1, 0.6, 0.3}, epsilon = 1e-40, tau = std::abs(beta[0] - beta[2]);
+  const double linear[3] = {0.1, 0.6, 0.3}, epsilon = 1e-72, tau = std::abs(beta[0] - beta[2]);
   double sum = 0.0, value = 0.0;
   for (std::size_t s = 0; s < 3; ++s) {
     const double weight = scheme == Advection::weno_js ? linear[s] / square(epsilon + beta[s])
@@ -29,6 +29,53 @@ double upwind_value(const std::array<double, 5>& q, Advection scheme) {
   }
   return value / sum;
 }
+
+namespace {
+
+/// Outflow on which a face normal to axis d lies; -1: none.
+int outflow_at(const FlowDomain& domain, std::size_t d, const GridIndex& face) {
+  const int side = domain.side_of(d, face);
+  return side >= 0 && domain.kind(static_cast<std::size_t>(side)) == BoundaryKind::outflow ? side : -1;
+}
+
+/// Rate of change of the normal velocity on an outflow without forces, m/s^2: advection, and the pressure on
+/// the face over half a cell.
+double outflow_rate(const FlowDomain& domain, const StaggeredField& u, std::size_t side,
+                    const GridIndex& face, double time) {
+  const bool central = domain.parameters().advection == Advection::central;
+  const std::size_t c = side / 2;
+  const int inward = side % 2 == 0 ? 1 : -1;
+  GridIndex inner = face, cell = face;
+  inner[c] += inward;
+  if (side % 2 == 1) --cell[c];
+  const double own = u[c][domain.at(c, face)], entering = inward * own;
+  // Normal advection. Fluid that enters has no inner upwind value; central fluxes carry the mean.
+  const double other = u[c][domain.at(c, inner)];
+  const double carrier = entering < 0.0 ? own : central ? 0.5 * (own + other) : 0.0;
+  double rate = -carrier * (other - own) * inward / domain.spacing(c);
+  if (entering > 0.0) {
+    const double still = std::max(0.0, inward * domain.parameters().boundary[side].velocity[c]);
+    rate += inward * 0.5 * (still * still - own * own) / (0.5 * domain.spacing(c));
+  }
+  // Advection along the side by the velocities of the cell, without its divergence along the side.
+  for (std::size_t d = 0; d < 3; ++d) {
+    if (d == c || domain.cells(d) == 1) continue;
+    for (const int high : {0, 1}) {
+      GridIndex carrying = cell, beyond = face;
+      carrying[d] += high;
+      beyond[d] += 2 * high - 1;
+      const double into = domain.velocity(u, d, carrying, time) * (1 - 2 * high);
+      const int end = outflow_at(domain, d, carrying);
+      const double neighbour = end >= 0
+                                   ? domain.parameters().boundary[static_cast<std::size_t>(end)].velocity[c]
+                                   : domain.velocity(u, c, beyond, time);
+      rate += (central && end < 0 ? 0.5 * into : std::max(0.0, into)) * (neighbour - own) / domain.spacing(d);
+    }
+  }
+  return rate;
+}
+
+}  // namespace
 
 double momentum_flux(const FlowDomain& domain, const StaggeredField& u, std::size_t c, std::size_t d,
                      const GridIndex& face, double time) {
@@ -40,6 +87,8 @@ double momentum_flux(const FlowDomain& domain, const StaggeredField& u, std::siz
   GridIndex before = face;
   before[c] -= 1;
   const double speed = 0.5 * (domain.velocity(u, d, before, time) + domain.velocity(u, d, face, time));
+  if (const int side = outflow_at(domain, d, face); side >= 0 && c != d && (side % 2 == 0) == (speed > 0.0))
+    return speed * domain.parameters().boundary[static_cast<std::size_t>(side)].velocity[c];
   const double viscous = domain.parameters().viscosity / domain.parameters().density *
                          (carried(0) - carried(-1)) / domain.spacing(d);
   if (domain.parameters().advection == Advection::central)
@@ -66,18 +115,13 @@ StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, 
                   domain.spacing(d);
       }
     } else if (p.boundary[static_cast<std::size_t>(side)].kind == BoundaryKind::outflow) {
-      GridIndex inner = face;
-      inner[c] += side % 2 == 0 ? 1 : -1;
-      const double own = u[c][domain.at(c, face)];
-      const double outward = std::max(0.0, side % 2 == 0 ? -own : own);
-      result = acceleration - outward * (own - u[c][domain.at(c, inner)]) / domain.spacing(c);
+      result = acceleration + outflow_rate(domain, u, static_cast<std::size_t>(side), face, time);
     }
   });
   return rate;
 }
 
-StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, double time,
-                            bool outflows_have_shear) {
+StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, double time) {
   const double nu = domain.parameters().viscosity / domain.parameters().density;
   StaggeredField rate = domain.zero_field();
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
@@ -87,11 +131,6 @@ StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, d
       GridIndex low = face, high = face;
       --low[axis];
       ++high[axis];
-      if (!outflows_have_shear && axis != c) {
-        if (face[axis] == 0 && domain.kind(2 * axis) == BoundaryKind::outflow) low = face;
-        if (high[axis] == domain.cells(axis) && domain.kind(2 * axis + 1) == BoundaryKind::outflow)
-          high = face;
-      }
       rate[c][domain.at(c, face)] += nu *
                                      (domain.velocity(u, c, low, time) - 2.0 * u[c][domain.at(c, face)] +
                                       domain.velocity(u, c, high, time)) /

@@ -52,13 +52,12 @@ bool is_beside_outflow(const FlowDomain& domain, const GridIndex& cell) {
 /// Solves div grad p = f with zero pressure on outflows.
 std::vector<double> solve_pressure(const FlowDomain& domain, std::vector<double> f) {
   const bool singular = !has_outflow(domain);
-  const StaggeredField zero = domain.zero_field();
   if (singular) subtract_mean(f);
   std::vector<double> p(f.size(), 0.0), residual = f, direction = f;
   double norm = dot(residual, residual);
   const double target = 1e-31 * norm;
   for (std::size_t iteration = 0; iteration < 20 * f.size() && norm > target; ++iteration) {
-    const std::vector<double> image = divergence(domain, pressure_gradient(domain, direction, zero));
+    const std::vector<double> image = divergence(domain, pressure_gradient(domain, direction));
     const double alpha = norm / dot(direction, image);
     for (std::size_t i = 0; i < p.size(); ++i) {
       p[i] += alpha * direction[i];
@@ -137,18 +136,6 @@ void solve_change(const FlowDomain& domain, StaggeredField& change, std::size_t 
   }
 }
 
-/// Pressure on the faces of outflows, m^2/s^2: minus half the squared normal velocity where fluid enters.
-StaggeredField backflow_pressure(const FlowDomain& domain, const StaggeredField& u) {
-  StaggeredField outside = domain.zero_field();
-  domain.for_each_face([&](std::size_t c, const GridIndex& face) {
-    const int side = domain.side_of(c, face);
-    if (side < 0 || domain.kind(static_cast<std::size_t>(side)) != BoundaryKind::outflow) return;
-    const double own = u[c][domain.at(c, face)], inward = side % 2 == 0 ? own : -own;
-    if (inward > 0.0) outside[c][domain.at(c, face)] = -0.5 * inward * inward;
-  });
-  return outside;
-}
-
 }  // namespace
 
 std::vector<double> present_pressure(const FlowDomain& domain, const StaggeredField& u, double time) {
@@ -156,13 +143,8 @@ std::vector<double> present_pressure(const FlowDomain& domain, const StaggeredFi
   const StaggeredField before = with_side_velocity(domain, domain.zero_field(), time - dt);
   const StaggeredField after = with_side_velocity(domain, domain.zero_field(), time + dt);
   const StaggeredField rate = momentum_rate(domain, u, time);
-  std::vector<double> f =
-      divergence(domain, combine(domain, {{1.0, &rate}, {0.5 / dt, &after}, {-0.5 / dt, &before}}));
-  const std::vector<double> zero(f.size(), 0.0);
-  const std::vector<double> fixed =
-      divergence(domain, pressure_gradient(domain, zero, backflow_pressure(domain, u)));
-  for (std::size_t i = 0; i < f.size(); ++i) f[i] -= fixed[i];
-  return solve_pressure(domain, f);
+  return solve_pressure(
+      domain, divergence(domain, combine(domain, {{1.0, &rate}, {0.5 / dt, &after}, {-0.5 / dt, &before}})));
 }
 
 StaggeredField with_side_velocity(const FlowDomain& domain, StaggeredField u, double time) {
@@ -174,14 +156,11 @@ StaggeredField with_side_velocity(const FlowDomain& domain, StaggeredField u, do
   return u;
 }
 
-std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt, bool resists_backflow) {
-  const StaggeredField outside = resists_backflow ? backflow_pressure(domain, u) : domain.zero_field();
+std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt) {
   std::vector<double> f = divergence(domain, u);
-  const std::vector<double> zero(f.size(), 0.0);
-  const std::vector<double> fixed = divergence(domain, pressure_gradient(domain, zero, outside));
-  for (std::size_t i = 0; i < f.size(); ++i) f[i] = f[i] / dt - fixed[i];
+  for (double& value : f) value /= dt;
   const std::vector<double> p = solve_pressure(domain, f);
-  const StaggeredField gradient = pressure_gradient(domain, p, outside);
+  const StaggeredField gradient = pressure_gradient(domain, p);
   u = combine(domain, {{1.0, &u}, {-dt, &gradient}});
   return p;
 }
@@ -204,14 +183,13 @@ FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, 
   const double nu = domain.parameters().viscosity / domain.parameters().density;
   const StaggeredField zero = domain.zero_field();
   const StaggeredField& u = state.velocity;
-  const StaggeredField viscous = viscous_rate(domain, u, time, false);
+  const StaggeredField viscous = viscous_rate(domain, u, time);
   FlowState next;
   next.last_dt = dt;
   const StaggeredField rate = momentum_rate(domain, u, time);
-  const StaggeredField viscous_of_rate = viscous_rate(domain, u, time);
-  next.old_rate = combine(domain, {{1.0, &rate}, {-1.0, &viscous_of_rate}});
+  next.old_rate = combine(domain, {{1.0, &rate}, {-1.0, &viscous}});
   const double r = state.last_dt > 0.0 ? dt / state.last_dt : 0.0;
-  const StaggeredField gradient = pressure_gradient(domain, state.pressure, zero);
+  const StaggeredField gradient = pressure_gradient(domain, state.pressure);
   const StaggeredField source = combine(domain, {{dt * (1.0 + 0.5 * r), &next.old_rate},
                                                  {-0.5 * dt * r, r > 0.0 ? &state.old_rate : &zero},
                                                  {dt, &viscous},
@@ -226,7 +204,7 @@ FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, 
     });
   next.velocity = combine(domain, {{1.0, &u}, {1.0, &change}});
   next.pressure = project(domain, next.velocity, dt);
-  const std::vector<double> laplacian = divergence(domain, pressure_gradient(domain, next.pressure, zero));
+  const std::vector<double> laplacian = divergence(domain, pressure_gradient(domain, next.pressure));
   domain.for_each_cell([&](const GridIndex& cell) {
     const std::size_t i = domain.cell_at(cell);
     next.pressure[i] += state.pressure[i];

@@ -16,11 +16,8 @@ struct FlowState {
 [[nodiscard]] StaggeredField with_side_velocity(const FlowDomain& domain, StaggeredField u, double time);
 
 /// Subtracts dt times the pressure gradient that makes `u` free of divergence, by conjugate gradients to
-/// round-off. Returns the kinematic pressure, m^2/s^2, of mean zero if it is determined up to a constant. On
-/// outflows the pressure is zero, and, if it `resists_backflow`, minus half the squared normal velocity where
-/// fluid enters.
-std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt,
-                            bool resists_backflow = true);
+/// round-off. Returns the kinematic pressure, m^2/s^2, zero on outflows, or of mean zero.
+std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt);
 
 /// Kinematic pressure of a velocity free of divergence at a time (s), m^2/s^2, from the divergence of its
 /// rates of change. Accelerations of sides are central differences over 2e-6 s.
@@ -34,7 +31,7 @@ std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double 
 /// Step with Adams-Bashforth advection and Crank-Nicolson diffusion from `time`, with a variable dt (s): the
 /// pressure of the previous step acts in the implicit equation, the projection adds an increment phi, and the
 /// pressure is p + phi - nu dt/2 lap phi (Brown, Cortez and Minion 2001), and p + phi in cells beside an
-/// outflow, whose velocity is explicit. Outflows have no shear stress. The first step is Euler's.
+/// outflow, whose velocity is explicit. The first step is Euler's.
 [[nodiscard]] FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, double time,
                                             double dt);
 

@@ -151,6 +151,10 @@ void complete_velocities(const Table& root, FlowScene& scene) {
     const VectorExpression& wall = scene.wall_velocity[side];
     if (!wall[0].empty() && kind != BoundaryKind::wall)
       contradict(root, key_of_wall(side), key_of_wall(side) + ": this side is no wall");
+    if (kind == BoundaryKind::outflow)  // outside of it: the stream, at rest where that is not uniform
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!is_closed(p, axis))
+          p.boundary[side].velocity[axis] = SpaceTimeFunction(scene.velocity[axis]).constant().value_or(0.0);
     const bool is_inflow = kind == BoundaryKind::inflow;
     if (!is_inflow && wall[0].empty()) continue;
     const std::string key = is_inflow ? "fluid.velocity" : key_of_wall(side);

@@ -45,7 +45,8 @@ void declare_fluid(Table& table, FlowScene& scene) {
       .at_least(0.0);
   table
       .value("velocity", vector_expression_codec(scene.velocity, place_and_time),
-             "Velocity at inflow sides, and at time 0 everywhere unless [initial] is given")
+             "Velocity at inflow sides and, if constant, of the fluid outside of outflow sides; at time 0 "
+             "everywhere unless [initial] is given")
       .unit("m/s");
 }
 

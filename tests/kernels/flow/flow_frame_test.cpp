@@ -49,5 +49,27 @@ TEST(FlowFrame, RatesOnOutflowsChangeByUpwindDifferences) {
   EXPECT_GT(incoming, 10);
 }
 
+TEST(FlowFrame, FluidAtRestBetweenOutflowsStaysAtRest) {
+  for (const TimeIntegration& integration : time_integrations) {
+    Parameters p = periodic_box({9, 8, 7});
+    for (const std::size_t side : {0U, 1U, 4U, 5U}) p.boundary[side].kind = BoundaryKind::outflow;
+    p.viscosity = 0.01;
+    integration.set(p);
+    TypedFlow<DROGUE_TEST_SPACE> flow(p, 22);
+    // A frame that moves faster from step to step.
+    const StaggeredField rest = flow.domain.zero_field();
+    for (std::size_t c = 0; c < 3; ++c) flow.solver.upload(static_cast<StateField>(c), rest[c]);
+    flow.solver.start();
+    for (int step = 1; step <= 20; ++step) {
+      const std::array<double, 3> frame{0.05 * step, 0.0, -0.1 * step};
+      flow.solver.change_frame(frame);
+      ASSERT_EQ(flow.solver.advance(endless, step, {}), Stop::pause);
+      const StaggeredField u = flow.velocity();
+      for (std::size_t c = 0; c < 3; ++c)
+        for (const double value : u[c]) ASSERT_NEAR(value, -frame[c], 1e-13) << step;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace drogue::flow

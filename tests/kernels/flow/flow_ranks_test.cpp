@@ -139,6 +139,10 @@ std::vector<Case> cases() {
   Parameters& backflow = add("outflows at x beside periodic axes, Vreman", {7, 8, 9});
   set_sides(backflow, 0, outflow, outflow);
   backflow.turbulence = Turbulence::vreman;
+  Parameters& open = add("outflows all around, Smagorinsky", {7, 9, 8});
+  for (std::size_t axis = 0; axis < 3; ++axis) set_sides(open, axis, outflow, outflow);
+  for (Boundary& side : open.boundary) side.velocity = {0.3, -0.2, 0.1};
+  open.turbulence = Turbulence::smagorinsky;
   Parameters& flat = add("x and y", {10, 13, 1});
   set_sides(flat, 0, wall, wall);
   set_sides(flat, 1, inflow, outflow);
