@@ -40,7 +40,10 @@ struct AmericanPut {
 };
 
 /// Price, Greeks and error from the values of the puts of a contract by Richardson extrapolation,
-/// (64 v_8 - 56 v_4 + 14 v_2 - v_1) / 21 (Fang and Oosterlee 2009), bounded below by the payoff.
-Price american_price(const Contract& contract, const AmericanPut& put, const BermudanValue* values);
+/// (64 v_8 - 56 v_4 + 14 v_2 - v_1) / 21 (Fang and Oosterlee 2009). The option is exercised, and has the
+/// Greeks of its payoff, if its value exceeds the payoff by no more than the error of the extrapolation and
+/// `tolerance`, in strikes of the put.
+Price american_price(const Contract& contract, const AmericanPut& put, const BermudanValue* values,
+                     double tolerance);
 
 }  // namespace drogue::options

@@ -11,7 +11,7 @@ namespace portable = device::portable;
 /// Work arrays of one put with N = 2^log_terms cosines.
 struct CosWorkspace {
   double* value;              ///< V_k, cosine coefficients of the value, shape (N)
-  ComplexArray growth;        ///< e^(dt (psi - rate)), shape (N)
+  ComplexArray growth;        ///< e^(dt (psi - rate)) of the present interval, shape (N)
   ComplexArray continuation;  ///< w_j of the continuation value, or its transform, shape (2 N)
   ComplexArray reversed;      ///< w_j in reversed order, or its transform, shape (2 N)
   ComplexArray toeplitz;      ///< generator of the Toeplitz matrix, or its transform, shape (2 N)
@@ -87,24 +87,35 @@ class BackwardInduction {
         _work(memory, put.log_terms) {}
 
   KOKKOS_INLINE_FUNCTION BermudanValue solve() const {
-    const double dt = _put.maturity / _put.dates;
     const auto work = _work;
     const auto put = _put;
-    const auto psi = _psi;
+    // At maturity the exercise region is x <= 0.
     for_team(_team, _terms, [=](int k) {
-      const double size = portable::exp(dt * (psi.re[k] - put.rate));
-      work.growth.re[k] = size * portable::cos(dt * psi.im[k]);
-      work.growth.im[k] = size * portable::sin(dt * psi.im[k]);
-      // At maturity the exercise region is x <= 0.
       work.value[k] = payoff_coefficient(put, k, {0.0, -put.low * (portable::pi / put.width)});
     });
-    for (int date = _put.dates - 1; date > 0; --date) step_back();
+    for (int date = _put.dates - 1; date > 0; --date) step_back(date);
+    load_growth(0);
     return value_at(-(_put.low - _put.x) * (portable::pi / _put.width), true);
   }
 
  private:
-  /// Replaces the cosine coefficients at an exercise date by those at the previous date.
-  KOKKOS_INLINE_FUNCTION void step_back() const {
+  /// Computes the growth factors of the interval from `date` to the next date.
+  KOKKOS_INLINE_FUNCTION void load_growth(int date) const {
+    const auto work = _work;
+    const auto put = _put;
+    const auto psi = _psi;
+    const double dt =
+        exercise_date(put.maturity, date + 1, put.dates) - exercise_date(put.maturity, date, put.dates);
+    for_team(_team, _terms, [=](int k) {
+      const double size = portable::exp(dt * (psi.re[k] - put.rate));
+      work.growth.re[k] = size * portable::cos(dt * psi.im[k]);
+      work.growth.im[k] = size * portable::sin(dt * psi.im[k]);
+    });
+  }
+
+  /// Replaces the cosine coefficients at the date after `date` by those at `date`.
+  KOKKOS_INLINE_FUNCTION void step_back(int date) const {
+    load_growth(date);
     load_continuation();
     const ExerciseRegion region = exercise_region();
     load_matrices(region);

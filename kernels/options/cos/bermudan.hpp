@@ -4,10 +4,12 @@
 #include <span>
 
 #include "kernels/device/backend.hpp"
+#include "kernels/options/cos/exercise_dates.hpp"
 
 namespace drogue::options {
 
-/// Put with `dates` equally spaced exercise dates after now, the last at maturity. Unit of money: the strike.
+/// Put with the exercise dates `exercise_date(maturity, k, dates)`, k = 1 .. dates. Unit of money: the
+/// strike.
 struct BermudanPut {
   double x = 0.0;         ///< log(spot / strike)
   double rate = 0.0;      ///< per year

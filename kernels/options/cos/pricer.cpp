@@ -11,6 +11,7 @@
 #include "kernels/device/stopwatch.hpp"
 #include "kernels/options/cos/american.hpp"
 #include "kernels/options/cos/european.hpp"
+#include "kernels/options/greek_bounds.hpp"
 
 namespace drogue::options {
 namespace {
@@ -109,13 +110,14 @@ class CosPricer final : public Pricer {
   void price_american(std::span<const Contract> contracts, std::span<const std::size_t> american,
                       std::span<Price> prices) {
     std::vector<std::size_t> unconverged(american.begin(), american.end());
-    for (int dates = min_dates; !unconverged.empty() && dates <= max_dates; dates *= 2) {
+    const int given = _settings.steps >> (AmericanPut::levels - 1);
+    const int last = given > 0 ? given : max_dates;
+    for (int dates = given > 0 ? given : min_dates; !unconverged.empty() && dates <= last; dates *= 2) {
       std::vector<AmericanPut> puts;
       for (const std::size_t i : unconverged) puts.emplace_back(contracts[i]);
       parallel_for_host(_threads, unconverged.size(), [&](std::size_t k) {
         const Contract& c = contracts[unconverged[k]];
-        const double unit = c.type == Type::put ? c.strike : c.spot;
-        puts[k].prepare(c.maturity, dates, _settings.tolerance * c.strike / unit);
+        puts[k].prepare(c.maturity, dates, tolerance_of_put(c));
       });
       const SortedPuts all = sort_puts(puts);
       std::vector<BermudanValue> sorted(all.puts.size()), values(all.puts.size());
@@ -125,7 +127,7 @@ class CosPricer final : public Pricer {
       const BermudanValue* own_values = values.data();
       for (std::size_t k = 0; k < unconverged.size(); ++k) {
         const std::size_t i = unconverged[k];
-        prices[i] = american_price(contracts[i], puts[k], own_values);
+        prices[i] = american_price(contracts[i], puts[k], own_values, tolerance_of_put(contracts[i]));
         own_values += puts[k].puts.size();
         const bool is_reachable = puts[k].aliasing_error < _settings.tolerance;
         if (is_reachable && !(prices[i].error <= _settings.tolerance * contracts[i].strike))
@@ -133,6 +135,11 @@ class CosPricer final : public Pricer {
       }
       unconverged = std::move(remaining);
     }
+  }
+
+  /// Tolerance in strikes of the put: those of a call are its spots.
+  [[nodiscard]] double tolerance_of_put(const Contract& c) const {
+    return _settings.tolerance * c.strike / (c.type == Type::put ? c.strike : c.spot);
   }
 
   /// Sets the status, and removes the Greeks unless requested.
@@ -143,6 +150,7 @@ class CosPricer final : public Pricer {
     } else if (price.error > _settings.tolerance * contract.strike) {
       price.status = PriceStatus::coarse;
     }
+    bound_greeks(contract, price);
     if (_settings.greeks) return;
     price.delta = price.gamma = price.theta = std::numeric_limits<double>::quiet_NaN();
   }
@@ -155,8 +163,10 @@ class CosPricer final : public Pricer {
 }  // namespace
 
 std::unique_ptr<Pricer> create_cos_pricer(device::Backend backend, const Settings& settings) {
-  if (settings.mesh != 0 || settings.steps != 0)
+  if (settings.mesh != 0)
     throw std::invalid_argument("cos: the tolerance chooses the cosines; there is no mesh");
+  if (settings.steps % (1 << (AmericanPut::levels - 1)) != 0)
+    throw std::invalid_argument("cos: the steps, dates of the finest level, must be a multiple of 8");
   if (!(settings.tolerance > 0.0)) throw std::invalid_argument("cos: the tolerance must be positive");
   return std::make_unique<CosPricer>(backend, settings);
 }

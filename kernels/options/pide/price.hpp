@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/options/greek_bounds.hpp"
 #include "kernels/options/pide/error_estimate.hpp"
 
 namespace drogue::options {
@@ -83,6 +84,8 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
   price.gamma = call ? (limit.second_derivative - limit.first_derivative) / s
                      : unit * (limit.second_derivative - limit.first_derivative) / (s * s);
   price.theta = -unit * limit.time_derivative;
+  if (put.early && asset < 1.0 && limit.value == 1.0 - asset) set_exercised_greeks(contract, price);
+  bound_greeks(contract, price);
   price.exercise_boundary = contract.strike * exponential(call ? -fine.boundary : fine.boundary);
   if (!(fine.boundary == fine.boundary)) price.exercise_boundary = fine.boundary;
   price.mesh = mesh;

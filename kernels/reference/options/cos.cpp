@@ -42,12 +42,11 @@ std::complex<long double> characteristic_exponent(const LevyAsset& a, std::compl
   return i * u * drift - Long(a.variance) / 2 * u * u + jump_exponent(a, u);
 }
 
-std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int dates, double low, double width,
-                                 int terms, int nodes, const std::vector<double>& x) {
-  const Long dt = Long(maturity) / dates;
-  std::vector<LongComplex> growth;
+std::vector<double> bermudan_put(const LevyAsset& asset, const std::vector<double>& dates, double low,
+                                 double width, int terms, int nodes, const std::vector<double>& x) {
+  std::vector<LongComplex> exponent, growth(static_cast<std::size_t>(terms));
   for (int k = 0; k < terms; ++k)
-    growth.push_back(std::exp(dt * (characteristic_exponent(asset, long_pi * k / width) - Long(asset.rate))));
+    exponent.push_back(characteristic_exponent(asset, long_pi * k / width) - Long(asset.rate));
   std::vector<Long> cosine(4 * static_cast<std::size_t>(nodes));
   for (std::size_t k = 0; k < cosine.size(); ++k)
     cosine[k] = std::cos(long_pi * static_cast<Long>(k) / (2 * nodes));
@@ -66,7 +65,9 @@ std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int da
   };
   for (int m = 0; m < nodes; ++m) value[static_cast<std::size_t>(m)] = payoff(m);
   std::vector<Long> coefficient(static_cast<std::size_t>(terms));
-  for (int date = dates; date > 0; --date) {
+  for (std::size_t date = dates.size(); date > 0; --date) {
+    const Long dt = Long(dates[date - 1]) - (date > 1 ? Long(dates[date - 2]) : Long(0));
+    for (std::size_t k = 0; k < growth.size(); ++k) growth[k] = std::exp(dt * exponent[k]);
     for (int k = 0; k < terms; ++k) {
       Long sum = 0;
       for (int m = 0; m < nodes; ++m) sum += value[static_cast<std::size_t>(m)] * cos_at(k, m);

@@ -21,14 +21,14 @@ struct LevyAsset {
 [[nodiscard]] std::complex<long double> characteristic_exponent(const LevyAsset& asset,
                                                                 std::complex<long double> u);
 
-/// Continuation values now of a Bermudan put, in strikes, at the points x = log(spot / strike). The put has
-/// `dates` equally spaced exercise dates, the last at `maturity` (years); one date is the European put.
+/// Continuation values now of a Bermudan put, in strikes, at the points x = log(spot / strike). `dates` are
+/// its exercise dates, years from now, ascending, the last at maturity; one date is the European put.
 ///
 /// Direct form of the COS method (Fang and Oosterlee 2009): at each date max(payoff, continuation value) is
 /// projected on `terms` cosines of [low, low + width] by the midpoint rule on `nodes` points. Slow, without
 /// transforms or closed-form coefficients.
-[[nodiscard]] std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int dates, double low,
-                                               double width, int terms, int nodes,
+[[nodiscard]] std::vector<double> bermudan_put(const LevyAsset& asset, const std::vector<double>& dates,
+                                               double low, double width, int terms, int nodes,
                                                const std::vector<double>& x);
 
 }  // namespace drogue::reference

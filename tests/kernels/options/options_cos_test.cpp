@@ -41,9 +41,11 @@ TEST(OptionsBermudan, MatchesReferenceImplementation) {
       std::vector<BermudanPut> puts = {put.puts[0]};
       std::vector<BermudanValue> values(1);
       solver->solve(puts, put.psi_re, put.psi_im, values);
+      std::vector<double> years;
+      for (int k = 1; k <= dates; ++k) years.push_back(exercise_date(c.maturity, k, dates));
       const std::vector<double> expected = reference::bermudan_put(
-          {c.rate, 0.0, c.variance, set.lambda, set.alpha, set.beta, set.delta}, c.maturity, dates,
-          puts[0].low, puts[0].width, 160, 12000, {puts[0].x, puts[0].x + 1e-3, puts[0].x - 1e-3});
+          {c.rate, 0.0, c.variance, set.lambda, set.alpha, set.beta, set.delta}, years, puts[0].low,
+          puts[0].width, 160, 12000, {puts[0].x, puts[0].x + 1e-3, puts[0].x - 1e-3});
       EXPECT_NEAR(values[0].value, expected[0], 1e-6) << set.name << ' ' << spot;
       EXPECT_NEAR(values[0].first_derivative, (expected[1] - expected[2]) / 2e-3, 1e-5);
       EXPECT_NEAR(values[0].second_derivative, (expected[1] - 2.0 * expected[0] + expected[2]) / 1e-6, 1e-4);
