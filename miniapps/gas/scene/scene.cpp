@@ -38,7 +38,7 @@ std::string print_gas_scene(const GasScene& scene) {
 framework::SceneIdentity scene_identity(GasScene scene) {
   scene.description.clear();
   scene.output = {};
-  scene.output.restart_every = 0;  // its former default, which older restart files know
+  scene.output.restart_every = 0;  // its former default, as in older restart files
   scene.verify = {};
   scene.end_time = 1.0;
   scene.parameters.max_steps = 1;

@@ -93,7 +93,7 @@ framework::SceneIdentity scene_identity(FlowScene scene) {
   const FlowScene neutral;
   scene.description.clear();
   scene.output = neutral.output;
-  scene.output.restart_every = 0;  // its former default, which older restart files know
+  scene.output.restart_every = 0;  // its former default, as in older restart files
   scene.verify = neutral.verify;
   scene.end_time = 1.0;
   const auto keep = [&](auto flow::Parameters::*member) {

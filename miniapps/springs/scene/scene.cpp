@@ -28,7 +28,7 @@ std::string print_springs_scene(const SpringsScene& scene) {
 framework::SceneIdentity scene_identity(SpringsScene scene) {
   scene.description.clear();
   scene.output = {};
-  scene.output.restart_every = 0;  // its former default, which older restart files know
+  scene.output.restart_every = 0;  // its former default, as in older restart files
   scene.verify = {};
   scene.driver = fabric::Driver::automatic;
   scene.time.end_time = 0.0;
