@@ -6,6 +6,7 @@
 
 import json
 import pathlib
+import re
 import sys
 
 from device_name import device_name
@@ -16,7 +17,8 @@ HEAD = """# Ladders as measured
 
 Written by `scripts/lesson_tables.py` from the records in `docs/evidence/ladders/`, which
 `drogue-perf ladder NAME --backend B --out FILE` wrote. Microseconds; "predicted" is computed from counted work and
-measured ceilings before the rung is timed; "faster" compares with the first rung.
+measured ceilings before the rung is timed; "faster" compares with the first rung. Pictures are those of
+`drogue-plot docs/evidence/ladders`.
 """
 
 
@@ -26,8 +28,18 @@ def microseconds(seconds):
     return f"{value:.0f}" if value >= 1000 else f"{value:.4g}"
 
 
+def picture(facts, machine):
+    """Picture of a ladder as `drogue-plot docs/evidence/ladders` names it, half as large as its pixels."""
+    slug = re.sub("[^a-z0-9]+", "-", machine.lower()).strip("-")
+    file = f"ladders/ladder-{facts['ladder']}_{facts['backend']}_{slug}.png"
+    if not (ROOT / "docs/evidence" / file).is_file():
+        sys.exit(f"docs/evidence/{file} is missing: start drogue-plot docs/evidence/ladders")
+    words = f"Ladder {facts['ladder']} on {facts['backend']}: predicted and measured time"
+    return f'<img width="440" alt="{words}"\n     src="../evidence/{file}">\n'
+
+
 def table(file):
-    """Heading and table of a file of records."""
+    """Heading, table and picture of a file of records."""
     records = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
     for record in records:
         if record["check"] != "passed":
@@ -44,7 +56,7 @@ def table(file):
         lines.append(f"| `{record['facts']['rung']}` | {microseconds(record['facts']['predicted_s'])} | "
                      f"{record['facts']['predicted_bound']} | {microseconds(record['median'])} | "
                      f"[{microseconds(low)} .. {microseconds(high)}] | {first / record['median']:.2f} | {record['error']:.2g} |")
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, "", picture(facts, machine)])
 
 
 def page():

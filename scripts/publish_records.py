@@ -191,6 +191,9 @@ def publish(folder, machine, programs):
     shutil.copy(folder / "report.html", evidence / f"report-{machine}.html")
     page = evidence / "README.md"
     page.write_text(renewed(page.read_text(encoding="utf-8"), found), encoding="utf-8")
+    # Tables of lessons show its pictures.
+    if any((evidence / "ladders").glob("*.jsonl")):
+        subprocess.run([plot, evidence / "ladders", "--quiet"], check=True)
     for script in GENERATORS:
         subprocess.run([ROOT / "scripts" / script], check=True)
     # After the documents refer to the newest records.

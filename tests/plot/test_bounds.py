@@ -5,7 +5,7 @@ import unittest
 import packages  # before modules that need the packages  isort: skip
 import synthetic_records as records
 from evidence_pages import Folder
-from plot.evidence.bounds import bounds, bounds_table, ceilings, word
+from plot.evidence.bounds import backend_ceilings, bounds, bounds_table, ceiling_table, ceilings, word
 from plot.evidence.roofline import points, roofline_figure
 
 H200 = "NVIDIA H200, Intel Xeon Processor"
@@ -54,6 +54,24 @@ class Numbers(Folder):
         [step] = self.evidence(records.springs_steps()[:1]).records
         self.assertIsNone(bounds_table([step], self.tops))
 
+    def test_names_no_latency_where_work_is_not_counted(self):
+        [step] = self.evidence([dict(line, samples=[100 * s for s in line["samples"]], median=100 * line["median"],
+                                     interval=[100 * s for s in line["interval"]])
+                                for line in records.counted_steps() if line["case"] == "springs-step/cuda/1000000"]).records  # fmt: skip
+        [row] = bounds_table([step], self.tops).rows
+        self.assertEqual("none of those known (memory, 0.8 %)", row[-1])
+
+    def test_threads_reach_no_less_than_one_core(self):
+        lines = [line for backend, cache in (("serial", 368e9), ("openmp", 356e9))
+                 for line in records.ceilings(backend, records.EPYC, 1e11, 1e10, cache)]  # fmt: skip
+        found = self.evidence(lines).records
+        tops, note = backend_ceilings(found, "openmp")
+        self.assertAlmostEqual(368e9, tops["cache"], delta=1)
+        self.assertIn("L1 cache, read and written: 356 GB/s", note)
+        self.assertNotIn("memory", note)
+        self.assertEqual("", backend_ceilings(found, "serial")[1])
+        self.assertIn(note, str(ceiling_table(tops, "openmp", note).note))
+
     def test_roofline_shows_what_launches_allow(self):
         gas = [record for case, record in self.steps.items() if case.startswith("gas-step")]
         found = points(gas, self.tops)
@@ -93,6 +111,13 @@ class Page(Folder):
             rows = page.tables[H200, title]
             self.assertEqual({size: verdict}, {row[0]: row[-1] for row in rows[1:] if len(row) == 7})
             self.assertEqual("us per batch", rows[0][1])
+
+    def test_small_numbers_of_a_page_have_powers_without_marks_of_html(self):
+        lines = records.counted_batches()
+        lines[0]["facts"]["bytes"] = 1.0
+        page, _ = self.page(records.ceilings() + records.more_ceilings() + lines, app="options")
+        self.assertIn("\u00d710\u2212", page.words)
+        self.assertNotIn("<sup", page.words)
 
 
 class CostOfKokkos(Folder):

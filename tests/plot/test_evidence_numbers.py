@@ -70,7 +70,8 @@ class Numbers(unittest.TestCase):
         cases = [
             (time, 5.0, "goal met"), (time, 3.0, "stretch met"), (time, 5.5, "missed by 10 %"),
             (time, 5.01, "missed by 0.2 %"), (rate, 8.5, "goal met"), (rate, 11.0, "stretch met"),
-            (rate, 6.8, "missed by 20 %"),
+            (rate, 6.8, "missed by 20 %"), (time, 1.5, "stretch met 2 times over"), (time, 0.1, "stretch met 30 times over"),
+            (goals.Goal("c", goals.RATE, 8.0), 40.0, "goal met 5 times over"),
         ]  # fmt: skip
         for goal, value, words in cases:
             self.assertEqual(verdict(goal, value), words)
@@ -122,6 +123,15 @@ class Solutions(Folder):
         self.assertNotIn("factor", heading)
         self.assertEqual(sum(word.startswith("to ") for word in heading), 3)
         self.assertNotIn("MUSCL-Hancock", page.words)
+
+    def test_omits_factors_that_no_scheme_has(self):
+        lines = records.solutions(problems=("sod",), backends=("serial",), meshes=(100, 200, 400))
+        others = records.solutions(problems=("sod",), backends=("cuda",), meshes=(100, 200, 400))
+        rival = [line for line in lines if line["facts"]["weno"] == "muscl-hancock"]
+        page, _ = self.page([*rival, *(line for line in others if line["facts"]["weno"] != "muscl-hancock")])
+        heading = next(iter(page.tables.values()))[0]
+        self.assertNotIn("factor", heading)
+        self.assertNotIn("faster at errors", heading)
 
     def test_best_scheme_reaches_error_of_competitor_first(self):
         found = curves(self.evidence(records.solutions(problems=("sod",), backends=("serial",))).records)

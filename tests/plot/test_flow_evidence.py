@@ -46,6 +46,15 @@ class Page(Folder):
             sorted(([row[3], row[4], row[5], row[7]] for row in rows), key=lambda row: float(row[2])),
         )
 
+    def test_tolerances_of_pressure_solvers_come_from_their_cases_without_facts(self):
+        lines = records.flow_solvers()
+        for line in lines:
+            line["facts"].pop("tolerance", None)
+        usual = [dict(line, case=line["case"].removesuffix("/1e-6")) for line in lines if line["case"].endswith("/1e-6")]
+        page, _ = self.page([*lines, *usual], app="flow")
+        rows = page.tables[H200, "Pressure solvers"][1:]
+        self.assertEqual({("transforms", "round-off"), ("hypre PFMG", "1e-06"), ("hypre PFMG", "1e-10")}, {(row[3], row[4]) for row in rows})
+
     def test_memory_is_given_per_cell(self):
         page, _ = self.page(records.flow_solvers(), app="flow")
         self.assertEqual(["124", "140"], page.tables[H200, "Memory"][1][3:])

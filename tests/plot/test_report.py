@@ -144,6 +144,12 @@ class Report(Folder):
         self.assertIn("<summary>Profiled kernels (41 rows)</summary>", self.report([*rest, *many]))
         self.assertNotIn("<summary>", self.report([*rest, *many, failed]))
 
+    def test_memory_of_solvers_is_no_time(self):
+        page = Page(self.report(records.flow_solvers()))
+        samples = [row[0] for rows in page.tables.values() for row in rows if row[0].startswith("flow-")]
+        self.assertTrue(any(case.startswith("flow-pressure/") for case in samples))
+        self.assertFalse(any(case.startswith("flow-memory/") for case in samples))
+
     def test_names_records_without_samples(self):
         empty = records.step("cuda/2048", None, records.H200, 2048, samples=[], interval=None)
         page = Page(self.report([*records.steps_of_h200(), empty]))

@@ -295,7 +295,7 @@ class Bench(unittest.TestCase):
                       "\n".join(rows))
         self.assertIn("of one run of `scripts/bench.sh`", "\n".join(rows))
         self.assertIn("| `occupancy-h200.jsonl` | `drogue-perf table occupancy --out occupancy-h200.jsonl` |", "\n".join(rows))
-        calls = [f"drogue-plot {self.out} --report --quiet", *(f"{name} " for name in generators),
+        calls = [f"drogue-plot {self.out} --report --quiet", f"drogue-plot {tree}/docs/evidence/ladders --quiet", *(f"{name} " for name in generators),
                  f"drogue-plot {tree}/docs/evidence --quiet"]  # fmt: skip
         self.assertEqual(2 * calls, (self.folder / "renewed.txt").read_text().splitlines())
 

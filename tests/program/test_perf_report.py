@@ -114,7 +114,7 @@ class Report(perf_program.PerfTest):
         for name in ("plot", "csv", "numpy"):
             (self.folder / f"{name}.py").write_text("raise SystemExit(0)\n", encoding="utf-8")
         made = self.expect(0, "report", ".", environment={"MPLBACKEND": "module://matplotlib_inline.backend_inline"}).stdout
-        self.assertEqual("./report.html", made.splitlines()[0])
+        self.assertEqual("report.html", made.splitlines()[0])
 
     def test_refuses_folders_without_valid_records(self):
         self.assertIn("there is no folder 'missing'", self.expect(2, "report", "missing").stderr)

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from markupsafe import Markup
+
 from .. import html_page
 from .perf_record import BACKENDS, Machine, Record
 from .section import Cell, Section, Table, format_cells
@@ -16,6 +18,7 @@ RATES = {
     "l2": ("bytes", "L2 cache, read and written"),
     "cache": ("bytes", "cache, read and written"),
 }
+_UNITS = {"flops": "FLOP/s", "bytes": "B/s", "instructions": "instructions/s"}
 LATENCIES = {"launch": "launch of a kernel", "graph-node": "kernel in a graph"}  # s
 # Kinds whose unit of work is a batch, each variant of which is another problem: their title, and what is not counted.
 _BATCHES = {
@@ -44,6 +47,18 @@ def ceilings(records: list[Record]) -> dict[str, float]:
         elif name in RATES and record.facts.get(RATES[name][0], 0) > 0:
             found[name] = record.facts[RATES[name][0]] / record.median
     return found
+
+
+def backend_ceilings(records: list[Record], backend: str) -> tuple[dict[str, float], str]:
+    """Ceilings of a backend of one machine, and a note on those of one core that stand for those of its threads, or nothing.
+
+    Threads start and end together, which takes a part of a short measurement: of several, they reach no less than one.
+    """
+    tops, one = (ceilings([record for record in records if record.facts["backend"] == name]) for name in (backend, "serial"))
+    slower = [name for name in RATES if backend == "openmp" and tops.get(name, one.get(name, 0)) < one.get(name, 0)]
+    words = [f"{word(name, backend)}: {scaled(tops[name], _UNITS[RATES[name][0]])}" for name in slower]
+    note = f"Measured with threads below one core, whose rate stands here: {'; '.join(words)}." if words else ""
+    return tops | {name: one[name] for name in slower}, note
 
 
 class Bound(NamedTuple):
@@ -88,11 +103,14 @@ def _verdict(record: Record, found: list[Bound]) -> str:
         return "no work is counted"
     largest = max(found, key=lambda bound: bound.seconds)
     share = largest.seconds / record.median
-    words = f"{largest.name}, {html_page.format_number(100 * share)} %"
+    words = Markup("{}, {} %").format(largest.name, html_page.format_number(100 * share))
     if share >= LEAST_SHARE:
         return words
+    # Where work is not counted, or its ceiling not measured, something other than latencies may take the time.
+    if not {"FP64", "issue"} <= {bound.name for bound in found}:
+        return Markup("none of those known ({})").format(words)
     inside = " within one launch" if record.facts.get("driver") == "persistent" else ""
-    return f"none: latencies{inside} ({words})"
+    return Markup("none: latencies{} ({})").format(inside, words)
 
 
 def bounds_table(steps: list[Record], tops: dict[str, float]) -> Table | None:
@@ -105,7 +123,7 @@ def bounds_table(steps: list[Record], tops: dict[str, float]) -> Table | None:
         if not found and "driver" not in record.facts:
             continue
         at = {bound.name: html_page.format_number(1e6 * bound.seconds) for bound in found}
-        traffic = next((f"{at[level]} ({level})" for level in ("memory", "L3", "L2", "L1") if level in at), "")
+        traffic = next((Markup("{} ({})").format(at[level], level) for level in ("memory", "L3", "L2", "L1") if level in at), "")
         rows.append(
             [
                 f"{format_cells(record.facts['cells'])} {record.facts['variant']}".strip(),
@@ -128,17 +146,16 @@ def bounds_table(steps: list[Record], tops: dict[str, float]) -> Table | None:
     return Table(columns, rows, f"What binds a {unit}", note + _BATCHES.get(kind, ("", ""))[1])
 
 
-def ceiling_table(tops: dict[str, float], backend: str) -> Table:
-    """Table of the measured ceilings."""
+def ceiling_table(tops: dict[str, float], backend: str, note: str = "") -> Table:
+    """Table of the measured ceilings with a note."""
     rows: list[list[Cell | str]] = []
     for name, (fact, _) in RATES.items():
         if name in tops:
-            unit = {"flops": "FLOP/s", "bytes": "B/s", "instructions": "instructions/s"}[fact]
-            rows.append([word(name, backend), scaled(tops[name], unit)])
+            rows.append([word(name, backend), scaled(tops[name], _UNITS[fact])])
     for name in LATENCIES:
         if name in tops:
-            rows.append([word(name, backend), f"{html_page.format_number(1e6 * tops[name])} us"])
-    return Table([("ceiling", False), ("measured", True)], rows)
+            rows.append([word(name, backend), Markup("{} us").format(html_page.format_number(1e6 * tops[name]))])
+    return Table([("ceiling", False), ("measured", True)], rows, note=note)
 
 
 def scaled(value: float, unit: str) -> str:
@@ -153,12 +170,12 @@ def sections(machine: Machine, measured: list[Record], steps: list[Record]) -> l
     for backend in dict.fromkeys(record.facts["backend"] for record in measured):
         own = [record for record in measured if record.facts["backend"] == backend and record.machine == machine]
         beside = [record for record in steps if record.facts["backend"] == backend]
-        tops = ceilings(own)
+        tops, note = backend_ceilings([record for record in measured if record.machine == machine], backend)
         table = bounds_table(beside, tops) if tops else None
         if table is None:
             continue
         kind = beside[0].kind
         command = f"drogue-perf run --filter '^(ceiling|{kind})/' --out FILE.jsonl"
         title = f"{_BATCHES.get(kind, ('Bounds of a step', ''))[0]}, {BACKENDS.get(backend, backend)}"
-        found.append(Section(title, command, own + beside, tables=[table, ceiling_table(tops, backend)]))
+        found.append(Section(title, command, own + beside, tables=[table, ceiling_table(tops, backend, note)]))
     return found

@@ -1,5 +1,7 @@
 """Sections on ladders: predicted and measured time of each rung, and the error."""
 
+from markupsafe import Markup
+
 from .. import html_page, style
 from ..style import plt
 from .perf_record import BACKENDS, Machine, Record
@@ -45,7 +47,7 @@ def ladder_table(records: list[Record]) -> Table:
         rows.append(
             [
                 record.facts["rung"], html_page.format_number(1e6 * record.facts["predicted_s"]),
-                record.facts["predicted_bound"], html_page.format_number(1e6 * record.median), f"{low} .. {high}",
+                record.facts["predicted_bound"], html_page.format_number(1e6 * record.median), Markup("{} .. {}").format(low, high),
                 html_page.format_number(records[0].median / record.median), html_page.format_number(record.error),
             ]
         )  # fmt: skip

@@ -75,8 +75,7 @@ _LAYOUTS = {
     "flow-memory": (r"[^/]+/\d{1,9}x\d{1,9}x\d{1,9}/.+", "BACKEND/NXxNYxNZ/CASE"),
 }
 _METHODS = ("seed", "pide")  # of options-transfers
-STATED = ("machine", "occupancy")  # computed or read, never timed: tables of their own show all of them
-_UNTIMED = ("flow-memory", *STATED)
+STATED = ("machine", "occupancy", "flow-memory")  # computed or read, never timed: tables of their own show all of them
 # Counted work of a step, for its bounds.
 _COUNTS = {"instructions": float, "launches": int, "driver": str}
 _OPTIONAL = {
@@ -176,7 +175,7 @@ class Record:
     @property
     def lacks_times(self) -> bool:
         """Whether a record of a kind that is timed holds no samples and no median."""
-        return self.kind in KINDS and self.kind not in _UNTIMED and self.median is None and self.check == "passed"
+        return self.kind in KINDS and self.kind not in STATED and self.median is None and self.check == "passed"
 
     @property
     def succeeded(self) -> bool:
@@ -264,7 +263,7 @@ def parse(line: str, place: str) -> Record:
     kind = case.partition("/")[0]
     if kind in _FACTS:
         facts = _checked_facts(case, facts, place)
-        if kind not in _UNTIMED and check == "passed" and facts.get("status", "ok") == "ok":
+        if kind not in STATED and check == "passed" and facts.get("status", "ok") == "ok":
             # A measurement that ended early may leave a record without samples, which the pages name.
             if document.get("median") is not None or document.get("samples"):
                 median, interval = _times(document, place)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import html_page, style
 from ..style import plt
-from .bounds import bounds_table, ceiling_table, ceilings, launch_seconds, scaled
+from .bounds import backend_ceilings, bounds_table, ceiling_table, ceilings, launch_seconds, scaled
 from .perf_record import BACKENDS, Machine, Record
 from .section import Picture, Section, Table, format_cells
 
@@ -153,7 +153,7 @@ def sections(machine: Machine, records: list[Record], steps: list[Record]) -> li
     for backend in dict.fromkeys(record.facts["backend"] for record in records):
         own = [record for record in records if record.facts["backend"] == backend]
         beside = [record for record in steps if record.facts["backend"] == backend]
-        tops = ceilings(own)
+        tops, note = backend_ceilings(records, backend)
         shown = points(beside, tops)
         if not any(name in tops for name in ("fp64", *_BYTES)):
             continue
@@ -164,7 +164,7 @@ def sections(machine: Machine, records: list[Record], steps: list[Record]) -> li
             f"{title}: FLOP/s of a step against FLOP a byte under the measured ceilings",
         )
         bound = bounds_table(beside, tops)
-        tables = [ceiling_table(tops, backend)] + ([_share_table(tops, shown)] if shown else [])
+        tables = [ceiling_table(tops, backend, note)] + ([_share_table(tops, shown)] if shown else [])
         tables += [bound] if bound else []
         used = own + [
             record for record in beside if record.facts.get("flops") and not record.facts["variant"]

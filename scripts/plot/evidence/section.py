@@ -1,7 +1,7 @@
 """Parts of a page of records: sections, tables, cells and pictures."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from .perf_record import Record
@@ -23,6 +23,15 @@ class Table:
     title: str = ""
     note: str = ""
     folded: bool = False
+
+    def without_empty_columns(self, *names: str) -> "Table":
+        """The table without those columns of these headings that have no word in any row."""
+        kept = [k for k, (name, _) in enumerate(self.columns) if name not in names or any(self._text(row[k]) for row in self.rows)]
+        return replace(self, columns=[self.columns[k] for k in kept], rows=[[row[k] for k in kept] for row in self.rows])
+
+    @staticmethod
+    def _text(value: "Cell | str") -> str:
+        return str(value.text if isinstance(value, Cell) else value)
 
 
 @dataclass(frozen=True)

@@ -70,16 +70,9 @@ def _table(
     for error in errors:
         columns += [(Markup("to {}").format(html_page.format_number(error)), True), ("factor", True)]
     columns.append(("faster at errors", False))
-    if not any(curve.scheme.is_competitor for curve in all_curves):
-        columns = [column for column in columns if column[0] not in ("factor", "faster at errors")]
-        rows = [_without_factors(_row(curve, all_curves, errors)) for curve in shown]
-    else:
-        rows = [_row(curve, all_curves, errors) for curve in shown]
-    return Table(columns, rows, title=title, folded=folded)
-
-
-def _without_factors(row: list) -> list:
-    return row[:4] + row[4:-1:2]
+    table = Table(columns, [_row(curve, all_curves, errors) for curve in shown], title=title, folded=folded)
+    # A scheme without the competitor on its backend has no factor, nor has one that misses the error.
+    return table.without_empty_columns("factor", "faster at errors")
 
 
 def _failures(records: list[Record]) -> list[str]:
