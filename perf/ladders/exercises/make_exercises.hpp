@@ -52,7 +52,7 @@ Exercise faster_springs(ExerciseCode code) {
           "perf/ladders/exercises/order.hpp",
           "Number the vertices so that neighbours share lines.",
           made(order),
-          1.15,
+          device::is_host<ExecutionSpace> ? 1.5 : 1.15,
           made(nullptr)};
 }
 
@@ -83,7 +83,7 @@ Exercise faster_transfers(ExerciseCode code) {
           "Leave the values on the device between the steps.",
           code == ExerciseCode::own ? make_rung<Own>(problem, transfer_tolerance)
                                     : make_rung<OneUploadRung<ExecutionSpace>>(problem, transfer_tolerance),
-          host ? 1.5 : 4.0,
+          host ? 1.3 : 4.0,
           make_rung<PinnedRung<ExecutionSpace>>(problem, transfer_tolerance)};
 }
 
