@@ -24,7 +24,7 @@ double error_of(const Exercise& exercise) {
 }
 
 double speed_up_of(const Exercise& exercise) {
-  constexpr int rounds = 40;
+  constexpr int rounds = 25;
   const std::unique_ptr<RungRun> runs[] = {exercise.slow.make(), exercise.rung.make()};
   double fastest[] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int round = -2; round < rounds; ++round)
