@@ -147,5 +147,6 @@ def write_bodies(folder):
         "body_0_force_x [N]": [3000.0, 5.0, 2.0, 4.0, 2.0], "body_0_force_y [N]": [0.0, 1.0, -1.0, 1.0, -1.0],
         "body_0_force_z [N]": [1e-12] * 5,
         **{f"body_1_force_{axis} [N]": [1.0, 2.0, 3.0, 2.0, 1.0] for axis in "xyz"},
+        **{f"body_1_outside_force_{axis} [N]": [0.5, 1.0, 1.5, 1.0, 0.5] for axis in "xyz"},
     })  # fmt: skip
     return folder

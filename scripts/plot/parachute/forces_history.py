@@ -1,5 +1,7 @@
 """Figure of bodies and flags over time: forces of the flow, their means and the expected ones, and displacements."""
 
+import re
+
 import numpy as np
 
 from .. import style
@@ -39,7 +41,7 @@ def _panel(run: Run, body: int, time: np.ndarray) -> Panel:
 
 
 def _count(run: Run, kind: str) -> int:
-    return sum(name.startswith(kind + "_") and name.endswith("_force_x") for name in run.history)
+    return sum(re.fullmatch(rf"{kind}_\d+_force_x", name) is not None for name in run.history)
 
 
 def _displacement_panels(run: Run, body: int) -> list[Panel]:

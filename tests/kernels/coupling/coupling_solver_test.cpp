@@ -260,6 +260,48 @@ TEST(CoupledSolver, LinesAreCutAtTheirTime) {
   EXPECT_TRUE(stopped_at_cut) << "a step ends at the cut";
 }
 
+/// Starts a run that watches how line 0 pulls vertex 0, and line 1 vertex 30.
+void start_watching(const CoupledCase& c, Solver& solver) {
+  solver.watch_pulls(std::vector<fabric::Pull>{{0, {0}}, {30, {1}}});
+  solver.upload_cloth(c.x, c.v);
+  solver.start();
+}
+
+TEST(CoupledSolver, PeaksOfPullsAreThoseOfCompletedSteps) {
+  CoupledCase c = strip_with_lines(0.0501);
+  const auto pull = [&](std::size_t line, const std::vector<Vector>& x) {
+    const auto& [a, b] = c.p.fabric.mesh.lines[line];
+    const auto &from = x[static_cast<std::size_t>(a)], &to = x[static_cast<std::size_t>(b)];
+    const double length = std::hypot(from[0] - to[0], from[1] - to[1], from[2] - to[2]);
+    return c.p.fabric.mesh.line_stiffness[line] * std::max(0.0, length / 0.1 - 1.0);
+  };
+  CoupledRun observed(c), whole(c);
+  start_watching(c, *whole.solver);
+  std::vector<fabric::PeakPull> expected = {{pull(0, c.x), 0.0}, {pull(1, c.x), 0.0}};
+  EXPECT_NEAR(whole.solver->peak_pulls()[0].force, expected[0].force, 1e-12 * expected[0].force);
+  for (int step = 0; step < 30; ++step) {
+    ASSERT_TRUE(observed.advance(1));
+    std::vector<Vector> x(c.x.size()), v(c.x.size());
+    observed.solver->download_cloth(x, v);
+    const double time = observed.solver->progress().time;
+    for (std::size_t k = 0; k < 2; ++k)
+      if (const double force = pull(k, x); force > expected[k].force && (k == 1 || time <= 0.0501))
+        expected[k] = {force, time};
+  }
+  EXPECT_GT(expected[1].time, 0.0);
+  ASSERT_TRUE(whole.advance(30));
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(whole.solver->peak_pulls()[k].force, expected[k].force, 1e-12 * expected[k].force) << k;
+    EXPECT_EQ(whole.solver->peak_pulls()[k].time, expected[k].time) << k;
+  }
+  // A step that fails, here by a line that carries too much, does not count.
+  c.p.line_strength = {std::numeric_limits<double>::infinity(), expected[1].force * (1.0 - 1e-9)};
+  CoupledRun failing(c);
+  start_watching(c, *failing.solver);
+  ASSERT_EQ(failing.solver->advance(10.0, -1, {}), flow::Stop::failed);
+  EXPECT_LE(failing.solver->peak_pulls()[1].force, c.p.line_strength[1]);
+}
+
 TEST(CoupledSolver, ContinuesBitForBitAroundACut) {
   const CoupledCase c = strip_with_lines(0.0501);  // after 13 steps
   CoupledRun whole(c);
