@@ -48,7 +48,7 @@ class ShippedParachutes(parachute_program.FlowTest):
         self.assertLess(porous[1], 0.6 * cloth[1])
         self.assertLess(porous[2], 0.1 * closed[2])
 
-    def test_a_grid_that_follows_between_outflows_leaves_the_air_at_rest(self):
+    def test_grids_that_follow_keep_the_air_between_outflows_at_rest(self):
         """The canopy drags the mean of the air in the duct by 0.2 m/s at most; where the dynamic pressure of the stream that the
         grid meets held it back, by 2.1 m/s."""
         self.expect(0, "c9-drop", "--quiet", "--backend", "serial", "--out", "out",
