@@ -14,6 +14,7 @@
 #include "kernels/flow/advection/momentum.hpp"
 #include "kernels/flow/boundary/faces.hpp"
 #include "kernels/flow/boundary/ghosts.hpp"
+#include "kernels/flow/boundary/side_motion.hpp"
 #include "kernels/flow/diffusion/implicit_diffusion.hpp"
 #include "kernels/flow/halo/halo.hpp"
 #include "kernels/flow/observables/sample.hpp"
@@ -99,9 +100,11 @@ class FlowSolver {
   /// Throws std::invalid_argument if the grid cannot move along the marked axes: along axes of one cell,
   /// towards walls or slip sides, and with sides whose velocity is an expression.
   void check_frame(const std::array<bool, 3>& axes) const { flow::check_frame(_parameters, axes); }
-  /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
-  /// a bound, NaN without a finite velocity. Does not throw.
-  [[nodiscard]] double largest_dt(const Progress& now) const;
+  /// Largest dt, s, of that many equal steps that the CFL condition, `Parameters::max_dt` and prescribed
+  /// motion admit at this progress; infinite without a bound, NaN without a finite velocity. Does not throw.
+  [[nodiscard]] double largest_dt(const Progress& now, double steps = 1.0) const;
+  /// Time after `time`, s, at which prescribed motion jumps next; infinite if it does not. Does not throw.
+  [[nodiscard]] double next_jump(double time) const;
   /// True if a step has failed. Blocks. Throws std::runtime_error after a failed kernel.
   [[nodiscard]] bool has_failed() const { return read_control().trial.stop == Stop::failed; }
   /// Status as last published. Does not throw.
@@ -135,10 +138,11 @@ class FlowSolver {
   [[nodiscard]] const ExecutionSpace& space() const { return _instance->space(); }
   [[nodiscard]] Control read_control() const;
   void write_control(Control control);
-  void limit_first_step(double target);
+  void use_motion();
+  [[nodiscard]] double longest_first_dt() const;
   void set_guess() const;
-  [[nodiscard]] double rate_of_sides(Control control, double dt);
-  void solve_present_pressure();
+  [[nodiscard]] stepping::MotionBound motion_bound(const Progress& now, double dt, double steps) const;
+  void solve_present_pressure(double nu);
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
@@ -172,6 +176,8 @@ class FlowSolver {
   BoundaryTables<ExecutionSpace> _boundary;
   bool _checks_inflow;  ///< inflows change in time, and the pressure equation has no solution with a net one
   StepConstants _constants{};
+  std::vector<stepping::MotionInterval> _motion;
+  Kokkos::View<stepping::MotionInterval*, typename ExecutionSpace::memory_space> _motion_on_device;
   std::array<double, 3> _acceleration{};    ///< m/s^2
   std::array<double, 3> _frame_velocity{};  ///< m/s
   EddyModel _eddy_model{};
@@ -239,7 +245,20 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
         (parameters.body_force[axis] + parameters.pressure_drop[axis] / length) / parameters.density;
   }
   _constants = step_constants(parameters, _grid);
+  use_motion();
   space().fence("drogue::flow::solver: allocated");
+}
+
+/// Gives the choice of dt the prescribed motion of all ranks.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::use_motion() {
+  _motion = side_motion(_parameters);
+  _constants.motions = static_cast<int>(_motion.size());
+  if (_motion.empty()) return;
+  _motion_on_device = decltype(_motion_on_device)(
+      Kokkos::view_alloc(space(), Kokkos::WithoutInitializing, "drogue::flow::motion"), _motion.size());
+  device::copy_in(space(), _motion_on_device, _motion.data(), _motion.size());
+  _constants.motion = _motion_on_device.data();
 }
 
 template <class ExecutionSpace>
@@ -313,7 +332,7 @@ template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> values) {
   if (values.size() != static_cast<std::size_t>(_grid.cells()) * static_cast<std::size_t>(components(field)))
     throw std::invalid_argument("flow solver: a field has the wrong length");
-  if (field == CellField::pressure) solve_present_pressure();
+  if (field == CellField::pressure) solve_present_pressure(kinematic_viscosity());
   launch_cells(
       space(), "drogue::flow::sample", _grid.n,
       SampleFunctor<ExecutionSpace>{_grid, _velocity, unknown(), _predicted, _parameters.density, field});
@@ -332,19 +351,22 @@ void FlowSolver<ExecutionSpace>::set_guess() const {
 }
 
 /// Solves for the pressure of the present velocity in `unknown`: that which keeps the velocity of an explicit
-/// step free of divergence, in the limit of a short step. Leaves the state as it is.
+/// step free of divergence, in the limit of a short step, with the kinematic viscosity `nu`, m^2/s. Leaves
+/// the state as it is.
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::solve_present_pressure() {
-  constexpr double fraction = 1e-4, longest = 1.0;  // s; accelerations of sides are differences over dt
+void FlowSolver<ExecutionSpace>::solve_present_pressure(double nu) {
+  constexpr double fraction = 1e-4;  // accelerations of sides are differences over dt
   const Control kept = read_control();
   Control control = kept;
-  const double admissible = admissible_dt(kept.now, _constants);
-  control.trial.dt = fraction * (admissible > 0.0 && admissible < longest ? admissible : longest);
+  const double dt =
+      motion_bound(kept.now, std::min(admissible_dt(kept.now, _constants), _constants.implicit_dt), 1.0).dt;
+  // Without a bound, only a force acts, of which the pressure is a multiple.
+  control.trial.dt = fraction * (dt > 0.0 && std::isfinite(dt) ? dt : 1.0);
   control.trial.stop = Stop::running;
   control.first_failure = no_failure;
   control.pressure_failed = control.failed_side = control.is_unbalanced = 0;
   write_control(control);
-  MomentumSetup<ExecutionSpace> setup = momentum_setup(kinematic_viscosity());
+  MomentumSetup<ExecutionSpace> setup = momentum_setup(nu);
   setup.weights = {0.0, 1.0, false};
   enqueue_rates(space(), setup, 1.0);
   set_guess();
@@ -394,16 +416,35 @@ void FlowSolver<ExecutionSpace>::start() {
   if (_halo) _halo->agree(space(), _control, _checks_inflow);
   Kokkos::deep_copy(space(), _pressure, 0.0);  // the first step has no pressure of a previous one
   control = read_control();
+  control.trial.dt = 0.0;
+  control.now.velocity_rate = control.next_rate;
   control.now.rate = control.has_failed()
                          ? Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN())
                          : limiting_rate(control, _constants);
-  control.next_rate = 0;
-  control.eddy_viscosity = 0;
-  control.trial.dt = 0.0;
+  if (const double longest = longest_first_dt(); std::isfinite(longest)) control.now.longest_dt = longest;
+  control.forget_step();
   control.trial.stop = Stop::pause;
   write_control(control);
+  if (_diffusion && !control.has_failed()) {
+    // The first step of implicit diffusion begins with a pressure, too. That of viscosity decays with the
+    // thinnest layers, within a long step.
+    solve_present_pressure(_constants.fixed_dt > _constants.implicit_dt ? 0.0 : kinematic_viscosity());
+    device::copy(space(), _pressure, unknown());
+  }
   _last_solution_is_pressure = false;
   _loop.status_view()().step = 0;
+}
+
+/// Bound of the first dt, s, where the velocity of the start sets none: by what sides of constant velocity
+/// and forces set in motion, and by implicit diffusion.
+template <class ExecutionSpace>
+double FlowSolver<ExecutionSpace>::longest_first_dt() const {
+  double acceleration = 0.0;  // in cells, 1/s^2
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (_grid.n[axis] > 1) acceleration += std::abs(_acceleration[axis]) * _grid.inverse_h[axis];
+  return std::min({_constants.cfl / rate_of_constant_sides(_parameters),
+                   std::sqrt(_constants.cfl / acceleration),
+                   2.0 * largest_viscous_change * _constants.implicit_dt});
 }
 
 template <class ExecutionSpace>
@@ -462,61 +503,8 @@ struct FlowSolver<ExecutionSpace>::Steps {
   }
 };
 
-/// Largest |u|/hx + |v|/hy + |w|/hz of the prescribed velocities, 1/s, at several times up to `dt` (s) from
-/// the present.
-template <class ExecutionSpace>
-double FlowSolver<ExecutionSpace>::rate_of_sides(Control control, double dt) {
-  constexpr int times = 16;
-  control.trial.dt = dt;
-  control.trial.stop = Stop::running;
-  write_control(control);
-  double largest = 0.0;
-  for (int i = 1; i <= times; ++i) {
-    _boundary.enqueue_evaluation(space(), _control, {static_cast<double>(i) / times, false});
-    largest = std::max(largest, _boundary.largest_rate(space()));
-  }
-  if (!_halo) return largest;
-  auto bits = Kokkos::bit_cast<std::uint64_t>(largest);
-  _halo->group().maximize({&bits, 1});
-  return Kokkos::bit_cast<double>(bits);
-}
-
-/// Bounds the first step towards a time (s) where the velocity of the present does not: sides whose velocity
-/// changes in time, and body forces, set the fluid in motion within the step.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::limit_first_step(double target) {
-  double acceleration = 0.0;  // in cells, 1/s^2
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (_grid.n[axis] > 1) acceleration += std::abs(_acceleration[axis]) * _grid.inverse_h[axis];
-  const bool sides_change = change_in_time(_parameters.boundary);  // those of all ranks
-  const bool sets_in_motion = acceleration > 0.0 || sides_change;
-  if (_loop.status().step > 0 || _constants.fixed_dt > 0.0 || !sets_in_motion) return;
-  const Control kept = read_control();
-  double dt = std::min(admissible_dt(kept.now, _constants), target - kept.now.time);
-  if (!(dt > 0.0)) return;
-  const double unlimited = dt;
-  if (acceleration > 0.0) dt = std::min(dt, std::sqrt(_constants.cfl / acceleration));
-  if (sides_change) {
-    const auto is_too_long = [&](double step) { return step * rate_of_sides(kept, step) > _constants.cfl; };
-    const double longest = dt;
-    while (is_too_long(dt)) dt *= 0.5;
-    // The next step is as long as this one could have been.
-    double upper = std::min(longest, 2.0 * dt);
-    for (int bisection = 0; bisection < 5; ++bisection) {
-      const double middle = 0.5 * (dt + upper);
-      (is_too_long(middle) ? upper : dt) = middle;
-    }
-    write_control(kept);
-    _boundary.enqueue_evaluation(space(), _control, {0.0, true});
-  }
-  Control control = kept;
-  if (dt < unlimited) control.now.rate = Kokkos::bit_cast<std::uint64_t>(_constants.cfl / dt);
-  write_control(control);
-}
-
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
-  limit_first_step(target);
   const Stop stop = _halo ? advance_collectively({target, pause_step}, poll)
                           : _loop.advance({target, pause_step}, Steps{*this}, poll);
   if (stop == Stop::failed && _boundary.changes()) {
@@ -544,10 +532,25 @@ void FlowSolver<ExecutionSpace>::enqueue_end() {
 }
 
 template <class ExecutionSpace>
-double FlowSolver<ExecutionSpace>::largest_dt(const Progress& now) const {
+stepping::MotionBound FlowSolver<ExecutionSpace>::motion_bound(const Progress& now, double dt,
+                                                               double steps) const {
+  StepConstants constants = _constants;
+  constants.motion = _motion.data();  // those of the host
+  return resolved_motion(now, dt, steps, constants);
+}
+
+template <class ExecutionSpace>
+double FlowSolver<ExecutionSpace>::largest_dt(const Progress& now, double steps) const {
   StepConstants constants = _constants;
   constants.fixed_dt = 0.0;
-  return admissible_dt(now, constants);
+  return motion_bound(now, admissible_dt(now, constants), steps).dt;
+}
+
+template <class ExecutionSpace>
+double FlowSolver<ExecutionSpace>::next_jump(double time) const {
+  for (const stepping::MotionInterval& interval : _motion)
+    if (interval.begins_with != 0 && interval.begin - time > 1e-12 * interval.begin) return interval.begin;
+  return std::numeric_limits<double>::infinity();
 }
 
 template <class ExecutionSpace>

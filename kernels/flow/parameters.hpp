@@ -6,6 +6,7 @@
 
 #include "kernels/device/expression_program.hpp"
 #include "kernels/stepping/driver.hpp"
+#include "kernels/stepping/motion_interval.hpp"
 
 namespace drogue::flow {
 
@@ -109,8 +110,12 @@ struct Parameters {
   /// s; a positive value replaces the CFL condition. A run fails where it exceeds the stability limit: the dt
   /// of `stable_cfl`, with explicit diffusion without reserve.
   double fixed_dt = 0.0;
-  double max_dt = 0.0;  ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
+  double max_dt = 0.0;  ///< s; a positive value is an upper bound of dt, say for a fluid at rest
   std::int64_t max_steps = 1'000'000'000;
+  /// s; until then the motion of sides that change in time is known to the choice of dt, from a division of
+  /// this time that follows their expressions. Needed with such sides unless `fixed_dt` or `max_dt` is given.
+  double horizon = 0.0;
+  std::vector<stepping::MotionInterval> motion;  ///< other prescribed motion that limits dt, or empty
   Driver driver = Driver::automatic;
   /// Threads of a team of momentum stage and pressure correction on a device, a multiple of 32 up to 512; 0:
   /// 128.

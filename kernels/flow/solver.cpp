@@ -6,6 +6,7 @@
 
 #include "kernels/device/allocate.hpp"
 #include "kernels/device/block_size.hpp"
+#include "kernels/flow/boundary/conditions.hpp"
 #include "kernels/flow/diffusive_step.hpp"
 #include "kernels/flow/step_constants.hpp"
 
@@ -128,6 +129,8 @@ void check_parameters(const Parameters& p) {
             "a wall or inflow has three velocity expressions, or none; other sides have none");
     for (const double v : side.velocity) require(std::isfinite(v), "the velocity of a side must be finite");
   }
+  require(p.fixed_dt > 0.0 || p.max_dt > 0.0 || p.horizon > 0.0 || !change_in_time(p.boundary),
+          "sides that change in time need a horizon, a dt or a largest one");
   require(device::is_block_size(p.block), "block must be a multiple of 32 between 32 and 512");
   check_net_inflow(p);
 }

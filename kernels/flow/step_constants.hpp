@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -21,7 +22,7 @@ inline StepConstants step_constants(const Parameters& parameters, const MacGrid&
   }
   const double nu = parameters.viscosity / parameters.density;
   const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
-  const bool limits = nu > 0.0 && squares > 0.0 && !is_implicit;
+  const bool is_viscous = nu > 0.0 && squares > 0.0;
   const bool is_rk3 = parameters.time_scheme == TimeScheme::rk3;
   // Intervals of the negative real axis in which the methods are stable; the largest eigenvalue of the
   // viscous term is 4 nu times the sum of the squares.
@@ -30,7 +31,9 @@ inline StepConstants step_constants(const Parameters& parameters, const MacGrid&
   constants.cfl = parameters.cfl > 0.0 ? parameters.cfl : default_cfl(parameters.time_scheme);
   constants.fixed_dt = parameters.fixed_dt;
   constants.max_dt = parameters.max_dt;
-  constants.diffusive_dt = limits ? interval / (4.0 * nu * squares) : infinite;
+  const double diffusive_dt = is_viscous ? interval / (4.0 * nu * squares) : infinite;
+  constants.diffusive_dt = is_implicit ? infinite : diffusive_dt;
+  constants.implicit_dt = is_implicit ? diffusive_dt : infinite;
   constants.stable_cfl = stable_cfl(parameters.time_scheme);
   // Rates of advection are divided by the CFL number: the standard one, or, of a fixed dt, the largest.
   if (parameters.turbulence != Turbulence::none)
@@ -41,6 +44,11 @@ inline StepConstants step_constants(const Parameters& parameters, const MacGrid&
   const bool has_outflow = std::ranges::any_of(
       parameters.boundary, [](const Boundary& side) { return side.kind == BoundaryKind::outflow; });
   constants.damping_rate = is_implicit && !has_outflow && squares > 0.0 ? nu * least_square : 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double drop = parameters.pressure_drop[axis] / (parameters.high[axis] - parameters.low[axis]);
+    constants.acceleration =
+        std::max(constants.acceleration, std::abs(parameters.body_force[axis] + drop) / parameters.density);
+  }
   constants.max_steps = parameters.max_steps;
   return constants;
 }

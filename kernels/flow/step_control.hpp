@@ -37,6 +37,14 @@ struct PressureFailureFunctor {
   }
 };
 
+/// Largest stable dt, s, of the velocity at the end of a step.
+KOKKOS_INLINE_FUNCTION double stable_dt_of_result(const Control& c, const StepConstants& k) {
+  Progress result;
+  result.rate = Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(c.next_rate) +
+                                                k.eddy_weight * Kokkos::bit_cast<double>(c.eddy_viscosity));
+  return stable_dt(result, k);
+}
+
 /// Last kernel of a step: accepts it or stops the run.
 template <class ExecutionSpace>
 struct FinishStepFunctor {
@@ -56,12 +64,19 @@ struct FinishStepFunctor {
         now.last_dt = trial.dt;
         now.dt_min = now.step == 0 || trial.dt < now.dt_min ? trial.dt : now.dt_min;
         now.dt_max = trial.dt > now.dt_max ? trial.dt : now.dt_max;
+        now.longest_dt = longest_next_dt(c, constants);
+        now.velocity_rate = c.next_rate;
+        const double stable = stable_dt_of_result(c, constants);
         now.rate = limiting_rate(c, constants);
         stepping::advance_time(now, trial);
-        if (stepping::continues(now, trial, constants.max_steps)) prepare_step(now, trial, constants);
-        c.next_rate = 0;
-        c.eddy_viscosity = 0;
-        for (std::uint64_t& bits : c.side_acceleration) bits = 0;
+        if (trial.dt > largest_excess * stable) {
+          // The velocity has grown beyond what the step could resolve.
+          trial.dt = stable;
+          trial.stop = Stop::failed;
+        } else if (stepping::continues(now, trial, constants.max_steps)) {
+          prepare_step(now, trial, constants);
+        }
+        c.forget_step();
       }
     }
     stepping::publish_status(now, trial, 0, status());

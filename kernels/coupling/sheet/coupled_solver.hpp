@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "kernels/coupling/sheet/line_strength.hpp"
 #include "kernels/coupling/sheet/moving_frame.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/coupling/sheet/vertex_motion.hpp"
 #include "kernels/coupling/total_force.hpp"
 #include "kernels/device/stopwatch.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
@@ -197,6 +199,7 @@ class CoupledSolver {
       throw std::invalid_argument("coupled solver: either fixed_dt or max_dt must be positive");
     if (p.flow.cfl == 0.0) p.flow.cfl = default_cfl;
     p.flow.external_force = true;
+    if (p.flow.horizon > 0.0 && p.flow.motion.empty()) p.flow.motion = vertex_motion(p);
     return p;
   }
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_fabric.vertices()); }
@@ -212,6 +215,11 @@ class CoupledSolver {
   void record_pulls() const {
     _pulls.record(_space, _fabric.state().positions,
                   CompletedFlowStep<ExecutionSpace>{_flow.control(), _saved_step});
+  }
+  /// Time of the next jump of prescribed motion, s, at which a block ends unless dt is fixed. Does not throw.
+  [[nodiscard]] double next_jump(const flow::Progress& now) const {
+    return _parameters.flow.fixed_dt > 0.0 ? std::numeric_limits<double>::infinity()
+                                           : _flow.next_jump(now.time);
   }
   [[nodiscard]] bool plan_block(const flow::Progress& now, double target);
   void set_cloth_time();
@@ -280,7 +288,7 @@ void CoupledSolver<ExecutionSpace>::set_frame(const FrameMotion& frame) {
 /// divergence nor relative velocities nor forces do.
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::move_frame(const flow::Progress& now) {
-  const double longest = _flow.largest_dt(now);
+  const double longest = _flow.largest_dt(now, block_steps);
   const double dt = _parameters.flow.fixed_dt > 0.0 ? _parameters.flow.fixed_dt : longest;
   _flow.change_frame(
       _frame.begin_block(_space, _fabric.state(), now.time, dt * static_cast<double>(block_steps)).velocity);
@@ -303,7 +311,7 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
 template <class ExecutionSpace>
 bool CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double target) {
   const flow::Parameters& p = _parameters.flow;
-  double dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now);
+  double dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now, block_steps);
   const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / dt);
   if (!(p.fixed_dt > 0.0) && needed <= 2.0 * block_steps) dt = left / std::max(1.0, needed);
   std::int64_t substeps = _parameters.substeps;
@@ -358,7 +366,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
       set_lines();
       _block.end = now.step;
     }
-    const double target = std::min(last_target, _cuts.next());
+    const double target = std::min({last_target, _cuts.next(), next_jump(now)});
     if (_flow.has_failed()) {
       return_to_last_step(now);
       // Returns its sides to the time before the failed step.

@@ -201,30 +201,6 @@ class BoundaryTables {
     }
   }
 
-  /// Largest |u|/hx + |v|/hy + |w|/hz of the tables, each component at its largest, 1/s. Copies; blocks. Does
-  /// not throw.
-  [[nodiscard]] double largest_rate(const ExecutionSpace& space) const {
-    const auto table = Kokkos::create_mirror_view(_conditions.table);
-    device::copy_out(space, table.data(), _conditions.table, table.size());
-    space.fence("drogue::flow::boundary: copied");
-    double largest = 0.0;
-    for (int side = 0; side < 6; ++side) {
-      if (_conditions.first[side] < 0) continue;
-      double rate = 0.0;
-      const std::int64_t entries = entries_of(side) / 3;
-      for (int c = 0; c < 3; ++c) {
-        if (_grid.n[c] == 1) continue;
-        double speed = 0.0;
-        for (std::int64_t i = c * entries; i < (c + 1) * entries; ++i)
-          if (table_entry<ExecutionSpace>(_grid, side, static_cast<int>(i)).is_beside_cell(_grid))
-            speed = std::max(speed, std::abs(table(static_cast<std::size_t>(_conditions.first[side] + i))));
-        rate += speed * _grid.inverse_h[c];
-      }
-      largest = std::max(largest, rate);
-    }
-    return largest;
-  }
-
  private:
   [[nodiscard]] std::int64_t entries_of(int side) const {
     std::int64_t entries = 3;

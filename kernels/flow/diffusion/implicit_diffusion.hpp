@@ -79,12 +79,19 @@ struct DiffusionSourceFunctor {
     index[component] += setup.first_unknown(component);
     const std::int64_t place = component * g.component + g.offset(index[0], index[1], index[2]);
     const double* u = setup.velocity.data() + place;
-    double laplacian = 0.0, change = 0.0;
+    double laplacian = 0.0, change = 0.0, highest = u[0], lowest = u[0];
     for (int axis = 0; axis < 3; ++axis) {
       if (g.n[axis] == 1) continue;
       const std::int64_t stride = g.stride[axis];
       const double w = g.inverse_h[axis] * g.inverse_h[axis];
-      laplacian += w * ((u[stride] - u[0]) - (u[0] - u[-stride]));
+      const double below = u[-stride], above = u[stride];
+      laplacian += w * ((above - u[0]) - (u[0] - below));
+      // Half of these differences lead to the values on sides.
+      const double sides[2] = {u[0] + 0.5 * (below - u[0]), u[0] + 0.5 * (above - u[0])};
+      for (const double value : sides) {
+        highest = value > highest ? value : highest;
+        lowest = value < lowest ? value : lowest;
+      }
       if (g.periodic[axis]) continue;
       if (axis == component) {
         if (index[axis] == 1 && setup.is_side(2 * axis))
@@ -97,6 +104,10 @@ struct DiffusionSourceFunctor {
           change += 2.0 * w * tangential_change(2 * axis + 1, index, place, stride);
       }
     }
+    Control& reduced = setup.control();
+    raise(reduced.viscous_acceleration, Kokkos::bit_cast<std::uint64_t>(Kokkos::fabs(setup.nu * laplacian)));
+    raise(reduced.highest[component], ordered_bits(highest));
+    raise(reduced.lowest[component], ordered_bits(-lowest));
     const std::int64_t at = i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k);
     source[at] = setup.predicted(place) - u[0] + dt * (setup.nu * laplacian - pressure_gradient(index)) +
                  0.5 * setup.nu * dt * change;
@@ -156,6 +167,7 @@ struct DiffusionUpdateFunctor {
         component * setup.grid.component + setup.grid.offset(index[0], index[1], index[2]);
     const std::int64_t at = i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k);
     setup.predicted(place) = setup.velocity(place) + change[at];
+    raise(setup.control().change, Kokkos::bit_cast<std::uint64_t>(Kokkos::fabs(change[at])));
   }
 };
 

@@ -84,21 +84,31 @@ class Halo {
     device::copy_out(space, &control, view, 1);
     space.fence("drogue::flow::halo: read control");
     // The maximum of a complement is that of the least value.
-    std::array<std::uint64_t, 8> values = {~control.first_failure,
-                                           control.next_rate,
-                                           static_cast<std::uint64_t>(control.pressure_failed),
-                                           static_cast<std::uint64_t>(control.failed_side),
-                                           control.eddy_viscosity,
-                                           control.side_acceleration[0],
-                                           control.side_acceleration[1],
-                                           control.side_acceleration[2]};
+    std::array<std::uint64_t, 16> values = {~control.first_failure,
+                                            control.next_rate,
+                                            static_cast<std::uint64_t>(control.pressure_failed),
+                                            static_cast<std::uint64_t>(control.failed_side),
+                                            control.eddy_viscosity,
+                                            control.side_acceleration[0],
+                                            control.side_acceleration[1],
+                                            control.side_acceleration[2],
+                                            control.viscous_acceleration,
+                                            control.change};
+    for (std::size_t c = 0; c < 3; ++c)
+      values[10 + c] = control.highest[c], values[13 + c] = control.lowest[c];
     _group.maximize(values);
     control.first_failure = ~values[0];
     control.next_rate = values[1];
     control.pressure_failed = static_cast<int>(values[2]);
     control.failed_side = static_cast<int>(values[3]);
     control.eddy_viscosity = values[4];
-    for (std::size_t c = 0; c < 3; ++c) control.side_acceleration[c] = values[5 + c];
+    control.viscous_acceleration = values[8];
+    control.change = values[9];
+    for (std::size_t c = 0; c < 3; ++c) {
+      control.side_acceleration[c] = values[5 + c];
+      control.highest[c] = values[10 + c];
+      control.lowest[c] = values[13 + c];
+    }
     if (checks_inflow && control.is_unbalanced == 0) {
       std::array<double, 2> inflow = {control.net_inflow, control.inflow_magnitude};
       _group.sum(inflow);

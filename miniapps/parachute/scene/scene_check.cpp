@@ -8,6 +8,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
+#include "kernels/flow/diffusive_step.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
 #include "miniapps/parachute/canopy/canopy_check.hpp"
 #include "miniapps/parachute/flags/flag_check.hpp"
@@ -71,12 +72,14 @@ void complete_sides(const Table& root, FlowScene& scene) {
   }
 }
 
-void check_scheme(const Table& root, const flow::Parameters& p) {
+void check_scheme(const Table& root, flow::Parameters& p) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (p.pressure_drop[axis] != 0.0 && p.boundary[2 * axis].kind != BoundaryKind::periodic)
       contradict(root, "flow.pressure_drop",
                  std::string("flow.pressure_drop: the axis ") + axis_names[axis] + " has no periodic sides");
-  if (p.diffusion == flow::Diffusion::crank_nicolson && p.time_scheme != flow::TimeScheme::ab2)
+  const bool is_implicit = p.diffusion == flow::Diffusion::crank_nicolson;
+  if (is_implicit && !root.given("flow.time")) p.time_scheme = flow::TimeScheme::ab2;
+  if (is_implicit && p.time_scheme != flow::TimeScheme::ab2)
     contradict(root, "flow.diffusion", "flow.diffusion = \"crank-nicolson\" needs flow.time = \"ab2\"");
   const double most = flow::stable_cfl(p.time_scheme);
   if (p.cfl > most)
@@ -226,18 +229,73 @@ void check_initial(const Table& root, const FlowScene& scene) {
   }
 }
 
-/// Gives run.max_dt its default. Fluid at rest would leave dt without a bound, while sheets that move, or a
-/// stream that begins, need one.
-void complete_time_step(FlowScene& scene) {
+double least_width(const flow::Parameters& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (p.cells[axis] > 1) least = std::min(least, cell_width(p, axis));
+  return least;
+}
+
+/// Speed with which sheets that the fluid moves will meet it, as far as it is known, m/s: that of the stream
+/// and the walls, that of free fall along a cell, and that of plates on springs.
+double known_speed(const FlowScene& scene) {
+  const flow::Parameters& p = scene.parameters;
+  double speed = 0.0, gravity = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    speed = std::max(speed, std::abs(SpaceTimeFunction(scene.velocity[axis]).constant().value_or(0.0)));
+    for (const flow::Boundary& side : p.boundary) speed = std::max(speed, std::abs(side.velocity[axis]));
+    if (!scene.canopies.empty() || !scene.flags.empty()) gravity = std::hypot(gravity, scene.gravity[axis]);
+  }
+  for (const Body& body : scene.bodies)
+    if (body.mount)
+      speed =
+          std::max(speed, std::abs(body.mount->offset) * std::sqrt(body.mount->stiffness / body.mount->mass));
+  return std::max(speed, std::sqrt(gravity * least_width(p)));
+}
+
+/// True if the velocity of the fluid bounds dt by itself: that of the start, and sides that change in time.
+bool fluid_moves(const FlowScene& scene) {
+  const auto is_zero = [](const std::string& text) { return SpaceTimeFunction(text).constant() == 0.0; };
+  return !std::ranges::all_of(scene.initial_velocity(), is_zero) ||
+         std::ranges::any_of(scene.parameters.boundary,
+                             [](const flow::Boundary& side) { return !side.velocity_expressions.empty(); });
+}
+
+/// Gives run.max_dt its default. Fluid at rest would leave dt without a bound, while sheets that it moves
+/// need one; steps resolve prescribed motion by themselves.
+void complete_time_step(const Table& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   if (!scene.has_sheets() || p.fixed_dt > 0.0 || p.max_dt > 0.0) return;
-  double least_width = std::numeric_limits<double>::infinity(), speed = 1.0;  // m, m/s
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (p.cells[axis] > 1) least_width = std::min(least_width, cell_width(p, axis));
-    const auto known = SpaceTimeFunction(scene.velocity[axis]).constant();
-    if (known) speed = std::max(speed, std::abs(*known));
+  p.max_dt = scene.end_time;
+  if (!scene.has_free_sheets()) return;
+  const double speed = known_speed(scene);
+  if (speed > 0.0)
+    p.max_dt = std::min(p.max_dt, scene.cfl() * least_width(p) / speed);
+  else if (!fluid_moves(scene))
+    contradict(root, "run",
+               "missing key \"run.max_dt\" (needed where neither stream nor gravity moves a sheet): the "
+               "largest dt");
+}
+
+/// Refuses a dt, or a viscosity that limits it, with which the run would need more steps than it may take.
+void check_steps(const Table& root, const FlowScene& scene) {
+  const flow::Parameters& p = scene.parameters;
+  const auto most = static_cast<double>(p.max_steps);
+  std::ostringstream text;
+  text.precision(3);
+  if (p.fixed_dt > 0.0) {
+    const double steps = scene.end_time / p.fixed_dt;
+    if (steps <= most || root.given("run.max_steps")) return;
+    text << "run.dt = " << p.fixed_dt << " s: " << steps
+         << " steps to run.end_time, more than run.max_steps = " << most;
+    contradict(root, "run.dt", text.str());
   }
-  p.max_dt = scene.cfl() * least_width / speed;
+  const double dt = flow::largest_diffusive_dt(p), steps = scene.end_time / dt;
+  if (steps <= most || root.given("run.max_steps")) return;
+  text << "fluid.viscosity: limits a step to " << dt << " s, " << steps
+       << " steps to run.end_time, more than run.max_steps = " << most
+       << "; flow.diffusion = \"crank-nicolson\" has no such limit";
+  contradict(root, "fluid.viscosity", text.str());
 }
 
 /// Refuses gravity under which an edge of cloth would double its length by its own weight: neither the cloth
@@ -296,9 +354,11 @@ void complete_and_check(const Table& root, FlowScene& scene) {
                                                : flow::Advection::weno_z;
   check_scheme(root, p);
   complete_velocities(root, scene);
-  complete_time_step(scene);
+  complete_time_step(root, scene);
+  p.horizon = scene.end_time;
   check_net_inflow(root, scene);
   check_solver(root, p);
+  check_steps(root, scene);
   complete_and_check_bodies(root, scene);
   check_and_place_canopies(root, scene.canopies);
   check_canopies(root, scene);

@@ -98,9 +98,11 @@ void declare_flow(Table& table, FlowScene& scene) {
             "advection");
   table.value("diffusion", scene::choice_codec(parameters.diffusion, diffusion_choices),
               "Time integration of viscous stresses: explicit, which limits dt, or implicit");
-  table.value("time", scene::choice_codec(parameters.time_scheme, time_choices),
-              "Time integration: Runge-Kutta of third order with three projections, or Adams-Bashforth of "
-              "second order");
+  table
+      .value("time", scene::choice_codec(parameters.time_scheme, time_choices),
+             "Time integration: Runge-Kutta of third order with three projections, or Adams-Bashforth of "
+             "second order")
+      .default_text("`\"rk3\"`; `\"ab2\"` with diffusion = \"crank-nicolson\"");
   table.value("pressure", scene::choice_codec(parameters.pressure_solver, pressure_choices),
               "Solver of the pressure equation; `auto` is the faster direct one, in the preset exact "
               "diagonalization");
@@ -160,8 +162,9 @@ void declare_run(Table& table, FlowScene& scene) {
       .unit("s")
       .above(0.0)
       .default_text(
-          "with a [[body]], [[canopy]] or [[flag]] `cfl` times the least width of a cell over 1 m/s "
-          "or, if it is larger, the largest number in fluid.velocity; else none")
+          "with sheets that the fluid moves `cfl` times the least width h of a cell over the largest "
+          "number in fluid.velocity and grid.wall_velocity, or over sqrt(g h) with gravity g, if that is "
+          "larger; else none")
       .when(free_step, free_step_condition, "dt");
   table
       .value("max_steps", scene::integer_codec(parameters.max_steps),

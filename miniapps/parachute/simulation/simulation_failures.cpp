@@ -37,9 +37,16 @@ std::string Simulation::flow_failure_text() {
   const flow::StepFailure failure = _solver->failure();
   const double fixed_dt = _scene.parameters.fixed_dt;
   const bool is_unstable = failure.reason == flow::FailureReason::time_step && failure.dt < fixed_dt;
+  // The velocity has grown within the last step beyond what that could resolve.
+  const double last_dt = _solver->progress().last_dt;
+  const bool outgrows = failure.reason == flow::FailureReason::time_step && !(fixed_dt > 0.0) &&
+                        failure.dt > 0.0 && failure.dt < last_dt;
   // Without a finite velocity of the start the first step has no dt.
   const bool is_initial = failure.step == 1 && std::isnan(failure.dt);
-  if (is_unstable)
+  if (outgrows)
+    text << "in a step of " << last_dt << " s the velocity has grown so much that the largest stable one is "
+         << failure.dt << " s,";
+  else if (is_unstable)
     text << "run.dt = " << fixed_dt << " s exceeds the largest stable time step, " << failure.dt << " s,";
   else
     text << flow::failure_text(failure.reason);
@@ -49,7 +56,7 @@ std::string Simulation::flow_failure_text() {
     text << " in " << cell_text(_scene.parameters, failure.index);
   text << " at " << (is_initial ? "the initial projection" : "step " + std::to_string(failure.step))
        << ", t = " << failure.time << " s";
-  if (!is_initial && !is_unstable) text << ", dt = " << failure.dt << " s";
+  if (!is_initial && !is_unstable && !outgrows) text << ", dt = " << failure.dt << " s";
   if (failure.reason == flow::FailureReason::net_inflow)
     text << ": " << failure.net_inflow << " m^3/s; grid.boundary needs an \"outflow\" side";
   if (failure.reason == flow::FailureReason::pressure_solver) {
@@ -60,6 +67,7 @@ std::string Simulation::flow_failure_text() {
   }
   if (failure.reason == flow::FailureReason::not_finite && !is_initial)
     text << "; a smaller " << step_key() << " may save the run";
+  if (outgrows) text << "; a smaller run.max_dt may save the run";
   return text.str();
 }
 

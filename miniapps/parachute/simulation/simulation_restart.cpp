@@ -24,6 +24,8 @@ void visit(Progress& progress, const Number& number, const Integer& integer) {
   number("dt_min", progress.dt_min);
   number("dt_max", progress.dt_max);
   integer("rate_bits", progress.rate);
+  integer("velocity_rate_bits", progress.velocity_rate);
+  number("longest_dt", progress.longest_dt);
 }
 
 }  // namespace

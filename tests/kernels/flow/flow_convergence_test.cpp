@@ -179,6 +179,7 @@ TEST(FlowConvergence, OscillatingPlateIsOfSecondOrder) {
       p.cfl = 0.5;
       // Steps of up to 40 times the bound of explicit diffusion.
       if (p.diffusion == Diffusion::crank_nicolson) p.fixed_dt = 1.0 / n;
+      p.horizon = 1.0;
       for (const std::size_t side : {2U, 3U}) {
         p.boundary[side].kind = BoundaryKind::wall;
         p.boundary[side].velocity_expressions = {velocity_of_plate(side == 2 ? 0.0 : 0.5), zero.program(),

@@ -329,6 +329,7 @@ TEST(FlowStepSize, FirstStepFromRestFollowsTheInflow) {
     p.time_scheme = time;
     p.boundary[0].kind = BoundaryKind::inflow;
     p.boundary[0].velocity_expressions = {postfix({"t", 3.0, "*", "sin", 10.0, "*"}), zero(), zero()};
+    p.horizon = 10.25;
     p.boundary[1].kind = BoundaryKind::outflow;
     p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::slip;
     const auto solver = started(backend, p, FlowDomain(p).zero_field());

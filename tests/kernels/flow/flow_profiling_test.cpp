@@ -68,6 +68,7 @@ std::vector<Option> options() {
     device::ExpressionBuilder builder;
     builder.push("t");
     p.boundary[4].velocity_expressions.assign(3, builder.program());
+    p.horizon = 1.0;
   };
   // Instead of six transforms and a scaling, four products and the systems along z.
   return {{"products with matrices",

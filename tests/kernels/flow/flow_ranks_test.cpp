@@ -262,6 +262,37 @@ TEST_F(FlowRanks, TakeTheStepsOfOneRankByMultigrid) {
 }
 #endif
 
+TEST_F(FlowRanks, ChooseTheDtOfOneRank) {
+  // From rest, by sides that accelerate, walls, forces and viscosity, whose largest values lie on different
+  // ranks.
+  for (const TimeIntegration& integration : time_integrations)
+    for (const Case& each : cases()) {
+      Parameters p = each.parameters;
+      integration.set(p);
+      p.cfl = 0.0;
+      p.horizon = 0.5;
+      for (std::size_t side = 0; side < 6; ++side)
+        if (p.boundary[side].kind == BoundaryKind::wall && p.boundary[side].velocity_expressions.empty())
+          set_expressions(p.boundary[side]);
+      const StaggeredField rest = FlowDomain(p).zero_field();
+      for (const int ranks : {2, 3, 4}) {
+        const linear::RankGroup group = first_ranks(ranks);
+        if (!belongs_to_first(ranks)) continue;
+        SharedSolver one(p, {}), shared(p, group);
+        one.start(rest);
+        shared.start(rest);
+        for (int step = 1; step <= 6; ++step) {
+          const Stop expected = one->advance(0.5, step, {}), found = shared->advance(0.5, step, {});
+          ASSERT_EQ(expected, found) << each.name << " on " << ranks;
+          const double dt = one->progress().last_dt;
+          EXPECT_NEAR(dt, shared->progress().last_dt, 1e-11 * dt)
+              << each.name << " on " << ranks << ", step " << step;
+          if (expected != Stop::pause) break;
+        }
+      }
+    }
+}
+
 TEST_F(FlowRanks, ThreeRanksTakeTheStepsOfOneRank) { expect_steps_of_one_rank(cases()[0], 3); }
 
 TEST_F(FlowRanks, ContinueBitForBitOnAsManyRanksAndNearlyOnOthers) {

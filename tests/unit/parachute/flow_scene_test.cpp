@@ -139,20 +139,45 @@ TEST(FlowScene, PrintsDefaultsThatFollowFromOtherKeys) {
                          std::string("turbulence_constant = ") + constant + "\n"));
 }
 
-TEST(FlowScene, SheetsBoundTheTimeStepOfFluidAtRest) {
-  // Half of the least width, 1/6 m, over 1 m/s, or over the largest component of the stream.
-  const std::string body = "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1}]";
-  const auto max_dt = [&](const char* velocity) {
-    return read_text(least, {body, std::string("fluid.velocity=") + velocity}).parameters.max_dt;
+TEST(FlowScene, SheetsThatTheFluidMovesBoundTheTimeStep) {
+  // Half of the least width, 1/6 m, over the largest component of the stream, or sqrt(g h), or the speed of
+  // the plate on its spring.
+  const auto plate = [](const std::string& offset) {
+    return "body=[{kind=\"plate\",normal=\"x\",centre=[1,0.5,0.5],lengths=[0.4,0.4],edge_length=0.1,mount="
+           "{mass=2,stiffness=8,offset=" +
+           offset + "}}]";
   };
-  EXPECT_DOUBLE_EQ(max_dt("[0,0,0]"), 0.5 / 6.0);
-  EXPECT_DOUBLE_EQ(max_dt("[0,-5,2]"), 0.1 / 6.0);
-  EXPECT_DOUBLE_EQ(max_dt("[\"3*t\",0,0]"), 0.5 / 6.0);
+  const auto max_dt = [&](const std::vector<std::string>& sets) {
+    return read_text(least, sets).parameters.max_dt;
+  };
+  EXPECT_DOUBLE_EQ(max_dt({plate("0"), "fluid.velocity=[0,-5,2]"}), 0.1 / 6.0);
+  EXPECT_DOUBLE_EQ(max_dt({plate("0.1"), "fluid.velocity=[0.1,0,0]"}), 0.5 / 6.0 / 0.2);
+  EXPECT_DOUBLE_EQ(max_dt({plate("0"), "fluid.velocity=[1e-3,0,0]"}), 1.0);  // the end
+  EXPECT_DOUBLE_EQ(max_dt({plate("0"), "fluid.velocity=[\"3*t\",0,0]"}), 1.0);
+  EXPECT_TRUE(contains(error_of({plate("0")}), "run.max_dt"));
+  EXPECT_EQ(max_dt({plate("0"), "run.max_dt=0.01"}), 0.01);
+  EXPECT_EQ(max_dt({plate("0"), "run.dt=0.01"}), 0.0);
+  const std::string body = "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1}]";
   const FlowScene scene = read_text(least, {body});
-  EXPECT_TRUE(contains(print_flow_scene(scene), "cfl = 0.5\nmax_dt = 0.083333"));
-  EXPECT_EQ(read_text(least, {body, "run.max_dt=0.01"}).parameters.max_dt, 0.01);
-  EXPECT_EQ(read_text(least, {body, "run.dt=0.01"}).parameters.max_dt, 0.0);
+  EXPECT_TRUE(contains(print_flow_scene(scene), "cfl = 0.5\nmax_dt = 1.0"));
   EXPECT_EQ(fingerprint_of(scene), fingerprint_of(read_text(least, {body, "run.max_dt=0.01"})));
+}
+
+TEST(FlowScene, ImplicitDiffusionTakesItsTimeSchemeByItself) {
+  const auto time = [](const std::vector<std::string>& sets) {
+    return read_text(least, sets).parameters.time_scheme;
+  };
+  EXPECT_EQ(time({"flow.diffusion=crank-nicolson"}), flow::TimeScheme::ab2);
+  EXPECT_EQ(time({}), flow::TimeScheme::rk3);
+  EXPECT_TRUE(contains(error_of({"flow.diffusion=crank-nicolson", "flow.time=rk3"}), "needs flow.time"));
+}
+
+TEST(FlowScene, RefusesStepsThatReachNoEnd) {
+  EXPECT_TRUE(contains(error_of({"run.dt=1e-300"}), "run.max_steps"));
+  EXPECT_TRUE(contains(error_of({"fluid.viscosity=1e12"}), "run.max_steps"));
+  EXPECT_TRUE(contains(error_of({"fluid.density=1e-300"}), "run.max_steps"));
+  EXPECT_EQ(error_of({"fluid.viscosity=1e12", "flow.diffusion=crank-nicolson"}), "");
+  EXPECT_EQ(error_of({"run.dt=1e-300", "run.max_steps=7"}), "");
 }
 
 TEST(FlowScene, SceneWithoutFluidIsClothAlone) {

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <Kokkos_Core.hpp>
+
+#include "kernels/device/expression_program.hpp"
+#include "kernels/stepping/motion_interval.hpp"
+
+// Bounds of dt from prescribed motion, known before a run: steps resolve its changes, and none is blind to
+// what will move within it.
+
+namespace drogue::stepping {
+
+/// Prescribed motion, sampled before a run.
+struct PrescribedMotion {
+  /// Values at a time, s: each counts by its own range.
+  std::function<void(double time, std::span<double> values)> evaluate;
+  std::size_t values = 0;
+  /// Speed over cell widths, 1/s, between two times, s, from the values there.
+  std::function<double(double dt, std::span<const double> before, std::span<const double> after)> rate;
+  std::vector<double> times;  ///< s, at which it may jump, say the constants of its expression
+};
+
+/// Divides the time from 0 to `end`, s, > 0. A sine has some 20 intervals a period. A jump takes the time
+/// between two neighbouring numbers; its interval begins just before it. Values that are not finite count as
+/// zero. Motion that changes too often for a list of a million intervals keeps the shortest `longest` found.
+/// Throws std::bad_alloc.
+[[nodiscard]] std::vector<MotionInterval> motion_intervals(const PrescribedMotion& motion, double end);
+
+/// Intervals that hold for both motions. Throws std::bad_alloc.
+[[nodiscard]] std::vector<MotionInterval> merged(const std::vector<MotionInterval>& a,
+                                                 const std::vector<MotionInterval>& b);
+
+/// Constants of expressions of time that may be times of jumps, s. Throws std::bad_alloc.
+[[nodiscard]] std::vector<double> constants_of(std::span<const device::ExpressionProgram> programs);
+
+/// Bound of a step from prescribed motion.
+struct MotionBound {
+  double dt;    ///< s
+  double jump;  ///< s, time of a jump within it, at which a step ends; infinite: none
+};
+
+/// Shortens `steps` equal steps of `dt` from `time`, s, so that they resolve the motion, and dt times the
+/// rate of what moves within them is at most `cfl`. `intervals` has `count` entries, at least one.
+KOKKOS_INLINE_FUNCTION MotionBound bound_by_motion(const MotionInterval* intervals, int count, double time,
+                                                   double dt, double cfl, double steps = 1.0) {
+  int at = 0, end = count;
+  while (end - at > 1) {
+    const int middle = at + (end - at) / 2;
+    (intervals[middle].begin <= time ? at : end) = middle;
+  }
+  MotionBound bound{dt, Kokkos::Experimental::infinity_v<double>};
+  for (int i = at; i < count; ++i) {
+    const MotionInterval interval = intervals[i];
+    const double left = (interval.begin - time) / steps;
+    if (left >= bound.dt) break;
+    if (i > at && interval.begins_with != 0 && left > 1e-12 * interval.begin) {
+      bound.jump = interval.begin;
+      break;
+    }
+    double longest = interval.longest;
+    if (longest * interval.rate > cfl) longest = cfl / interval.rate;
+    if (longest < left) longest = left;
+    if (longest < bound.dt) bound.dt = longest;
+  }
+  return bound;
+}
+
+}  // namespace drogue::stepping

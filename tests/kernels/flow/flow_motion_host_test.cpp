@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "kernels/flow/boundary/side_motion.hpp"
+#include "kernels/stepping/motion_steps.hpp"
+#include "tests/support/expression_program.hpp"
+
+// Bounds of dt from prescribed motion, known before a run.
+
+namespace drogue::flow {
+namespace {
+
+using stepping::MotionInterval;
+using testing::postfix;
+
+/// Division for a velocity over a cell width, 1/s.
+std::vector<MotionInterval> divided(const std::function<double(double)>& speed, double end,
+                                    const std::vector<double>& times = {}) {
+  stepping::PrescribedMotion motion;
+  motion.values = 1;
+  motion.evaluate = [&](double time, std::span<double> values) { values[0] = speed(time); };
+  motion.rate = [](double, std::span<const double>, std::span<const double> after) {
+    return std::abs(after[0]);
+  };
+  motion.times = times;
+  return stepping::motion_intervals(motion, end);
+}
+
+/// Steps until `end`, each as long as the intervals and `longest` admit; `visit` has begin and end of each.
+int steps_until(const std::vector<MotionInterval>& intervals, double end, double longest, double cfl,
+                const std::function<void(double, double)>& visit) {
+  double time = 0.0;
+  int steps = 0;
+  while (time < end && steps < 100000) {
+    const auto bound = stepping::bound_by_motion(intervals.data(), static_cast<int>(intervals.size()), time,
+                                                 std::min(longest, end - time), cfl);
+    const double next = bound.jump < time + bound.dt ? bound.jump : time + bound.dt;
+    visit(time, next);
+    time = next;
+    ++steps;
+  }
+  return steps;
+}
+
+TEST(FlowMotion, ResolvesAnySine) {
+  for (const double periods : {0.5, 3.0, 50.0, 256.0, 512.0, 1000.0, 1024.0})
+    for (const double mean : {0.0, 30.0}) {
+      const auto intervals = divided(
+          [&](double t) { return mean + 1e-3 * std::sin(2.0 * std::numbers::pi * periods * t / 7.0); }, 7.0);
+      const int steps = steps_until(intervals, 7.0, 7.0, 1e3, [](double, double) {});
+      EXPECT_GE(steps, 16.0 * periods) << periods;
+      EXPECT_LE(steps, 40.0 * periods + 2.0) << periods;
+    }
+}
+
+TEST(FlowMotion, StepsEndJustBeforeAJumpAndAreBoundByTheSpeedAfterIt) {
+  for (const double place : {1.0, 0.3, 2.7182818, 3.9999})
+    for (const auto& [before, after] : {std::pair{0.0, 50.0}, std::pair{50.0, 0.0}, std::pair{1.0, -80.0}}) {
+      const auto speed = [&, before = before, after = after](double t) { return t < place ? before : after; };
+      const auto intervals = divided(speed, 4.0);
+      bool met = false;
+      steps_until(intervals, 4.0, 4.0, 0.5, [&](double begin, double end) {
+        const double fastest = std::max(std::abs(speed(begin)), std::abs(speed(end)));
+        if (begin < place * (1.0 - 1e-14)) {
+          EXPECT_LT(end, place);
+        }
+        if (begin >= place * (1.0 - 1e-14)) {
+          EXPECT_LE((end - begin) * fastest, 0.5 * (1.0 + 1e-12));
+        }
+        met = met || std::abs(end - place) < 1e-14 * place;
+      });
+      EXPECT_TRUE(met) << place;
+    }
+}
+
+TEST(FlowMotion, FindsAShortPulseByTheConstantsOfItsExpression) {
+  // A ten-thousandth of the run.
+  const auto pulse = [](double t) { return t > 1.23 && t < 1.2304 ? 9.0 : 0.0; };
+  const auto intervals = divided(pulse, 4.0, {1.23, 1.2304});
+  EXPECT_EQ(std::ranges::count_if(intervals, [](const MotionInterval& i) { return i.begins_with != 0; }), 2);
+  const auto gauss = divided([](double t) { return std::exp(-std::pow((t - 2.1) / 1e-5, 2)); }, 4.0, {2.1});
+  const int steps = steps_until(gauss, 4.0, 4.0, 1e3, [](double, double) {});
+  EXPECT_GT(steps, 20);
+  EXPECT_LT(steps, 200);
+}
+
+TEST(FlowMotion, NoStepIsBlindToWhatMovesWithinIt) {
+  const auto ramp = [](double t) { return 20.0 * std::tanh(1e4 * (t - 1.0)) + 20.0; };
+  const auto intervals = divided(ramp, 2.0);
+  steps_until(intervals, 2.0, 2.0, 0.5, [&](double begin, double end) {
+    EXPECT_LE((end - begin) * std::max(ramp(begin), ramp(end)), 0.75) << begin;
+  });
+}
+
+TEST(FlowMotion, RestAndEvenMotionHaveOneStep) {
+  EXPECT_EQ(steps_until(divided([](double) { return 3.0; }, 5.0), 5.0, 5.0, 100.0, [](double, double) {}), 1);
+  EXPECT_EQ(steps_until(divided([](double t) { return t; }, 5.0), 5.0, 5.0, 100.0, [](double, double) {}), 1);
+  EXPECT_EQ(divided([](double) { return std::nan(""); }, 5.0).size(), 1U);
+}
+
+TEST(FlowMotion, MergedIntervalsHoldForBoth) {
+  const std::vector<MotionInterval> a = {{0.0, 4.0, 1.0, 0}, {2.0, 0.5, 3.0, 1}},
+                                    b = {{0.0, 1.0, 2.0, 0}, {1.0, 3.0, 0.0, 0}, {2.0, 2.0, 1.0, 0}};
+  const auto both = stepping::merged(a, b);
+  ASSERT_EQ(both.size(), 3U);
+  EXPECT_EQ(both[0].longest, 1.0);
+  EXPECT_EQ(both[0].rate, 2.0);
+  EXPECT_EQ(both[1].begin, 1.0);
+  EXPECT_EQ(both[1].longest, 3.0);
+  EXPECT_EQ(both[2].longest, 0.5);
+  EXPECT_EQ(both[2].rate, 3.0);
+  EXPECT_EQ(both[2].begins_with, 1);
+}
+
+TEST(FlowMotion, MotionOfSidesCountsAllComponentsAndUnitsScale) {
+  Parameters p;
+  p.cells = {8, 16, 4};
+  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::wall;
+  p.boundary[2].velocity_expressions = {postfix({"t", 6.0, "*", "sin", "x", "*"}), postfix({0.0}),
+                                        postfix({"t", 2.0, "*"})};
+  EXPECT_TRUE(side_motion(p).empty());  // no horizon
+  p.horizon = 3.0;
+  const auto intervals = side_motion(p);
+  ASSERT_GT(intervals.size(), 45U);
+  double rate = 0.0;
+  for (const MotionInterval& interval : intervals) rate = std::max(rate, interval.rate);
+  EXPECT_GT(rate, 28.0);
+  EXPECT_LT(rate, 8.0 + 4.0 * 6.0);
+  // Twice the domain at the same speeds.
+  p.high = {2.0, 2.0, 2.0};
+  p.boundary[2].velocity_expressions[0] = postfix({"t", 6.0, "*", "sin", "x", "*", 2.0, "/"});
+  const auto wide = side_motion(p);
+  ASSERT_EQ(wide.size(), intervals.size());
+  for (std::size_t i = 0; i < wide.size(); ++i) EXPECT_NEAR(wide[i].rate, 0.5 * intervals[i].rate, 1e-12);
+}
+
+}  // namespace
+}  // namespace drogue::flow
