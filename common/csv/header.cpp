@@ -20,7 +20,7 @@ constexpr std::string_view cr_alone = "the lines end in CR alone; LF or CRLF mus
 const char* separator_in(std::string_view text) {
   if (text.find(';') != std::string_view::npos) return "a semicolon";
   if (text.find('\t') != std::string_view::npos) return "a tab";
-  return text.find('|') != std::string_view::npos ? "a bar" : nullptr;
+  return text.find('|') != std::string_view::npos ? "a vertical line" : nullptr;
 }
 
 /// True for the beginning of UTF-16, with a byte-order mark or with every other byte 0.
@@ -30,7 +30,7 @@ bool is_utf16(std::string_view text) {
          ((text[0] == '\0' && !is_control(text[1])) || (text[1] == '\0' && !is_control(text[0])));
 }
 
-/// What makes a file unreadable, as a sentence; empty if it can be read.
+/// Fault that makes a file unreadable, as a sentence; empty if it can be read.
 std::string fault_of(const Line& line) {
   if (line.too_long)
     return line.holds_cr ? std::string(cr_alone)

@@ -29,7 +29,7 @@ class SensitivityPricer {
 
   /// Computes `sensitivities` from `prices`, which a pricer with these settings and Greeks gave for
   /// `contracts`; all of the same length. Their bits do not depend on the other contracts. Returns wall
-  /// times, s. Blocking.
+  /// times, s. Blocking. Throws as `Pricer::price`.
   WallTimes compute(std::span<const Contract> contracts, std::span<const Price> prices,
                     std::span<Sensitivities> sensitivities);
 

@@ -145,7 +145,7 @@ class Converter {
     _family.convert(values.data(), contract.jump);
     if (!_command.unit_is_period && !scale_periods(contract.jump, _command.periods))
       throw fail(
-          "a sum of such returns has no generalized hyperbolic law, except for variance gamma and p = -0.5: "
+          "sums of such returns are not generalized hyperbolic, except for variance gamma and p = -0.5: "
           "--time-unit period gives rows that count time in periods");
     if (const std::string_view clause = options::violated_condition(contract); !clause.empty())
       throw fail(std::string(clause));

@@ -250,7 +250,7 @@ TEST(CsvHeader, NamesTheSeparatorAndTheEncoding) {
                 .find("1: unknown column \"first;second\": the separator is a semicolon"),
             std::string::npos);
   EXPECT_NE(header_fault("first\tsecond\n").find("the separator is a tab"), std::string::npos);
-  EXPECT_NE(header_fault("first|second\n").find("the separator is a bar"), std::string::npos);
+  EXPECT_NE(header_fault("first|second\n").find("the separator is a vertical line"), std::string::npos);
   EXPECT_NE(header_fault("sep=;\nfirst;second\n").find("1: the separator is a semicolon"), std::string::npos);
   EXPECT_NE(header_fault("first,second,,\n").find("a separator, the comma"), std::string::npos);
   const std::string little("f\0i\0r\0\n\0", 8), big("\0f\0i\0r\0\n", 8);

@@ -154,7 +154,8 @@ TEST_F(Conversion, CountsTimeInYearsOrInPeriods) {
   ConversionCommand command = command_of("genhyperbolic");
   command.periods = 250.0;
   const std::string fit = "p,a,b,loc,scale,rate,dividend,maturity\n1,1.5,-0.5,0,0.01,0.05,,0.5\n";
-  EXPECT_TRUE(converted(command, fit).starts_with("3/p.csv:2: a sum of such returns has no generalized "));
+  EXPECT_TRUE(
+      converted(command, fit).starts_with("3/p.csv:2: sums of such returns are not generalized hyperbolic"));
   command.unit_is_period = true;
   EXPECT_EQ(converted(command, fit),
             "rate,dividend,maturity,lambda,alpha,beta,delta,variance\n2e-04,,125,1,150,-50,0.01,0\n");
