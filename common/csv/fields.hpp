@@ -14,6 +14,11 @@ class Fields {
   /// fault the fields before it are kept. Does not throw.
   std::string_view split(std::string_view line);
 
+  /// Removes empty fields at the end beyond `count`, which spreadsheets write. Does not throw.
+  void drop_trailing_empty(std::size_t count) {
+    while (_values.size() > count && _values.back().empty()) _values.pop_back();
+  }
+
   [[nodiscard]] std::size_t size() const { return _values.size(); }
   [[nodiscard]] std::string_view operator[](std::size_t i) const { return _values[i]; }
 

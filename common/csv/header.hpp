@@ -18,8 +18,9 @@ struct Header {
   std::vector<int> places;  ///< column index of each requested name; -1: absent
 };
 
-/// Reads the first line as column names. Throws `Failure` (invalid_scene) for an empty file, for a name that
-/// is not in `names`, with the nearest valid one, and for a repeated name.
+/// Reads the first line as column names; `sep=,` before it is skipped, and rows of commas after it will be.
+/// Throws `Failure` (invalid_scene) for an empty file, for a name that is not in `names`, with the nearest
+/// valid one, for a repeated name, and for another separator, encoding or end of lines, which it names.
 Header read_header(LineReader& reader, const std::vector<std::string>& names);
 
 }  // namespace drogue::csv

@@ -22,6 +22,11 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(" \t") == std::string_view::npos; }
 
+bool is_empty_row(std::string_view text, std::size_t columns) {
+  return columns > 1 && text.find_first_not_of(" \t,") == std::string_view::npos &&
+         static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) + 1 >= columns;
+}
+
 }  // namespace
 
 LineReader::LineReader(std::filesystem::path file) : _file(std::move(file)), _buffer(block) {
@@ -94,6 +99,7 @@ bool LineReader::next_line(Line& line) {
   line.number = ++_number;
   line.too_long = length > longest;
   line.text = {_buffer.data() + _begin, std::min(length, longest)};
+  line.holds_cr = line.too_long && line.text.find('\r') != std::string_view::npos;
   if (ended) {
     _begin += length + 1;
     if (line.text.ends_with('\r')) line.text.remove_suffix(1);
@@ -110,7 +116,7 @@ bool LineReader::next_line(Line& line) {
 
 bool LineReader::next(Line& line) {
   while (next_line(line))
-    if (line.too_long || !is_blank(line.text)) return true;
+    if (line.too_long || !(is_blank(line.text) || is_empty_row(line.text, _columns))) return true;
   return false;
 }
 

@@ -12,6 +12,7 @@ struct Line {
   std::string_view text;    ///< valid until the next line is read
   std::int64_t number = 0;  ///< counted from 1
   bool too_long = false;
+  bool holds_cr = false;  ///< of a line that is too long: lines may end in CR alone
 };
 
 /// Reads a file line by line in constant memory. Skips blank lines and a byte-order mark.
@@ -29,6 +30,9 @@ class LineReader {
   /// Reads the next line; false at the end. Throws `Failure` (io_error).
   bool next(Line& line);
 
+  /// Lines of at least so many empty fields are blank from now on: spreadsheets write rows of commas.
+  void skip_empty_rows(std::size_t columns) { _columns = columns; }
+
   [[nodiscard]] const std::filesystem::path& file() const { return _file; }
 
   /// Fraction of the bytes of the file up to the end of the last line that was returned, 0 to 1.
@@ -43,6 +47,7 @@ class LineReader {
   int _descriptor = -1;
   std::vector<char> _buffer;
   std::size_t _begin = 0, _end = 0;  ///< unread part of `_buffer`
+  std::size_t _columns = 0;          ///< of an empty row; 0: none is skipped
   std::int64_t _size = 0, _read = 0, _number = 0;
 };
 

@@ -24,11 +24,11 @@ enum class ExerciseRule : unsigned char {
   split,  ///< after the solve, by operator splitting (Ikonen and Toivanen 2004); for comparison
 };
 
-/// Settings of a pricer. Either mesh and steps are given, or the tolerance chooses them.
+/// Settings of a pricer. Either mesh and steps are given, or the tolerance chooses them. `cos` has no mesh.
 struct Settings {
   Method method = Method::pide;
   int mesh = 0;   ///< spatial intervals; 0: chosen by `tolerance`
-  int steps = 0;  ///< time steps; 0: chosen by `tolerance`
+  int steps = 0;  ///< time steps (`cos`: dates of American options); 0: chosen by `tolerance`
   /// Bound of |price - true price|, relative to the strike, beyond which a price is `PriceStatus::coarse`. A
   /// given mesh has none.
   double tolerance = 1e-4;
@@ -47,6 +47,13 @@ struct WallTimes {
   double h2d = 0.0;
   double compute = 0.0;  ///< includes work on the host, such as tables of Bessel functions
   double d2h = 0.0;
+
+  /// Adds the times of another batch. Does not throw.
+  void add(const WallTimes& other) {
+    h2d += other.h2d;
+    compute += other.compute;
+    d2h += other.d2h;
+  }
 };
 
 /// Point of an early exercise boundary.

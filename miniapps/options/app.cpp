@@ -22,6 +22,8 @@ ExitCode run_command(const Command& command) {
       return print(version_text("drogue-options"));
     case Action::list_batches:
       return print(batch_list());
+    case Action::convert:
+      return convert_parameters(command.conversion);
     case Action::price:
     case Action::surface:
       break;

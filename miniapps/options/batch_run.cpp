@@ -54,12 +54,11 @@ struct OpenBatch {
   std::vector<int> columns;   ///< as `BatchReader::columns`
 };
 
-/// Pricer of this rank, with its share of the host's cores.
-std::unique_ptr<options::Pricer> create_rank_pricer(device::Backend backend, options::Settings settings,
-                                                    const Communicator& communicator) {
+/// Settings of this rank, with its share of the host's cores.
+options::Settings rank_settings(options::Settings settings, const Communicator& communicator) {
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   settings.host_threads = std::max(1, cores / communicator.ranks_on_host());
-  return with_usage_error([&] { return options::create_pricer(backend, settings); });
+  return settings;
 }
 
 /// One batch and its result document.
@@ -94,16 +93,20 @@ class BatchRun {
     OpenBatch batch(_communicator, _command, _input);
     std::optional<framework::DeviceSession> session;
     std::unique_ptr<options::Pricer> pricer;
+    std::optional<options::SensitivityPricer> sensitivities;
     _communicator.run_collectively([&] {
       framework::require_backend(batch.backend);
       session.emplace(batch.backend, _command.kokkos);
       session->describe(_result);
       if (_communicator.is_root() && !_command.quiet) session->print_shared_cores("drogue-options");
-      pricer = create_rank_pricer(batch.backend, _command.settings, _communicator);
+      const options::Settings settings = rank_settings(_command.settings, _communicator);
+      pricer = with_usage_error([&] { return options::create_pricer(batch.backend, settings); });
+      if (settings.greeks) sensitivities.emplace(batch.backend, settings);
     });
     _result.timing.setup_s = _wall_time.seconds();
     const Stopwatch run_time;
-    ChunkPricer chunk_pricer(_command, row_kind(_command), batch.columns, *pricer);
+    ChunkPricer chunk_pricer(_command, row_kind(_command), batch.columns, *pricer,
+                             sensitivities ? &*sensitivities : nullptr);
     PricingResult priced;
     _communicator.run_collectively([&] {
       if (!_communicator.is_root()) return run_worker(_communicator, chunk_pricer);

@@ -15,8 +15,12 @@ constexpr std::size_t max_result_bytes = std::size_t{1} << 20;
 }  // namespace
 
 ChunkPricer::ChunkPricer(const Command& command, RowKind kind, const std::vector<int>& columns,
-                         options::Pricer& pricer)
-    : _command(command), _layout(row_layout(command)), _reader(kind, columns), _pricer(pricer) {}
+                         options::Pricer& pricer, options::SensitivityPricer* sensitivities)
+    : _command(command),
+      _layout(row_layout(command)),
+      _reader(kind, columns),
+      _pricer(pricer),
+      _sensitivity_pricer(sensitivities) {}
 
 void ChunkPricer::run(WorkQueue& queue) {
   const auto finish = [&] {
@@ -82,6 +86,7 @@ void ChunkPricer::price_pending(WorkQueue& queue) {
   _is_stopped = interrupted() || queue.is_closed();
   if (_is_stopped) return;
   _prices.assign(_contracts.size(), {});
+  _sensitivities.assign(_contracts.size(), {});
   if (!_contracts.empty()) price_contracts();
   std::size_t priced = 0;
   for (const PendingRow& pending : _pending) {
@@ -91,12 +96,12 @@ void ChunkPricer::price_pending(WorkQueue& queue) {
       continue;
     }
     if (!pending.point_error.empty()) {
-      append_invalid_point(_results, row, pending.strike, pending.maturity, pending.point_error);
+      append_invalid_point(_results, _layout, row, pending.strike, pending.maturity, pending.point_error);
       continue;
     }
     const options::Contract& contract = _contracts[priced];
-    const options::Price& price = _prices[priced++];
-    append_price(_results, _layout, row, contract, price);
+    const options::Price& price = _prices[priced];
+    append_price(_results, _layout, row, contract, price, _sensitivities[priced++]);
     if (!_command.boundary.empty() && contract.style == options::Style::american &&
         price.status != options::PriceStatus::failed)
       append_boundary(_results, row, boundary_of(contract, price));
@@ -117,10 +122,9 @@ std::vector<options::BoundaryPoint> ChunkPricer::boundary_of(const options::Cont
 
 void ChunkPricer::price_contracts() {
   const Stopwatch pricing;
-  const options::WallTimes times = _pricer.price(_contracts, _prices);
-  _usage.wall_times.h2d += times.h2d;
-  _usage.wall_times.compute += times.compute;
-  _usage.wall_times.d2h += times.d2h;
+  _usage.wall_times.add(_pricer.price(_contracts, _prices));
+  if (_sensitivity_pricer != nullptr)
+    _usage.wall_times.add(_sensitivity_pricer->compute(_contracts, _prices, _sensitivities));
   _usage.pricing += pricing.seconds();
 }
 

@@ -16,9 +16,10 @@ namespace drogue::options_app {
 /// rows.
 class ChunkPricer {
  public:
-  /// `columns`: column indices of the batch, from its `BatchReader`. Keeps references to `command` and
-  /// `pricer`.
-  ChunkPricer(const Command& command, RowKind kind, const std::vector<int>& columns, options::Pricer& pricer);
+  /// `columns`: column indices of the batch, from its `BatchReader`. Keeps references to all but them.
+  /// `sensitivities`: null without Greeks.
+  ChunkPricer(const Command& command, RowKind kind, const std::vector<int>& columns, options::Pricer& pricer,
+              options::SensitivityPricer* sensitivities);
 
   /// Prices the chunks of `queue`. Blocks until the queue ends or a signal arrives. Reports the end of the
   /// worker to the queue, also if it throws.
@@ -44,10 +45,12 @@ class ChunkPricer {
   RowLayout _layout;
   RowReader _reader;
   options::Pricer& _pricer;
+  options::SensitivityPricer* _sensitivity_pricer;
   std::vector<ContractRow> _rows;
   std::vector<PendingRow> _pending;
   std::vector<options::Contract> _contracts;  ///< the valid contracts of the pending rows, in order
   std::vector<options::Price> _prices;
+  std::vector<options::Sensitivities> _sensitivities;
   ResultBatch _results;
   WorkerUsage _usage;
   Stopwatch _chunk_time;

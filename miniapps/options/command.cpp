@@ -9,6 +9,7 @@
 #include "common/csv/numbers.hpp"
 #include "common/program/command_line.hpp"
 #include "common/program/failure.hpp"
+#include "miniapps/options/input/parameter_families.hpp"
 
 namespace drogue::options_app {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 struct OptionValues {
   std::string input, out, result, boundary, method = "pide", tolerance, mesh, steps, strikes, maturities,
                                             chunk;
+  std::string family, parameters, periods, time_unit = "year";
   bool greeks = false;
 };
 
@@ -37,11 +39,33 @@ void declare_pricing(CLI::App& app, OptionValues& values, Command& command) {
                     ->excludes(tolerance);
   mesh->needs(steps);
   steps->needs(mesh);
-  app.add_flag("--greeks", values.greeks, "delta, gamma and theta too");
+  app.add_flag("--greeks", values.greeks,
+               "delta, gamma, theta, vega and rho too (American: four more solves)");
   app.add_option("--result", values.result, "write timing and counts as JSON")->type_name("FILE");
   app.add_option("--chunk", values.chunk, "rows priced at a time; changes no result (default: by speed)")
       ->type_name("N");
   app.add_flag("--quiet", command.quiet, "show no progress and no summary");
+}
+
+void declare_conversion(CLI::App& app, OptionValues& values) {
+  std::vector<std::string> families;
+  for (const ParameterFamily& family : parameter_families()) families.emplace_back(family.name);
+  app.add_option("FAMILY", values.family, "what the parameters describe")
+      ->required()
+      ->check(CLI::IsMember(families));
+  auto* file =
+      app.add_option("PARAMS", values.input, "CSV file of parameters, and columns of a batch to keep");
+  app.add_option("--parameters", values.parameters,
+                 "one set instead of a file, say sigma=0.12,nu=0.17,theta=-0.14")
+      ->type_name("LIST")
+      ->excludes(file);
+  app.add_option("--periods-per-year", values.periods,
+                 "the parameters describe the returns of one period, say 252 for days (1)")
+      ->type_name("N");
+  app.add_option("--time-unit", values.time_unit, "unit of time of the rows that are written")
+      ->check(CLI::IsMember({"year", "period"}))
+      ->capture_default_str();
+  app.add_option("--out", values.out, "CSV file (standard output)")->type_name("FILE");
 }
 
 /// Divisibility of a number and its name in error messages.
@@ -91,6 +115,24 @@ options::Settings pricer_settings(const OptionValues& values) {
 
 }  // namespace
 
+namespace {
+
+ConversionCommand conversion_of(const OptionValues& values) {
+  if (values.input.empty() && values.parameters.empty())
+    throw Failure(ExitCode::usage, "convert needs a CSV file or --parameters");
+  ConversionCommand conversion;
+  conversion.family = values.family;
+  conversion.input = values.input;
+  conversion.parameters = values.parameters;
+  conversion.out = values.out;
+  if (!values.periods.empty())
+    conversion.periods = parse_number("--periods-per-year", values.periods, 1e-3, 1e9);
+  conversion.unit_is_period = values.time_unit == "period";
+  return conversion;
+}
+
+}  // namespace
+
 std::vector<double> parse_values(const std::string& option, const std::string& text) {
   constexpr double min = 1e-300, max = 1e300;
   constexpr int max_values = 10000;
@@ -99,7 +141,7 @@ std::vector<double> parse_values(const std::string& option, const std::string& t
   for (const char c : text) {
     if (c == separator) {
       parts.emplace_back();
-    } else {
+    } else if (c != ' ' && c != '\t') {
       parts.back() += c;
     }
   }
@@ -148,6 +190,8 @@ Command parse_command(int argc, const char* const* argv) {
   surface->add_option("--maturities", values.maturities, "first:last:count, or a list, in years")->required();
   surface->add_option("--out", values.out, "CSV file of the prices (surface.csv)")->type_name("FILE");
   declare_pricing(*surface, values, command);
+  CLI::App* convert = app.add_subcommand("convert", "write other parameters of jumps as columns of a batch");
+  declare_conversion(*convert, values);
 
   Arguments arguments = split_arguments(argc, argv);
   command.help = parse_command_line(app, arguments.program);
@@ -157,9 +201,16 @@ Command parse_command(int argc, const char* const* argv) {
     command.action = version ? Action::version : Action::list_batches;
     return command;
   }
+  if (convert->parsed()) {
+    require_nonempty_values(*convert);
+    command.action = Action::convert;
+    command.conversion = conversion_of(values);
+    return command;
+  }
   const bool prices = price->parsed();
   if (!prices && !surface->parsed())
-    throw Failure(ExitCode::usage, "no command given: price or surface; --help shows what they take");
+    throw Failure(ExitCode::usage,
+                  "no command given: price, surface or convert; --help shows what they take");
   require_nonempty_values(prices ? *price : *surface);
   command.action = prices ? Action::price : Action::surface;
   command.input = values.input;

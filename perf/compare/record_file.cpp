@@ -26,7 +26,19 @@ std::string infinite_number(const std::string& line, std::size_t column) {
   return "";
 }
 
+/// True for the beginning of an array of objects.
+bool begins_array(const std::string& line) {
+  constexpr const char* blanks = " \t\r";
+  const std::size_t bracket = line.find_first_not_of(blanks);
+  if (line[bracket] != '[') return false;
+  const std::size_t next = line.find_first_not_of(blanks, bracket + 1);
+  return next == std::string::npos || line[next] == '{';
+}
+
 nlohmann::json parse_line(const std::string& line, const std::string& place) {
+  if (begins_array(line))
+    throw invalid(
+        place, "the file is a JSON array; records are JSON objects, one a line, as `jq -c .[]` writes them");
   try {
     nlohmann::json json = nlohmann::json::parse(line);
     if (json.is_object()) return json;

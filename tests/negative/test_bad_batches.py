@@ -83,6 +83,17 @@ class BadBatches(options_program.OptionsTest):
                     self.assertIn(word, message)
                 self.assertEqual(["batch.csv"], self.names())
 
+    def test_reads_what_spreadsheets_add(self):
+        """The line of the separator, rows of commas, and empty fields behind the last column."""
+        self.price(0, batch([row("a"), row("b")]), *FAST)
+        expected = self.prices()
+        empty = "," * HEADER.count(",")
+        self.price(0, "sep=,\r\n" + "\r\n".join([HEADER, row("a") + ",,", empty, row("b"), empty + ",", empty]) + "\r\n", *FAST)
+        self.assertEqual(expected, self.prices())
+        lines = [line.split(",", 1)[1] for line in (HEADER, row("a"), row("b"))]
+        self.price(0, "\n".join([*lines[:2], empty[1:], lines[2]]), *FAST)
+        self.assertEqual(["1", "2"], [reported["id"] for reported in self.prices()])
+
     def test_rejects_invalid_models(self):
         names = "id,spot,strike,rate,maturity,variance,model,intensity,jump_mean,jump_deviation,up_probability"
         lines = [names + ",up_rate,down_rate", "good,1,1,0.05,1,0.04,merton,0.1,-0.9,0.45,,,"]

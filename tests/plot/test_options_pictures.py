@@ -44,6 +44,19 @@ class OptionsPictures(unittest.TestCase):
         self.assertEqual(2, len(panel.lines))
         self.assertEqual({"a (2 equal)", "c"}, {text.get_text() for text in panel.texts})
 
+    def test_shows_a_week_and_ten_years_on_one_axis(self):
+        """Curves of times to expiry that differ by more than ten times lie over the share of their times."""
+        week = 7 / 365
+        self.write(boundary=f"id,time,spot\nlong,0,70\nlong,5,80\nlong,10,100\nshort,0,95\nshort,{week / 2},97\nshort,{week},100\n")
+        (panel,) = prices_figure(self.folder).axes
+        self.assertEqual([[0.0, 0.5, 1.0]] * 2, [list(line.get_xdata()) for line in panel.lines])
+        self.assertEqual({"long, 10 a", "short, 7 d"}, {text.get_text() for text in panel.texts})
+        self.assertIn("share", panel.get_xlabel())
+        self.write(boundary="id,time,spot\nlong,0,70\nlong,10,100\nshort,0,95\nshort,1,100\n")
+        (panel,) = prices_figure(self.folder).axes
+        self.assertEqual([[0.0, 10.0], [0.0, 1.0]], [list(line.get_xdata()) for line in panel.lines])
+        self.assertEqual("time (years)", panel.get_xlabel())
+
     def test_rejects_file_in_place_of_folder(self):
         self.write(prices="id,price\na,1\n", surface=SURFACE)
         for name, hint in (("prices", "surface.csv"), ("surface", str(self.folder))):

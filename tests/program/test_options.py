@@ -151,6 +151,53 @@ class Prices(options_program.OptionsTest):
             self.price(0, batch([row("a")]), "--mesh", mesh, "--steps", steps)
             self.assertEqual((str(mesh), str(steps)), tuple(self.prices()[0][name] for name in ("mesh", "steps")))
 
+    def test_writes_vega_and_rho_behind_the_other_columns(self):
+        content = batch([row("a", style="american"), row("b", beta=9), row("c", style="american", spot=0.2),
+                         row("d", variance=0), row("e", type="call", style="american", dividend=0.05)])
+        for method in ((), FAST):
+            self.price(3, content, "--greeks", *method)
+            lines = (self.folder / "prices.csv").read_text().splitlines()
+            self.assertEqual(",".join([*options_program.COLUMNS, *options_program.GREEKS]), lines[0])
+            self.assertEqual({len(options_program.COLUMNS) + 2}, {len(line) for line in csv.reader(lines)})
+            a, b, c, d, e = self.prices()
+            self.assertGreater(float(a["vega"]), 0.05)
+            self.assertLess(float(a["rho"]), -0.05)
+            self.assertEqual(("", ""), (b["vega"], b["rho"]))
+            self.assertEqual(["-1", "0", "0", "0", "0"], [c[name] for name in ("delta", "gamma", "theta", "vega", "rho")])
+            self.assertEqual("0", d["vega"])
+            self.assertGreater(float(e["rho"]), 0.05)
+        self.price(3, content)
+        self.assertEqual(options_program.COLUMNS, (self.folder / "prices.csv").read_text().splitlines()[0].split(","))
+
+    def test_blanks_around_strikes_are_ignored(self):
+        head, line = "id,style,spot,rate,lambda,alpha,beta,delta", "a,european,1,0.05,1,8.15,-2.5,0.767"
+        sets = self.write(f"{head}\n{line}\n", "sets.csv")
+        written = set()
+        for strikes, maturities in (("0.9,1.1", "0.5:1:2"), (" 0.9, 1.1 ", "0.5 : 1 : 2")):
+            self.expect(0, "surface", sets, "--strikes", strikes, "--maturities", maturities, "--quiet", "--mesh", "64", "--steps", "16")
+            written.add((self.folder / "surface.csv").read_bytes())
+        self.assertEqual(1, len(written))
+        self.assertIn("--strikes = '", self.expect(2, "surface", sets, "--strikes", "0.9,,1", "--maturities", "1").stderr)
+
+    def test_converts_other_parameters_to_a_batch(self):
+        """A price does not depend on the unit of time, and a batch that is converted is one that can be priced."""
+        given = "id,style,spot,strike,rate,maturity,alpha,beta,delta\na,european,1,1.1,0.05,0.5,40,-8,0.02\n"
+        price = {}
+        for unit in ("year", "period"):
+            self.expect(0, "convert", "nig", self.write(given, "nig.csv"), "--periods-per-year", "250", "--time-unit", unit,
+                        "--out", f"{unit}.csv")
+            self.expect(0, "price", f"{unit}.csv", "--quiet", *FAST)
+            price[unit] = float(self.prices()[0]["price"])
+        self.assertAlmostEqual(price["year"], price["period"], delta=1e-12)
+        printed = self.expect(0, "convert", "variance-gamma", "--parameters", "sigma=0.2,nu=0.5,theta=0").stdout
+        self.assertEqual("lambda,alpha,beta,delta,variance\n2,10,0,0,0\n", printed)
+        for words, code, sentence in ((("nig",), 2, "needs a CSV file or --parameters"),
+                                      (("nigg", "nig.csv"), 2, "nigg"),
+                                      (("nig", "no.csv"), 2, "no.csv"),
+                                      (("variance-gamma", "nig.csv"), 3, 'unknown column "alpha"'),
+                                      (("nig", "nig.csv", "--periods-per-year", "0"), 2, "--periods-per-year")):
+            self.assertIn(sentence, self.expect(code, "convert", *words).stderr)
+
     def test_writes_greeks_on_request(self):
         content = batch([row("a", style="american")])
         self.price(0, content)

@@ -91,6 +91,7 @@ std::string_view RowReader::field(int column) const {
 /// those that can be read.
 void RowReader::split(const csv::Line& line) {
   _line_error = _fields.split(line.too_long ? std::string_view() : line.text);
+  _fields.drop_trailing_empty(_column_count);
   if (line.too_long) {
     _line_error = "the line is longer than " + std::to_string(csv::LineReader::longest) + " bytes";
   } else if (_line_error.empty() && _fields.size() != _column_count) {

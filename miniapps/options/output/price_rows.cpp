@@ -51,12 +51,13 @@ void append_next(std::string& text, Number value) {
 
 /// Completes a row without a price, whose id, strike and maturity are written, and counts it. A row without
 /// an id is identified by its line number in the message.
-void append_error(ResultBatch& batch, const ContractRow& row, std::string_view message) {
+void append_error(ResultBatch& batch, const RowLayout& layout, const ContractRow& row,
+                  std::string_view message) {
   batch.prices += ",,,,,,,,,invalid,";
   csv::append_field(batch.prices, row.id.empty()
                                       ? "line " + std::to_string(row.line) + ": " + std::string(message)
                                       : std::string(message));
-  batch.prices += '\n';
+  batch.prices += layout.greeks ? ",,\n" : "\n";
   RowCounts& counts = batch.counts;
   ++counts.rows;
   if (counts.invalid++ > 0) return;
@@ -68,11 +69,13 @@ void append_error(ResultBatch& batch, const ContractRow& row, std::string_view m
 
 std::string price_header(const RowLayout& layout) {
   return std::string(layout.surface ? "id,strike,maturity," : "id,") +
-         "price,error,delta,gamma,theta,exercise_boundary,mesh,steps,status,message\n";
+         "price,error,delta,gamma,theta,exercise_boundary,mesh,steps,status,message" +
+         (layout.greeks ? ",vega,rho\n" : "\n");
 }
 
 void append_price(ResultBatch& batch, const RowLayout& layout, const ContractRow& row,
-                  const options::Contract& contract, const options::Price& price) {
+                  const options::Contract& contract, const options::Price& price,
+                  const options::Sensitivities& sensitivities) {
   std::string& text = batch.prices;
   csv::append_field(text, row.id);
   if (layout.surface) {
@@ -91,6 +94,10 @@ void append_price(ResultBatch& batch, const RowLayout& layout, const ContractRow
     append_next(text, price.steps);
   }
   text += status_fields(layout, price);
+  if (layout.greeks) {
+    append_next(text, sensitivities.vega);
+    append_next(text, sensitivities.rho);
+  }
   text += '\n';
   RowCounts& counts = batch.counts;
   ++counts.rows;
@@ -101,15 +108,15 @@ void append_price(ResultBatch& batch, const RowLayout& layout, const ContractRow
 void append_invalid(ResultBatch& batch, const RowLayout& layout, const ContractRow& row) {
   csv::append_field(batch.prices, row.id);
   if (layout.surface) batch.prices += ",,";
-  append_error(batch, row, row.error_message);
+  append_error(batch, layout, row, row.error_message);
 }
 
-void append_invalid_point(ResultBatch& batch, const ContractRow& row, double strike, double maturity,
-                          std::string_view message) {
+void append_invalid_point(ResultBatch& batch, const RowLayout& layout, const ContractRow& row, double strike,
+                          double maturity, std::string_view message) {
   csv::append_field(batch.prices, row.id);
   append_next(batch.prices, strike);
   append_next(batch.prices, maturity);
-  append_error(batch, row, message);
+  append_error(batch, layout, row, message);
   ++batch.counts.invalid_points;
 }
 

@@ -6,6 +6,7 @@
 
 #include "kernels/options/contract.hpp"
 #include "kernels/options/pricer.hpp"
+#include "kernels/options/sensitivities.hpp"
 #include "miniapps/options/input/row_reader.hpp"
 #include "miniapps/options/output/result_batch.hpp"
 
@@ -14,7 +15,8 @@ namespace drogue::options_app {
 /// Layout of the rows of prices.
 struct RowLayout {
   bool surface = false;        ///< strike and maturity follow the id
-  bool greeks = false;         ///< delta, gamma and theta are filled in; else their fields are empty
+  bool greeks = false;         ///< delta, gamma and theta are filled in, and vega and rho follow the message;
+                               ///< else the fields of the former are empty
   bool grid_is_fixed = false;  ///< mesh and steps are options of the run; else the tolerance chooses them
 };
 
@@ -23,15 +25,16 @@ struct RowLayout {
 
 /// Appends the row of a priced contract and counts it. NaN becomes an empty field.
 void append_price(ResultBatch& batch, const RowLayout& layout, const ContractRow& row,
-                  const options::Contract& contract, const options::Price& price);
+                  const options::Contract& contract, const options::Price& price,
+                  const options::Sensitivities& sensitivities);
 
 /// Appends and counts an invalid row, which has an error message.
 void append_invalid(ResultBatch& batch, const RowLayout& layout, const ContractRow& row);
 
 /// Appends and counts a point of a surface that is invalid although its parameter set `row` is valid.
 /// `strike` in money, `maturity` in years.
-void append_invalid_point(ResultBatch& batch, const ContractRow& row, double strike, double maturity,
-                          std::string_view message);
+void append_invalid_point(ResultBatch& batch, const RowLayout& layout, const ContractRow& row, double strike,
+                          double maturity, std::string_view message);
 
 /// Header line of the file of exercise boundaries.
 inline constexpr const char* boundary_header = "id,time,spot\n";

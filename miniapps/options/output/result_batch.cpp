@@ -20,9 +20,7 @@ void RowCounts::add(const RowCounts& later) {
 }
 
 void WorkerUsage::add(const WorkerUsage& other) {
-  wall_times.h2d += other.wall_times.h2d;
-  wall_times.compute += other.wall_times.compute;
-  wall_times.d2h += other.wall_times.d2h;
+  wall_times.add(other.wall_times);
   pricing += other.pricing;
   counters.kernel_launches += other.counters.kernel_launches;
   counters.fences += other.counters.fences;

@@ -9,6 +9,7 @@ from ..style import plt
 
 FILES = ("surface.csv", "boundary.csv")
 _MOST_CURVES = len(style.PALETTE)
+_MOST_ON_ONE_AXIS = 10.0  # quotient of times to expiry
 
 
 def _curves(file: Path, names: tuple[str, ...], x: str, y: str) -> dict[str, tuple[list[float], list[float]]]:
@@ -34,6 +35,24 @@ def _merge_equal_curves(curves: dict) -> dict:
     return {
         f"{labels[0]} ({len(labels)} equal)" if len(labels) > 1 else labels[0]: curve
         for curve, labels in equal.items()
+    }
+
+
+def _duration(years: float) -> str:
+    """Short text of a time in the unit that suits it."""
+    for name, unit in (("a", 1.0), ("months", 1.0 / 12.0), ("d", 1.0 / 365.0)):
+        if years >= 0.95 * unit:
+            return f"{years / unit:.3g} {name}"
+    return f"{years * 8760.0:.3g} h"
+
+
+def _share_of_lifetimes(curves: dict) -> dict:
+    """The curves over the elapsed share of their times to expiry, which their labels state: a week and ten years
+    do not fit on one axis of years.
+    """
+    return {
+        f"{label}, {_duration(x[-1])}": ([time / x[-1] for time in x] if x[-1] > 0.0 else x, y)
+        for label, (x, y) in curves.items()
     }
 
 
@@ -65,8 +84,12 @@ def prices_figure(folder: Path):
         curves = _merge_equal_curves(
             {name: curve for (name,), curve in _curves(boundary, ("id",), "time", "spot").items()}
         )
+        across = "time (years)"
+        lifetimes = [x[-1] for x, _ in curves.values() if x[-1] > 0.0]
+        if lifetimes and max(lifetimes) > _MOST_ON_ONE_AXIS * min(lifetimes):
+            curves, across = _share_of_lifetimes(curves), "elapsed share of the time to expiry"
         if curves:
-            panels.append((list(curves.values()), list(curves), "exercise boundary", "time (years)", "spot"))
+            panels.append((list(curves.values()), list(curves), "exercise boundary", across, "spot"))
     if not panels:
         return None
     height = 1.0 + 2.6 * len(panels)

@@ -231,5 +231,59 @@ TEST(CsvHeader, FindsColumns) {
   EXPECT_EQ(header.places, (std::vector<int>{1, -1, 0}));
 }
 
+/// Message of the failure that reading the header of `content` ends in.
+std::string header_fault(const std::string& content) {
+  const CsvFile file(content);
+  LineReader reader(file.path());
+  try {
+    (void)read_header(reader, {"first", "second"});
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
+    const std::string message = failure.what();
+    return message.substr(message.find(".csv:") + 5);
+  }
+  return "";
+}
+
+TEST(CsvHeader, NamesTheSeparatorAndTheEncoding) {
+  EXPECT_NE(header_fault("first;second\n1;2\n")
+                .find("1: unknown column \"first;second\": the separator is a semicolon"),
+            std::string::npos);
+  EXPECT_NE(header_fault("first\tsecond\n").find("the separator is a tab"), std::string::npos);
+  EXPECT_NE(header_fault("first|second\n").find("the separator is a vertical line"), std::string::npos);
+  EXPECT_NE(header_fault("sep=;\nfirst;second\n").find("1: the separator is a semicolon"), std::string::npos);
+  EXPECT_NE(header_fault("first,second,,\n").find("a separator, the comma"), std::string::npos);
+  const std::string little("f\0i\0r\0\n\0", 8), big("\0f\0i\0r\0\n", 8);
+  for (const std::string& text : {"\xFF\xFE" + little, "\xFE\xFF" + big, little, big})
+    EXPECT_EQ(header_fault(text), "1: the encoding is UTF-16; save the file as UTF-8");
+  const std::string old_mac = "first,second\r1,2\r";
+  EXPECT_EQ(header_fault(old_mac), "1: the lines end in CR alone; LF or CRLF must end them");
+  std::string large;
+  while (large.size() <= LineReader::longest) large += old_mac;
+  EXPECT_EQ(header_fault(large), "1: the lines end in CR alone; LF or CRLF must end them");
+  EXPECT_NE(header_fault("sep=,\n").find("the file is empty"), std::string::npos);
+}
+
+TEST(CsvHeader, SkipsTheSeparatorOfSpreadsheetsAndRowsOfCommas) {
+  const CsvFile file("sep=,\na,b,c\n,,\n1,2,3\n, ,,,\n,\n");
+  LineReader reader(file.path());
+  EXPECT_EQ(read_header(reader, {"a", "b", "c"}).line, 2);
+  Line line;
+  ASSERT_TRUE(reader.next(line));
+  EXPECT_EQ(line.text, "1,2,3");
+  ASSERT_TRUE(reader.next(line));
+  EXPECT_EQ(line.text, ",");  // too few fields for an empty row
+  EXPECT_FALSE(reader.next(line));
+}
+
+TEST(CsvFields, DropsTrailingEmptyFields) {
+  Fields fields;
+  EXPECT_EQ(fields.split("a,,,"), "");
+  fields.drop_trailing_empty(2);
+  EXPECT_EQ(fields.size(), 2U);
+  fields.drop_trailing_empty(0);
+  EXPECT_EQ(fields.size(), 1U);
+}
+
 }  // namespace
 }  // namespace drogue::csv

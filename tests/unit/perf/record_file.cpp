@@ -60,6 +60,10 @@ TEST_F(RecordFile, RefusesLinesThatAreNoRecords) {
             "3/x.jsonl:2: the line ends within a record; is the file truncated?");
   EXPECT_EQ(refusal("time,price\n"), "3/x.jsonl:1: no JSON at column 2; is this a file of records?");
   EXPECT_EQ(refusal("[1]"), "3/x.jsonl:1: the line is no JSON object");
+  for (const std::string& array : {std::string("["), " [ {\"schema\":1},", "[" + std::string("{}") + "]"})
+    EXPECT_EQ(refusal(array),
+              "3/x.jsonl:1: the file is a JSON array; records are JSON objects, one a line, as `jq -c .[]` "
+              "writes them");
   EXPECT_EQ(refusal(R"({"time":1})"),
             "3/x.jsonl:1: no record of drogue-perf, which has a key 'schema' of 'drogue.perf/1'");
   EXPECT_EQ(refusal(good_record + "\n" + with("perf/1", "perf/2")),

@@ -1,0 +1,259 @@
+// ctest-label: no-sanitizer
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "kernels/options/sensitivities.hpp"
+#include "tests/support/priced.hpp"
+
+// Greeks of both methods on random contracts of all models and beside exercise boundaries: bounds that hold
+// for every process, exercised rows, and sensitivities against differences of prices on fine grids.
+
+namespace drogue::options {
+namespace {
+
+using testing::on_mesh;
+using testing::priced;
+
+/// Random American contracts, three puts for a call, of strike 100, and as many again within 10 % of the
+/// exercise boundaries of the former, most of them within 1 %.
+std::vector<Contract> random_americans(std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 bits(seed);
+  const auto in = [&](double a, double b) {
+    return a + (b - a) * static_cast<double>(bits() >> 11U) * 0x1p-53;
+  };
+  std::vector<Contract> contracts(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    Contract& c = contracts[k];
+    c.model = static_cast<JumpModel>(k % 4);
+    c.type = in(0.0, 1.0) < 0.75 ? Type::put : Type::call;
+    c.strike = 100.0;
+    c.spot = 100.0 * std::exp(in(-0.4, 0.4));
+    c.maturity = std::exp(in(std::log(0.02), std::log(5.0)));
+    c.rate = in(0.005, 0.12);
+    c.dividend = in(0.0, 1.0) < 0.5 ? 0.0 : in(0.0, 0.08);
+    if (c.type == Type::call) std::swap(c.rate, c.dividend);
+    c.variance = in(0.005, 0.16);
+    const double alpha = in(5.0, 30.0);
+    const double jumps[4][4] = {{in(-2.0, 2.0), alpha, in(-0.6, 0.3) * alpha - 0.5, in(0.05, 1.0)},
+                                {},
+                                {in(0.1, 3.0), in(-0.3, 0.1), in(0.05, 0.4)},
+                                {in(0.1, 5.0), in(0.0, 1.0), in(3.0, 20.0), in(2.0, 20.0)}};
+    std::copy_n(jumps[k % 4], 4, c.jump);
+  }
+  const std::vector<Price> prices = priced(on_mesh(512, 128), contracts);
+  for (std::size_t k = 0; k < count; ++k) {
+    Contract beside = contracts[k];
+    const double distances[] = {0.1, 0.01, 0.01, 0.003};
+    beside.spot = prices[k].exercise_boundary * (1.0 + in(-1.0, 1.0) * distances[k / 4 % 4]);
+    if (beside.spot > 1.0 && beside.spot < 1e4) contracts.push_back(beside);
+  }
+  return contracts;
+}
+
+double payoff_of(const Contract& c) { return c.type == Type::put ? c.strike - c.spot : c.spot - c.strike; }
+
+/// Delta in [-1, 0] (puts) or [0, 1], gamma >= 0, theta <= 0; the payoff's where the price is the payoff.
+void expect_possible(const std::vector<Contract>& contracts, const std::vector<Price>& prices) {
+  int exercised = 0;
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    const Contract& c = contracts[k];
+    const Price& price = prices[k];
+    const double sign = c.type == Type::put ? -1.0 : 1.0;
+    EXPECT_TRUE(sign * price.delta >= 0.0 && sign * price.delta <= 1.0) << k << ' ' << price.delta;
+    EXPECT_GE(price.gamma, 0.0) << k;
+    EXPECT_LE(price.theta, 0.0) << k;
+    if (price.price > payoff_of(c) + 1e-12 * (c.spot + c.strike)) continue;
+    ++exercised;
+    EXPECT_EQ(price.delta, sign) << k;
+    EXPECT_EQ(price.gamma, 0.0) << k;
+    EXPECT_EQ(price.theta, 0.0) << k;
+    EXPECT_FALSE(std::signbit(price.gamma) || std::signbit(price.theta)) << k;
+  }
+  EXPECT_GT(exercised, static_cast<int>(contracts.size()) / 10);
+}
+
+TEST(OptionsGreeks, FiniteDifferencesGivePossibleGreeks) {
+  const std::vector<Contract> contracts = random_americans(400, 1);
+  expect_possible(contracts, priced({}, contracts));
+}
+
+Settings cosines() {
+  Settings settings;
+  settings.method = Method::cos;
+  settings.greeks = true;
+  return settings;
+}
+
+TEST(OptionsGreeks, CosinesGivePossibleGreeksAndCoverTheirErrors) {
+  const std::vector<Contract> contracts = random_americans(40, 2);
+  const std::vector<Price> prices = priced(cosines(), contracts);
+  expect_possible(contracts, prices);
+  const std::vector<Price> fine = priced(on_mesh(2048, 1024), contracts);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    EXPECT_LE(std::abs(prices[k].price - fine[k].price), prices[k].error + fine[k].error) << k;
+    // Spots that are exercised, farther from the boundary than its uncertainty.
+    const bool is_exercised = fine[k].price <= payoff_of(contracts[k]) + 1e-12 * contracts[k].strike;
+    if (is_exercised && std::abs(contracts[k].spot / fine[k].exercise_boundary - 1.0) > 0.002) {
+      EXPECT_EQ(std::abs(prices[k].delta), 1.0) << k;
+    }
+  }
+}
+
+// Strike 100, r 0.05, q 0.02, half a year, variance 0.04: the boundary is 81.665.
+TEST(OptionsGreeks, CosinesResolveTheExerciseBoundary) {
+  std::vector<Contract> contracts;
+  for (int k = 0; k < 40; ++k)
+    contracts.push_back({.model = JumpModel::black_scholes,
+                         .spot = 72.0 + 0.5 * k,
+                         .strike = 100.0,
+                         .rate = 0.05,
+                         .dividend = 0.02,
+                         .maturity = 0.5,
+                         .variance = 0.04});
+  const std::vector<Price> prices = priced(cosines(), contracts),
+                           fine = priced(on_mesh(2048, 2048), contracts);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    const double spot = contracts[k].spot;
+    EXPECT_LE(std::abs(prices[k].price - fine[k].price), prices[k].error + fine[k].error) << spot;
+    EXPECT_LE(std::abs(prices[k].price - fine[k].price), 3e-3) << spot;
+    if (spot == 82.0) continue;  // its premium of 0.002 is within the error
+    EXPECT_NEAR(prices[k].delta, fine[k].delta, 0.005) << spot;
+    EXPECT_NEAR(prices[k].gamma, fine[k].gamma, 0.006) << spot;
+    EXPECT_NEAR(prices[k].theta, fine[k].theta, 0.7) << spot;
+  }
+}
+
+std::vector<Sensitivities> sensitivities_of(const Settings& settings,
+                                            const std::vector<Contract>& contracts) {
+  Settings with_greeks = settings;
+  with_greeks.greeks = true;
+  std::vector<Sensitivities> result(contracts.size());
+  SensitivityPricer(testing::tested_backend, with_greeks)
+      .compute(contracts, priced(with_greeks, contracts), result);
+  return result;
+}
+
+TEST(OptionsGreeks, EuropeanSensitivitiesAreThoseOfBlackAndScholes) {
+  const double maturity = 0.75, sigma = 0.25, rate = 0.03, dividend = 0.05;
+  for (const Type type : {Type::put, Type::call})
+    for (const double spot : {70.0, 100.0, 130.0}) {
+      const std::vector<Contract> contracts = {{.model = JumpModel::black_scholes,
+                                                .style = Style::european,
+                                                .type = type,
+                                                .spot = spot,
+                                                .strike = 100.0,
+                                                .rate = rate,
+                                                .dividend = dividend,
+                                                .maturity = maturity,
+                                                .variance = sigma * sigma}};
+      const double width = sigma * std::sqrt(maturity);
+      const double d = (std::log(spot / 100.0) + (rate - dividend) * maturity) / width + 0.5 * width;
+      const double vega =
+          spot * std::exp(-dividend * maturity - 0.5 * d * d) * std::sqrt(maturity / (2.0 * M_PI));
+      const double sign = type == Type::put ? -1.0 : 1.0;
+      const double rho = sign * 100.0 * maturity * std::exp(-rate * maturity) * 0.5 *
+                         std::erfc(-sign * (d - width) / std::sqrt(2.0));
+      const Sensitivities cos = sensitivities_of(cosines(), contracts)[0],
+                          pide = sensitivities_of(on_mesh(512, 128), contracts)[0];
+      EXPECT_NEAR(cos.vega, vega, 1e-7) << spot;
+      EXPECT_NEAR(cos.rho, rho, 1e-9) << spot;
+      EXPECT_NEAR(pide.vega, vega, 0.02) << spot;
+      EXPECT_NEAR(pide.rho, rho, 0.005) << spot;
+    }
+}
+
+// Against differences of European prices with jumps, by Fourier's integral.
+TEST(OptionsGreeks, EuropeanSensitivitiesAreDifferencesOfPricesWithJumps) {
+  for (Contract c : random_americans(12, 3)) {
+    c.style = Style::european;
+    const double h = 1e-4;
+    std::vector<Contract> moved(5, c);
+    moved[1].rate += h, moved[2].rate -= h;
+    moved[3].variance += h * c.variance, moved[4].variance -= h * c.variance;
+    const std::vector<Price> prices = testing::priced_by_fourier(moved);
+    const double rho = (prices[1].price - prices[2].price) / (2.0 * h);
+    const double vega = (prices[3].price - prices[4].price) / (h * std::sqrt(c.variance));
+    const Sensitivities s = sensitivities_of(cosines(), {c})[0];
+    EXPECT_NEAR(s.rho, rho, 1e-5 * c.strike * c.maturity);
+    EXPECT_NEAR(s.vega, vega, 1e-4 + 1e-5 * std::abs(vega));
+  }
+}
+
+// Against differences of American prices on finer grids with steps of another size. The tolerance is of the
+// strike, times the maturity for rho and its root for vega; exercised rows have none.
+void expect_differences(const Settings& settings, const std::vector<Contract>& contracts) {
+  const std::vector<Sensitivities> all = sensitivities_of(settings, contracts);
+  Settings with_greeks = settings;
+  with_greeks.greeks = true;
+  const std::vector<Price> prices = priced(with_greeks, contracts);
+  std::size_t near = 0, compared = 0;
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    const Contract& c = contracts[k];
+    if (std::abs(prices[k].delta) == 1.0) {
+      EXPECT_EQ(all[k].vega, 0.0) << k;
+      EXPECT_EQ(all[k].rho, 0.0) << k;
+      continue;
+    }
+    const double by_rate = c.type == Type::put ? std::min(0.002, 0.2 * c.rate) : 0.002;
+    const double by_variance = 0.01 * c.variance;
+    std::vector<Contract> moved(4, c);
+    moved[0].rate += by_rate, moved[1].rate -= by_rate;
+    moved[2].variance += by_variance, moved[3].variance -= by_variance;
+    const std::vector<Price> fine = priced(on_mesh(1024, 512), moved);
+    const double rho = (fine[0].price - fine[1].price) / (2.0 * by_rate);
+    const double vega = (fine[2].price - fine[3].price) / by_variance * std::sqrt(c.variance);
+    ++compared;
+    near += std::abs(all[k].rho - rho) < 0.01 * c.strike * c.maturity + 0.02 * std::abs(rho) &&
+            std::abs(all[k].vega - vega) < 0.005 * c.strike * std::sqrt(c.maturity) + 0.02 * vega;
+    EXPECT_NEAR(all[k].rho, rho, 0.1 * c.strike * c.maturity) << k;
+    EXPECT_NEAR(all[k].vega, vega, 0.02 * c.strike * std::sqrt(c.maturity)) << k;
+  }
+  EXPECT_GE(compared, contracts.size() / 4);
+  EXPECT_GE(near, compared * 19 / 20);
+}
+
+TEST(OptionsGreeks, AmericanSensitivitiesAreDifferencesOfFinePrices) {
+  expect_differences({}, random_americans(60, 4));
+  expect_differences(cosines(), random_americans(8, 5));
+}
+
+TEST(OptionsGreeks, PureJumpsHaveNoVegaAndRowsDoNotDependOnOthers) {
+  Contract c{.spot = 1.0, .strike = 1.05, .rate = 0.04, .maturity = 0.5};
+  const double nig[] = {-0.5, 12.0, -4.0, 0.4};
+  std::copy_n(nig, 4, c.jump);
+  Contract with_brownian = c;
+  with_brownian.variance = 0.03;
+  with_brownian.type = Type::call;
+  with_brownian.dividend = 0.05;
+  const std::vector<Sensitivities> both = sensitivities_of({}, {c, with_brownian});
+  EXPECT_EQ(both[0].vega, 0.0);
+  EXPECT_LT(both[0].rho, -0.1);
+  EXPECT_EQ(both[1].rho, sensitivities_of({}, {with_brownian})[0].rho);
+  EXPECT_EQ(both[1].vega, sensitivities_of({}, {with_brownian})[0].vega);
+}
+
+TEST(OptionsGreeks, SurfacesAgreeWithSingleContracts) {
+  std::vector<Contract> contracts;
+  for (const double strike : {90.0, 100.0, 110.0, 130.0})
+    contracts.push_back({.model = JumpModel::black_scholes,
+                         .spot = 100.0,
+                         .strike = strike,
+                         .rate = 0.05,
+                         .maturity = 0.5,
+                         .variance = 0.04});
+  Settings surface;
+  surface.surface = true;
+  const std::vector<Sensitivities> single = sensitivities_of({}, contracts),
+                                   shared = sensitivities_of(surface, contracts);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    EXPECT_NEAR(shared[k].vega, single[k].vega, 0.1) << k;
+    EXPECT_NEAR(shared[k].rho, single[k].rho, 0.1) << k;
+  }
+}
+
+}  // namespace
+}  // namespace drogue::options
