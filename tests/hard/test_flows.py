@@ -143,6 +143,14 @@ class HardCases(parachute_program.FlowTest):
         """Fluid that comes in slowly feels no wall."""
         self.expect(0, "vortex-outflow", "--quiet", "--backend", "serial", "--out", "out", sets=['grid.boundary.y="outflow"', "run.end_time=7", "output={}"])
 
+    def test_streams_keep_their_velocity_between_outflows(self):
+        """A disturbance draws in fluid from outside, which has the velocity of the stream."""
+        for diffusion in ("explicit", "crank-nicolson"):
+            with self.subTest(diffusion):
+                self.run_box([16, 16, 1], velocity='["1+1e-6*cos(2*pi*x)*sin(2*pi*y)", "-1e-6*sin(2*pi*x)*cos(2*pi*y)", 0]', viscosity=0.01,
+                             end=20, sets=["grid.boundary.y=outflow", "fluid.velocity=[1,0,0]", f"flow={{time='ab2',diffusion='{diffusion}'}}",
+                                           "output={}", "verify={exact={x=1,y=0,z=0},linf_velocity=1e-8}"])
+
     def test_backflow_keeps_the_accuracy_of_the_scheme(self):
         """du/dt = f - u^2 / (2 L), in steps of every scheme that follow the flow."""
         for scheme in ("time='rk3'", "time='ab2'", "time='ab2',diffusion='crank-nicolson'"):
