@@ -23,7 +23,7 @@ struct Control {
   /// Bits of the largest acceleration of each prescribed velocity component in the last step, in cells,
   /// 1/s^2.
   std::uint64_t side_acceleration[3];
-  // Of a step of implicit diffusion:
+  // Reductions of a step of implicit diffusion:
   std::uint64_t viscous_acceleration;  ///< bits of the largest one at its beginning, m/s^2
   std::uint64_t change;                ///< bits of the largest change of the predicted velocity, m/s
   /// Range of each velocity component at its beginning, sides included: `ordered_bits` of the largest value,

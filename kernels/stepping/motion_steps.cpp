@@ -12,8 +12,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Deviation from a straight line, in parts of the range of a value, that an interval may have.
 constexpr double largest_deviation = 0.006;
-/// Intervals at first.
-constexpr int first_intervals = 256;
+/// Intervals of a block at first, and number of blocks after the first one.
+constexpr int first_intervals = 128, most_doublings = 10;
+/// Blocks beyond one whose values count for its scale.
+constexpr int lookahead = 3;
 /// Part of the run that is too short to be resolved: motion that changes there jumps.
 constexpr double unresolved = 1e-9;
 constexpr int most_depth = 30;  // 2^-30 = 1e-9
@@ -31,22 +33,23 @@ class Division {
   Division(const PrescribedMotion& motion, double end) : _motion(motion), _end(end) {}
 
   std::vector<MotionInterval> run() {
-    std::vector<double> times = {_end};
-    for (int i = 0; i < first_intervals; ++i) times.push_back(_end * i / first_intervals);
-    for (const double time : _motion.times)
-      if (time > 0.0 && time < _end) times.push_back(time);
-    std::ranges::sort(times);
-    times.erase(std::unique(times.begin(), times.end()), times.end());
-    std::vector<Sample> samples;
-    for (const double time : times) samples.push_back(at(time));
-    // Equal parts may have a common measure with the period of the motion.
-    std::vector<Sample> tried = samples;
-    for (std::size_t i = 1; i < times.size(); ++i)
-      for (const double place : {0.309, 0.764})
-        tried.push_back(at(times[i - 1] + place * (times[i] - times[i - 1])));
-    find_scales(tried);
-    open(samples.front());
-    for (std::size_t i = 1; i < samples.size(); ++i) divide(samples[i - 1], samples[i], 0);
+    // Blocks of doubled length, so that another end changes no block before it.
+    int exponent = 0;
+    std::frexp(_end, &exponent);
+    std::vector<std::vector<Sample>> blocks;
+    double begin = 0.0;
+    for (int block = 0; block <= most_doublings + lookahead; ++block) {
+      const double end = std::ldexp(1.0, exponent - most_doublings + block);
+      blocks.push_back(samples_between(begin, end));
+      begin = end;
+    }
+    find_ranges(blocks);
+    open(blocks.front().front());
+    for (std::size_t block = 0; block <= most_doublings; ++block) {
+      set_scales(block);
+      for (std::size_t i = 1; i < blocks[block].size(); ++i)
+        divide(blocks[block][i - 1], blocks[block][i], 0);
+    }
     close();
     return std::move(_intervals);
   }
@@ -61,21 +64,47 @@ class Division {
     return sample;
   }
 
-  /// Scale of each value: its range, but not a far smaller one than the largest.
-  void find_scales(const std::vector<Sample>& samples) {
-    _scale.assign(_motion.values, 0.0);
-    double largest = 0.0;
-    for (std::size_t v = 0; v < _motion.values; ++v) {
-      double low = infinite, high = -infinite;
-      const auto include = [&](const Sample& sample) {
-        low = std::min(low, sample.values[v]);
-        high = std::max(high, sample.values[v]);
-      };
+  [[nodiscard]] std::vector<Sample> samples_between(double begin, double end) {
+    std::vector<double> times;
+    for (int i = 0; i <= first_intervals; ++i) times.push_back(begin + (end - begin) * i / first_intervals);
+    for (const double time : _motion.times)
+      if (time > begin && time < end) times.push_back(time);
+    std::ranges::sort(times);
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    std::vector<Sample> samples;
+    for (const double time : times) samples.push_back(at(time));
+    return samples;
+  }
+
+  /// Range of each value until the end of each block.
+  void find_ranges(const std::vector<std::vector<Sample>>& blocks) {
+    std::vector<double> low(_motion.values, infinite), high(_motion.values, -infinite);
+    const auto include = [&](const Sample& sample) {
+      for (std::size_t v = 0; v < low.size(); ++v) {
+        low[v] = std::min(low[v], sample.values[v]);
+        high[v] = std::max(high[v], sample.values[v]);
+      }
+    };
+    for (const std::vector<Sample>& samples : blocks) {
       std::ranges::for_each(samples, include);
-      _scale[v] = std::max(high - low, 1e-6 * std::max(std::abs(low), std::abs(high)));
-      largest = std::max(largest, high - low);
+      // Equal parts may have a common measure with the period of the motion.
+      for (std::size_t i = 1; i < samples.size(); ++i)
+        for (const double place : {0.309, 0.764})
+          include(at(samples[i - 1].time + place * (samples[i].time - samples[i - 1].time)));
+      std::vector<double> range(low.size());
+      for (std::size_t v = 0; v < low.size(); ++v)
+        range[v] = std::max(high[v] - low[v], 1e-6 * std::max(std::abs(low[v]), std::abs(high[v])));
+      _ranges.push_back(std::move(range));
     }
-    for (double& scale : _scale) scale = std::max(scale, 1e-3 * largest);
+  }
+
+  /// Scale of each value in a block: its range until eight times the end, but not a far smaller one than the
+  /// largest.
+  void set_scales(std::size_t block) {
+    _scale = _ranges[block + lookahead];
+    const double largest = *std::ranges::max_element(_scale),
+                 whole = *std::ranges::max_element(_ranges.back());
+    for (double& scale : _scale) scale = std::max({scale, 1e-3 * largest, 1e-9 * whole});
   }
 
   /// Largest difference between a sample and the line through two others, in parts of the scales.
@@ -114,19 +143,24 @@ class Division {
     divide(middle, b, depth + 1);
   }
 
+  /// True if joints at even distances, as far as there are some, lie beside the line to a sample.
+  [[nodiscard]] bool is_straight_until(const Sample& end) const {
+    constexpr int places = 16;
+    for (int i = 1; i <= places && !_joints.empty(); ++i) {
+      const double time = _begin.time + (end.time - _begin.time) * i / (places + 1);
+      const auto joint = std::ranges::lower_bound(_joints, time, {}, &Sample::time);
+      if (deviation(joint == _joints.end() ? _joints.back() : *joint, _begin, end) > largest_deviation)
+        return false;
+    }
+    return true;
+  }
+
   /// Joins a straight part to the interval that is open, or begins the next one.
   void append(const Sample& a, const Sample& b, std::initializer_list<const Sample*> between) {
-    const bool stays_straight = std::ranges::all_of(
-        _joints, [&](const Sample& joint) { return deviation(joint, _begin, b) <= largest_deviation; });
+    const bool stays_straight = is_straight_until(b);
     if (!stays_straight) {
       close();
       open(a);
-    }
-    // Joints close to another one say little.
-    if (_joints.size() >= 24) {
-      std::vector<Sample> rest;
-      for (std::size_t i = 0; i < _joints.size(); i += 2) rest.push_back(std::move(_joints[i]));
-      _joints = std::move(rest);
     }
     _joints.push_back(b);
     const Sample* before = &a;
@@ -182,6 +216,7 @@ class Division {
   const PrescribedMotion& _motion;
   double _end;
   std::vector<double> _scale;
+  std::vector<std::vector<double>> _ranges;  ///< by block
   std::vector<MotionInterval> _intervals;
   Sample _begin{}, _last{};
   std::vector<Sample> _joints;

@@ -17,10 +17,10 @@ namespace drogue::stepping {
 
 /// Prescribed motion, sampled before a run.
 struct PrescribedMotion {
-  /// Values at a time, s: each counts by its own range.
+  /// Values at a time, s: each counts by its own range. Does not throw.
   std::function<void(double time, std::span<double> values)> evaluate;
   std::size_t values = 0;
-  /// Speed over cell widths, 1/s, between two times, s, from the values there.
+  /// Speed over cell widths, 1/s, between two times, s, from the values there. Does not throw.
   std::function<double(double dt, std::span<const double> before, std::span<const double> after)> rate;
   std::vector<double> times;  ///< s, at which it may jump, say the constants of its expression
 };

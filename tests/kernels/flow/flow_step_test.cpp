@@ -147,7 +147,7 @@ void expect_equal_steps(const Parameters& p, unsigned seed,
   state.velocity = reference::with_side_velocity(domain, initial, 0.0);
   state.pressure = reference::project(domain, state.velocity, 1.0);
   if (is_implicit) {
-    // That of the present velocity, but for differences over 1e-4 dt, without viscosity in long steps.
+    // Pressure of the present velocity, but for differences over 1e-4 dt, without viscosity in long steps.
     state.pressure = download(*solver, p, StateField::pressure);
     double squares = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)

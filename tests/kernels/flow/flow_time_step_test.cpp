@@ -151,7 +151,7 @@ TEST(FlowTimeStep, GrowsByDegreesAndStaysStableWithinEveryStep) {
   });
 }
 
-TEST(FlowTimeStep, AStepThatOutgrowsItsBoundFailsAtTheTargetToo) {
+TEST(FlowTimeStep, FailsAfterAStepOfTooMuchGrowthAtTheTargetToo) {
   Parameters p = periodic_box({32, 32, 1});
   p.viscosity = 2e-5;
   for (std::size_t side = 0; side < 4; ++side) p.boundary[side].kind = BoundaryKind::wall;
