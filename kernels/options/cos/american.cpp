@@ -100,6 +100,8 @@ Price american_price(const Contract& c, const AmericanPut& put, const BermudanVa
     error += std::abs(values[AmericanPut::levels].value - values[AmericanPut::levels - 1].value);
   const double payoff = std::max(-std::expm1(put.x), 0.0), premium = value.four_levels - payoff;
   const bool exercised = payoff > 0.0 && premium <= std::min(error, tolerance);
+  // Beside the boundary, where the value has no third derivative, extrapolation is least regular.
+  if (payoff > 0.0 && std::abs(premium) <= error) error *= 1.5;
   error += put.aliasing_error + put.truncation_error + put.date_error;
 
   // The unit of money is the strike of the put, which is the spot of a call.
