@@ -60,14 +60,19 @@ void AmericanPut::prepare(double expiry, int dates, double tolerance) {
   aliasing_error =
       std::exp(-CharacteristicExponent::jump_range_digits * max_distance / std::max(range.down, 1.0));
 
-  const double dt = exercise_date(maturity, 1, finest);  // the shortest interval
-  const auto decay = [&](int log_terms) {
+  // Within the shortest interval, the first one. A coarser level needs fewer cosines.
+  const auto decay = [&](int level_dates, int log_terms) {
+    const double dt = exercise_date(maturity, 1, level_dates);
     return std::exp(dt * std::real(psi(std::numbers::pi / width * (1 << log_terms))));
   };
   constexpr double negligible = 1e-10;
+  puts.clear();
   int log_terms = 6;
-  while (log_terms < max_log_terms && decay(log_terms) > negligible) ++log_terms;
-
+  for (int level = 0; level < levels; ++level) {
+    const int level_dates = dates << level;
+    while (log_terms < max_log_terms && decay(level_dates, log_terms) > negligible) ++log_terms;
+    puts.push_back({x, rate, maturity, low, width, level_dates, log_terms, 0});
+  }
   const int terms = 1 << log_terms;
   psi_re.resize(terms);
   psi_im.resize(terms);
@@ -76,10 +81,7 @@ void AmericanPut::prepare(double expiry, int dates, double tolerance) {
     psi_re[k] = std::real(value);
     psi_im[k] = std::imag(value);
   }
-  puts.clear();
-  for (int level = 0; level < levels; ++level)
-    puts.push_back({x, rate, maturity, low, width, dates << level, log_terms, 0});
-  if (decay(log_terms) > negligible) {
+  if (decay(finest, log_terms) > negligible) {
     puts.push_back(puts.back());
     --puts.back().log_terms;
   }
@@ -100,6 +102,8 @@ Price american_price(const Contract& c, const AmericanPut& put, const BermudanVa
     error += std::abs(values[AmericanPut::levels].value - values[AmericanPut::levels - 1].value);
   const double payoff = std::max(-std::expm1(put.x), 0.0), premium = value.four_levels - payoff;
   const bool exercised = payoff > 0.0 && premium <= std::min(error, tolerance);
+  // Beside the boundary, where the value has no third derivative, extrapolation is least regular.
+  if (payoff > 0.0 && std::abs(premium) <= error) error *= 1.5;
   error += put.aliasing_error + put.truncation_error + put.date_error;
 
   // The unit of money is the strike of the put, which is the spot of a call.

@@ -176,7 +176,7 @@ TEST_F(Conversion, RejectsWhatCannotBeConverted) {
             "3/p.csv:2: |beta+1| < alpha must hold, else the asset has no mean");
   EXPECT_EQ(converted(command_of("nig"), "alpha,beta,delta\n1,2\n"),
             "3/p.csv:2: the row has 2 fields where the header has 3");
-  EXPECT_EQ(converted(command_of("nig"), "alpha,betta,delta\n1,2,3\n").substr(0, 33),
+  EXPECT_EQ(converted(command_of("nig"), "alpha,betta,delta\n1,2,3\n").substr(0, 34),
             "3/p.csv:1: unknown column \"betta\";");
   EXPECT_EQ(converted(command_of("nig", "alpha=40,beta=-8")), "2/--parameters: delta is missing");
   EXPECT_EQ(converted(command_of("nig", "alpha=40,alpha=3")), "2/--parameters: alpha is given twice");

@@ -60,7 +60,7 @@ TEST_F(RecordFile, RefusesLinesThatAreNoRecords) {
             "3/x.jsonl:2: the line ends within a record; is the file truncated?");
   EXPECT_EQ(refusal("time,price\n"), "3/x.jsonl:1: no JSON at column 2; is this a file of records?");
   EXPECT_EQ(refusal("[1]"), "3/x.jsonl:1: the line is no JSON object");
-  for (const std::string& array : {std::string("["), " [ {\"schema\":1},", "[" + std::string("{}") + "]"})
+  for (const char* array : {"[", " [ {\"schema\":1},", "[{}]"})
     EXPECT_EQ(refusal(array),
               "3/x.jsonl:1: the file is a JSON array; records are JSON objects, one a line, as `jq -c .[]` "
               "writes them");
