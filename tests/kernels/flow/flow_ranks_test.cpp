@@ -272,6 +272,7 @@ TEST_F(FlowRanks, ChooseTheDtOfOneRank) {
           set_expressions(p.boundary[side]);
       const StaggeredField rest = FlowDomain(p).zero_field();
       for (const int ranks : {2, 3, 4}) {
+        if (ranks == 3 && p.cells != cases()[0].parameters.cells) continue;  // too few cells
         const linear::RankGroup group = first_ranks(ranks);
         if (!belongs_to_first(ranks)) continue;
         SharedSolver one(p, {}), shared(p, group);
