@@ -116,6 +116,7 @@ std::vector<Case> cases() {
   base.viscosity = 0.02;
   base.body_force = {0.4, -0.3, 0.7};
   base.cfl = 0.4;
+  base.horizon = 1.0;
   std::vector<Case> all;
   const auto add = [&](const std::string& name, const std::array<int, 3>& cells) -> Parameters& {
     all.push_back({name, base});
