@@ -142,7 +142,7 @@ class FlowSolver {
   [[nodiscard]] double longest_first_dt() const;
   void set_guess() const;
   [[nodiscard]] stepping::MotionBound motion_bound(const Progress& now, double dt, double steps) const;
-  void solve_present_pressure(double nu);
+  void solve_present_pressure(double nu, double fraction = 1e-4);
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
@@ -352,10 +352,10 @@ void FlowSolver<ExecutionSpace>::set_guess() const {
 
 /// Solves for the pressure of the present velocity in `unknown`: that which keeps the velocity of an explicit
 /// step free of divergence, in the limit of a short step, with the kinematic viscosity `nu`, m^2/s. Leaves
-/// the state as it is.
+/// the state as it is. Accelerations of sides are differences over a `fraction` of dt, by whose inverse the
+/// round-off of the divergence grows.
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::solve_present_pressure(double nu) {
-  constexpr double fraction = 1e-4;  // accelerations of sides are differences over dt
+void FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fraction) {
   const Control kept = read_control();
   Control control = kept;
   const double dt =
@@ -428,7 +428,7 @@ void FlowSolver<ExecutionSpace>::start() {
   if (_diffusion && !control.has_failed()) {
     // The first step of implicit diffusion begins with a pressure, too. That of viscosity decays with the
     // thinnest layers, within a long step.
-    solve_present_pressure(_constants.fixed_dt > _constants.implicit_dt ? 0.0 : kinematic_viscosity());
+    solve_present_pressure(_constants.fixed_dt > _constants.implicit_dt ? 0.0 : kinematic_viscosity(), 5e-3);
     device::copy(space(), _pressure, unknown());
   }
   _last_solution_is_pressure = false;

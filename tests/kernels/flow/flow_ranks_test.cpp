@@ -116,6 +116,7 @@ std::vector<Case> cases() {
   base.viscosity = 0.02;
   base.body_force = {0.4, -0.3, 0.7};
   base.cfl = 0.4;
+  base.horizon = 1.0;
   std::vector<Case> all;
   const auto add = [&](const std::string& name, const std::array<int, 3>& cells) -> Parameters& {
     all.push_back({name, base});
@@ -276,6 +277,7 @@ TEST_F(FlowRanks, ChooseTheDtOfOneRank) {
           set_expressions(p.boundary[side]);
       const StaggeredField rest = FlowDomain(p).zero_field();
       for (const int ranks : {2, 3, 4}) {
+        if (ranks == 3 && p.cells != cases()[0].parameters.cells) continue;  // too few cells
         const linear::RankGroup group = first_ranks(ranks);
         if (!belongs_to_first(ranks)) continue;
         SharedSolver one(p, {}), shared(p, group);
