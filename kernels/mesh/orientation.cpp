@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/vectors.hpp"
 
 namespace drogue::mesh {
 namespace {
@@ -47,17 +48,11 @@ Neighbours neighbours_of(const Mesh& mesh) {
 }
 
 Vector from_to(const Mesh& mesh, const Vector& origin, int vertex) {
-  const Vector& x = mesh.rest[static_cast<std::size_t>(vertex)];
-  return {x[0] - origin[0], x[1] - origin[1], x[2] - origin[2]};
+  return difference(at(mesh.rest, vertex), origin);
 }
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Six times the volume of the tetrahedron of three vectors.
-double triple(const Vector& a, const Vector& b, const Vector& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
+double triple(const Vector& a, const Vector& b, const Vector& c) { return dot(a, cross(b, c)); }
 
 /// Solid angle that a part covers from a point, sr, over 4 pi: the number of turns of a closed part around
 /// it. van Oosterom and Strackee 1983, eq. (8).

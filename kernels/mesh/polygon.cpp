@@ -5,13 +5,10 @@
 #include <limits>
 
 #include "kernels/mesh/topology.hpp"
+#include "kernels/mesh/vectors.hpp"
 
 namespace drogue::mesh {
 namespace {
-
-const Vector& at(const std::vector<Vector>& points, int i) { return points[static_cast<std::size_t>(i)]; }
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 double distance(const Vector& a, const Vector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

@@ -5,16 +5,12 @@
 #include <numbers>
 #include <utility>
 
+#include "kernels/mesh/vectors.hpp"
+
 namespace drogue::mesh {
 namespace {
 
 using Corners = std::array<int, 3>;
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// Icosahedron with edges of length 2.
 Mesh icosahedron() {

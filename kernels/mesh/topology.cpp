@@ -6,13 +6,10 @@
 #include <utility>
 
 #include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/vectors.hpp"
 
 namespace drogue::mesh {
 namespace {
-
-const Vector& at(const std::vector<Vector>& points, int i) { return points[static_cast<std::size_t>(i)]; }
-
-Vector difference(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 double length(const Vector& a) { return std::hypot(a[0], a[1], a[2]); }
 
