@@ -180,7 +180,8 @@ struct FreezePositionsFunctor {
     for (int d = 0; d < 3; ++d) {
       const GridAxis& axis = axes.axis[d];
       const double cell = (place[d] - axis.origin) * axis.inverse_spacing;
-      if (!axis.periodic && !(cell >= -rounding && cell <= axis.cells + rounding)) return false;
+      if (axis.periodic ? !Kokkos::isfinite(cell) : !(cell >= -rounding && cell <= axis.cells + rounding))
+        return false;
     }
     return true;
   }

@@ -97,8 +97,8 @@ class FabricSolver {
   /// (std::logic_error). Each launch of that graph takes `steps` steps; the caller bounds the launches in
   /// flight. From the first capture on, the solver takes no checkpoints of its own, and `time_state` is valid
   /// after `synchronize`; `upload` does not change that, and the graph remains valid. A captured graph is
-  /// invalid after `set_vertex_force`, `set_time_state`, and the first calls of `loads`, `pressures` and
-  /// `prescribed_motion`. After `set_time_state` the solver takes checkpoints again.
+  /// invalid after `set_vertex_force`, `set_time_state`, `watch_pulls`, and the first calls of `loads`,
+  /// `pressures` and `prescribed_motion`. After `set_time_state` the solver takes checkpoints again.
   bool enqueue_steps(std::int64_t steps);
 
   /// Enqueues the number of steps that ends nearest to `time`, s; none if that time has passed. Returns as
@@ -151,14 +151,22 @@ class FabricSolver {
   void watch_pulls(std::span<const Pull> pulls) {
     if (_parameters.integrator != Integrator::verlet)
       throw std::invalid_argument("fabric solver: pulls are watched in steps of the velocity Verlet method");
+    if (pulls.size() > _parameters.mesh.rest.size())
+      throw std::invalid_argument("fabric solver: there are more pulls than vertices");
+    synchronize();
+    if (_loop.has_captured_steps()) forget_captures();
     _pulls = PeakPulls<ExecutionSpace>(space(), _parameters.mesh, _parameters.mesh.line_stiffness, pulls);
     record_pulls();
+    enqueue_checkpoint();
   }
   [[nodiscard]] std::vector<PeakPull> peak_pulls() {
     synchronize();
     return _pulls.peaks(space());
   }
-  void set_peak_pulls(std::span<const PeakPull> peaks) { _pulls.set_peaks(space(), peaks); }
+  void set_peak_pulls(std::span<const PeakPull> peaks) {
+    _pulls.set_peaks(space(), peaks);
+    enqueue_checkpoint();
+  }
   [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
   void contact_work(std::span<ContactWork> of_vertices);
   void set_contact_work(std::span<const ContactWork> of_vertices);
@@ -763,7 +771,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::restore_addresses() {
 /// Enqueues a checkpoint that publishes `launches`, unless that is negative.
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::save_checkpoint(std::int64_t launches) {
-  SavedState<ExecutionSpace> now{_x, _v, {}}, saved{_saved_x, _saved_v, {}};
+  SavedState<ExecutionSpace> now{_x, _v, {}, _pulls.present()}, saved{_saved_x, _saved_v, {}, _pulls.saved()};
   if (_contact) {
     const CheckpointedWork<ExecutionSpace> work = _contact->checkpointed_work();
     now.work = work.now, saved.work = work.saved;
@@ -777,6 +785,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::synchronize() {
   const auto first = _checkpoint.roll_back_after_failure(space(), _monitor, [this] {
     device::copy(space(), _x, _saved_x);
     device::copy(space(), _v, _saved_v);
+    if (_pulls.size() > 0) device::copy(space(), _pulls.present(), _pulls.saved());
     if (!_contact) return;
     const CheckpointedWork<ExecutionSpace> work = _contact->checkpointed_work();
     device::copy(space(), work.now, work.saved);

@@ -22,7 +22,7 @@ struct PullViews {
   ListView<ExecutionSpace, int> first;                 ///< lines of pull k: first(k) to first(k + 1) - 1
   ListView<ExecutionSpace, int> pulled, from;          ///< vertices of each line
   ListView<ExecutionSpace, double> stiffness, length;  ///< E A, N; without tension, m
-  ListView<ExecutionSpace, double> force, time;        ///< of the peak of each pull, N and s
+  ListView<ExecutionSpace, PeakPull> peak;             ///< of each pull
 };
 
 /// Compares the present force of pull k with its peak. `step_time(time)` sets the time of the state, s;
@@ -45,9 +45,7 @@ struct RecordPullsFunctor {
       if (tension > 0.0) sum = sum + (tension / length) * along;
     }
     const double force = device::square_root(dot(sum, sum));
-    if (!(force > pulls.force(k))) return;
-    pulls.force(k) = force;
-    pulls.time(k) = time;
+    if (force > pulls.peak(k).force) pulls.peak(k) = {force, time};
   }
 };
 
@@ -91,14 +89,14 @@ class PeakPulls {
       }
       first.push_back(static_cast<int>(pulled.size()));
     }
-    const std::vector<double> none(pulls.size(), 0.0);
+    const std::vector<PeakPull> none(pulls.size());
     _views = {list_view(space, "drogue::fabric::first_line", first),
               list_view(space, "drogue::fabric::pulled_vertices", pulled),
               list_view(space, "drogue::fabric::pulling_vertices", from),
               list_view(space, "drogue::fabric::pulling_stiffness", length),
               list_view(space, "drogue::fabric::pulling_length", length),
-              list_view(space, "drogue::fabric::peak_force", none),
-              list_view(space, "drogue::fabric::peak_time", none)};
+              list_view(space, "drogue::fabric::peak_pulls", none)};
+    _saved = list_view(space, "drogue::fabric::saved_peak_pulls", none);
     _pulls = pulls.size();
     set_stiffness(space, stiffness);
   }
@@ -111,7 +109,7 @@ class PeakPulls {
     if (_lines.empty()) return;
     std::vector<double> values;
     for (const int line : _lines) values.push_back(of_lines[static_cast<std::size_t>(line)]);
-    write(space, values, _views.stiffness);
+    write(space, std::span<const double>(values), _views.stiffness);
   }
 
   /// Enqueues the comparison of the forces at positions, m, with the peaks. Allocates nothing. Throws only if
@@ -124,31 +122,31 @@ class PeakPulls {
                         RecordPullsFunctor<ExecutionSpace, StepTime>{_views, positions, step_time});
   }
 
+  /// Peaks so far, on the device, and those of the last checkpoint. Do not throw.
+  [[nodiscard]] const ListView<ExecutionSpace, PeakPull>& present() const { return _views.peak; }
+  [[nodiscard]] const ListView<ExecutionSpace, PeakPull>& saved() const { return _saved; }
+
   /// Peaks so far. Blocks. Throws only after a failed kernel.
   [[nodiscard]] std::vector<PeakPull> peaks(const ExecutionSpace& space) const {
     std::vector<PeakPull> result(_pulls);
     if (_pulls == 0) return result;
-    const auto force = Kokkos::create_mirror_view(_views.force),
-               time = Kokkos::create_mirror_view(_views.time);
-    device::copy(space, force, _views.force);
-    device::copy(space, time, _views.time);
+    const auto mirror = Kokkos::create_mirror_view(_views.peak);
+    device::copy(space, mirror, _views.peak);
     space.fence("drogue::fabric::peaks");
-    for (std::size_t k = 0; k < _pulls; ++k) result[k] = {force(k), time(k)};
+    for (std::size_t k = 0; k < _pulls; ++k) result[k] = mirror(k);
     return result;
   }
 
   /// Restores the peaks, N and s. Blocks. Throws std::invalid_argument for another number of them.
   void set_peaks(const ExecutionSpace& space, std::span<const PeakPull> peaks) const {
     if (peaks.size() != _pulls) throw std::invalid_argument("pulls: there must be one peak per pull");
-    std::vector<double> force, time;
-    for (const PeakPull& peak : peaks) force.push_back(peak.force), time.push_back(peak.time);
-    write(space, force, _views.force);
-    write(space, time, _views.time);
+    write(space, peaks, _views.peak);
   }
 
  private:
-  static void write(const ExecutionSpace& space, const std::vector<double>& from,
-                    const ListView<ExecutionSpace, double>& to) {
+  template <class T>
+  static void write(const ExecutionSpace& space, std::span<const T> from,
+                    const ListView<ExecutionSpace, T>& to) {
     if (from.empty()) return;
     const auto mirror = Kokkos::create_mirror_view(to);
     for (std::size_t k = 0; k < from.size(); ++k) mirror(k) = from[k];
@@ -157,6 +155,7 @@ class PeakPulls {
   }
 
   PullViews<ExecutionSpace> _views;
+  ListView<ExecutionSpace, PeakPull> _saved;
   std::vector<int> _lines;
   std::size_t _pulls = 0;
 };

@@ -107,6 +107,13 @@ class FlowSolver {
   [[nodiscard]] double next_jump(double time) const;
   /// True if a step has failed. Blocks. Throws std::runtime_error after a failed kernel.
   [[nodiscard]] bool has_failed() const { return read_control().trial.stop == Stop::failed; }
+  /// True if the velocity outgrew its stability limit in the last step, whose result is not to be trusted.
+  /// Blocks. Throws std::runtime_error after a failed kernel.
+  [[nodiscard]] bool has_outgrown_step() const {
+    const Control control = read_control();
+    return control.trial.stop == Stop::failed && !control.has_failed() &&
+           control.now.last_dt > largest_excess * control.trial.dt;
+  }
   /// Status as last published. Does not throw.
   [[nodiscard]] Status status() const { return _loop.status(); }
   /// Control block. Other kernels may set `trial.stop` to `Stop::failed`: the next step is not taken, and

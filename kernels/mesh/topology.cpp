@@ -127,7 +127,7 @@ double extent_of(const Mesh& mesh) {
 
 std::optional<std::array<int, 2>> near_vertices(const Mesh& mesh, double distance) {
   // Along a direction in which no rows of vertices lie, few of them share an interval of this length.
-  constexpr Vector direction = {0.47140452, 0.62360956, 0.62360957};
+  constexpr Vector direction = {0.39670, 0.53910, 0.74295};
   std::vector<std::pair<double, int>> order;
   for (std::size_t i = 0; i < mesh.rest.size(); ++i) {
     double along = 0.0;

@@ -198,10 +198,10 @@ class Division {
     _rate = 0.0;
   }
   void close() {
-    // A motion that rests, or changes evenly, needs no resolution of its own.
-    const bool is_linear = change(_begin, _last) <= 0.0;
+    // A motion that rests needs no resolution of its own.
+    const bool rests = change(_begin, _last) <= 0.0;
     const double width = _last.time - _begin.time;
-    _intervals.push_back({_begin.time, is_linear || !(width > 0.0) ? infinite : width, _rate, 0});
+    _intervals.push_back({_begin.time, rests || !(width > 0.0) ? infinite : width, _rate, 0});
     if (!_is_complete) {
       MotionInterval rest{_last.time, infinite, 0.0, 0};
       for (const MotionInterval& interval : _intervals) {

@@ -123,10 +123,24 @@ class Drives(parachute_program.FlowTest):
             self.assertLess(max(rows["max_speed"]), 1e-12)
 
     def test_step_that_outgrows_its_bound_ends_the_run(self):
-        scene = self.write(CHANNEL)
-        said = self.expect(4, scene, *QUIET, sets=["fluid.viscosity=2e-5", "grid.cells=[32,32,1]", "grid.boundary={x='wall',y='wall'}",
-                                                  "grid.wall_velocity={y_high=[1,0,0]}", "run.end_time=2", "run.dt=2"]).stderr
-        self.assertIn("largest stable time step", said)
+        cylinder = """
+[[body]]
+kind = "cylinder"
+centre = [0.5, 0.5, 0.5]
+radius = 0.2
+edge_length = 0.04
+"""
+        for text in (CHANNEL, CHANNEL + cylinder):
+            said = self.expect(4, self.write(text), *QUIET, sets=["fluid.viscosity=2e-5", "grid.cells=[32,32,1]",
+                                                                  "grid.boundary={x='wall',y='wall'}", "grid.wall_velocity={y_high=[1,0,0]}",
+                                                                  "run.end_time=2", "run.dt=2"]).stderr
+            self.assertIn("largest stable time step", said)
+
+    def test_lid_over_a_body_at_rest(self):
+        lid = ["fluid.viscosity=2e-5", "grid.cells=[32,32,1]", "grid.boundary={x='wall',y='wall'}", "grid.wall_velocity={y_high=[1,0,0]}",
+               "body=[{kind='cylinder',centre=[0.5,0.5,0.5],radius=0.2,edge_length=0.04}]", "run.end_time=2"]
+        rows, fine = self.check(CHANNEL, *lid), self.check(CHANNEL, *lid, "run.max_dt=0.005")
+        self.assertAlmostEqual(fine["max_speed"][-1], rows["max_speed"][-1], delta=5e-3)
 
     def test_runs_without_an_end_in_sight_are_refused(self):
         scene = self.write(CHANNEL)

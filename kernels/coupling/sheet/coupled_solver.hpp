@@ -356,6 +356,10 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
                                                   const flow::Poll& poll) {
   while (true) {
     const flow::Progress now = _flow.progress();
+    if (_flow.has_outgrown_step()) {
+      return_to_last_step(now);
+      return flow::Stop::failed;
+    }
     if (now.time >= last_target) {
       _block.end = now.step;
       return flow::Stop::target;

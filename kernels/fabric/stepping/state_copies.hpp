@@ -11,6 +11,7 @@ template <class ExecutionSpace>
 struct SavedState {
   PointsView<ExecutionSpace> x, v;
   ListView<ExecutionSpace, ContactWork> work;
+  ListView<ExecutionSpace, PeakPull> peaks;
 };
 
 /// Copies the state of vertex i, for `stepping::Checkpoint`.
@@ -22,6 +23,7 @@ struct CopyStateFunctor {
     store_points(to.x, i, load_points<double>(from.x, i));
     store_points(to.v, i, load_points<double>(from.v, i));
     if (i < static_cast<int>(from.work.extent(0))) to.work(i) = from.work(i);
+    if (i < static_cast<int>(from.peaks.extent(0))) to.peaks(i) = from.peaks(i);
   }
 };
 

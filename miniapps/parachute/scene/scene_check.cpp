@@ -236,8 +236,8 @@ double least_width(const flow::Parameters& p) {
   return least;
 }
 
-/// Speed with which sheets that the fluid moves will meet it, as far as it is known, m/s: that of the stream
-/// and the walls, that of free fall along a cell, and that of plates on springs.
+/// Speed with which sheets and fluid will meet, as far as it is known, m/s: that of the stream and the walls,
+/// that of free fall along a cell, and that of plates on springs.
 double known_speed(const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   double speed = 0.0, gravity = 0.0;
@@ -267,11 +267,10 @@ void complete_time_step(const Table& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   if (!scene.has_sheets() || p.fixed_dt > 0.0 || p.max_dt > 0.0) return;
   p.max_dt = scene.end_time;
-  if (!scene.has_free_sheets()) return;
   const double speed = known_speed(scene);
   if (speed > 0.0)
     p.max_dt = std::min(p.max_dt, scene.cfl() * least_width(p) / speed);
-  else if (!fluid_moves(scene))
+  else if (scene.has_free_sheets() && !fluid_moves(scene))
     contradict(root, "run",
                "missing key \"run.max_dt\" (needed where neither stream nor gravity moves a sheet): the "
                "largest dt");

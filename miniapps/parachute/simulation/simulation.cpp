@@ -172,7 +172,7 @@ framework::HistoryRow Simulation::row() {
     if (!is_periodic(_scene.parameters, side)) row.values.push_back(now.outflow[side]);
   const std::vector<fabric::Vector> forces = body_forces();
   for (const fabric::Vector& force : forces) row.values.insert(row.values.end(), force.begin(), force.end());
-  append_outside_forces(forces, now.step > 0 ? now.dt : 0.0, row);
+  append_outside_forces(forces, _solver->progress().last_dt, row);
   append_displacements(row);
   append_canopy_values(row);
   append_flag_values(row);

@@ -245,6 +245,7 @@ bool needs_history(const Verify& wanted) {
 
 std::optional<EnergyLoss> energy_loss(const History& history) {
   const std::vector<double>& energy = history.at("energy");
+  if (energy.empty()) return std::nullopt;
   const double scale = energy_scale(history);
   double lost = energy.front() - energy.back();
   for (const char* work : {"contact_work", "friction_work"})

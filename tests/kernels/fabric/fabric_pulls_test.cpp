@@ -107,6 +107,22 @@ TEST(FabricPulls, StartWithThePresentStateAndForgetLinesThatAreCut) {
   EXPECT_EQ(solver->peak_pulls()[1].time, 0.25);
 }
 
+TEST(FabricPulls, ForgetStepsThatAreRolledBack) {
+  Case made = falling_payload();
+  made.parameters.dt = 10.0;  // unstable
+  const auto solver = create_solver(backend, made.parameters);
+  made.positions[3] = {0.0, 0.0, -0.5};
+  solver->upload(made.positions, made.velocities);
+  solver->watch_pulls(made.pulls);
+  const double taut = force_of(made.parameters, made.pulls[0], made.positions);
+  solver->advance(200);
+  ASSERT_TRUE(solver->failure().has_value());
+  std::vector<Vector> x(made.positions.size()), v(x.size());
+  solver->download(x, v);
+  EXPECT_EQ(x, made.positions);
+  EXPECT_NEAR(solver->peak_pulls()[0].force, taut, 1e-12 * taut);
+}
+
 TEST(FabricPulls, RefuseLinesThatDoNotPullTheirVertex) {
   Case made = falling_payload();
   const auto solver = create_solver(backend, made.parameters);
