@@ -67,6 +67,7 @@ class CommandLine(options_program.OptionsTest):
             ("surface", "example", "--strikes", "1:2", "--maturities", "1"): "first:last:count",
             ("surface", "example", "--strikes", "0", "--maturities", "1"): "--strikes",
             ("surface", "example", "--strikes", "1", "--maturities", "1,,2"): "--maturities",
+            ("surface", "example", "--strikes", "100 110", "--maturities", "1"): "--strikes = '100 110'",
             ("surface", "example", "--strikes", "60:140:1", "--maturities", "1"): "--strikes = '60:140:1' has two ends but a count of 1",
             ("price", "example", "--out", "-"): "standard output is /dev/stdout",
             ("price", "example", "--result", "-"): "standard output is /dev/stdout",
