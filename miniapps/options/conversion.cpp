@@ -166,7 +166,7 @@ ExitCode convert_parameters(const ConversionCommand& command) {
   const Converter converter(command);
   const std::string text = command.input.empty() ? converter.from_option() : converter.from_file();
   if (command.out.empty()) {
-    std::cout << text << std::flush;
+    std::cout << text;  // the program flushes it, and reports what cannot be written
   } else {
     run::AtomicFile file(command.out);
     file.write(text);
