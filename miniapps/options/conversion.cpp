@@ -148,7 +148,10 @@ class Converter {
           "sums of such returns are not generalized hyperbolic, except for variance gamma and p = -0.5: "
           "--time-unit period gives rows that count time in periods");
     if (const std::string_view clause = options::violated_condition(contract); !clause.empty())
-      throw fail(std::string(clause));
+      throw fail(std::string(clause) + (options::violated_condition(of_period).empty()
+                                            ? "; --time-unit period gives rows that count time in periods"
+                                            : ""));
+    const options::Contract of_period = contract;
     for (const double parameter : contract.jump) {
       csv::append_number(text, parameter);
       text += ',';

@@ -159,6 +159,19 @@ TEST_F(Conversion, CountsTimeInYearsOrInPeriods) {
   command.unit_is_period = true;
   EXPECT_EQ(converted(command, fit),
             "rate,dividend,maturity,lambda,alpha,beta,delta,variance\n2e-04,,125,1,150,-50,0.01,0\n");
+  command = command_of("variance-gamma", "sigma=0.01,nu=0.8,theta=0");
+  command.periods = 252.0;
+  EXPECT_EQ(
+      converted(command),
+      "2/--parameters: lambda must lie between -128 and 128; --time-unit period gives rows that count time "
+      "in periods");
+  command.unit_is_period = true;
+  EXPECT_TRUE(converted(command).starts_with("lambda,alpha,beta,delta,variance\n1.25,"));
+  command.parameters = "sigma=0.01,nu=0.001,theta=0";
+  for (const bool unit_is_period : {true, false}) {
+    command.unit_is_period = unit_is_period;
+    EXPECT_EQ(converted(command), "2/--parameters: lambda must lie between -128 and 128");
+  }
   command = command_of("nig");
   command.periods = 250.0;
   EXPECT_EQ(converted(command, "alpha,beta,delta,rate\n40,-8,0.02,0.05\n"),
