@@ -41,7 +41,8 @@ class Converter {
     };
     const std::vector<std::string> names = parameter_names();
     csv::Fields assignments;
-    (void)assignments.split(_command.parameters);
+    if (const std::string_view wrong = assignments.split(_command.parameters); !wrong.empty())
+      throw fail(std::string(wrong));
     std::vector<double> values(names.size(), 0.0);
     std::vector<bool> is_given(names.size(), false);
     for (std::size_t i = 0; i < assignments.size(); ++i) {
@@ -83,6 +84,8 @@ class Converter {
       const Fail fail = [&](const std::string& sentence) {
         return csv::invalid_at(reader.file(), line.number, sentence);
       };
+      if (line.too_long)
+        throw fail("the line is longer than " + std::to_string(csv::LineReader::longest) + " bytes");
       if (const std::string_view wrong = fields.split(line.text); !wrong.empty())
         throw fail(std::string(wrong));
       fields.drop_trailing_empty(columns);
@@ -143,6 +146,7 @@ class Converter {
       throw fail(std::string(clause));
     options::Contract contract;
     _family.convert(values.data(), contract.jump);
+    const options::Contract of_period = contract;
     if (!_command.unit_is_period && !scale_periods(contract.jump, _command.periods))
       throw fail(
           "sums of such returns are not generalized hyperbolic, except for variance gamma and p = -0.5: "
@@ -151,7 +155,6 @@ class Converter {
       throw fail(std::string(clause) + (options::violated_condition(of_period).empty()
                                             ? "; --time-unit period gives rows that count time in periods"
                                             : ""));
-    const options::Contract of_period = contract;
     for (const double parameter : contract.jump) {
       csv::append_number(text, parameter);
       text += ',';

@@ -178,6 +178,14 @@ TEST_F(Conversion, CountsTimeInYearsOrInPeriods) {
             "rate,lambda,alpha,beta,delta,variance\n0.05,-0.5,40,-8,5,0\n");
 }
 
+TEST_F(Conversion, RejectsLinesThatCannotBeRead) {
+  EXPECT_EQ(converted(command_of("nig"), "alpha,beta,delta\n40,-8,0.02" + std::string(70000, ' ') + "\n"),
+            "3/p.csv:2: the line is longer than 65536 bytes");
+  EXPECT_EQ(converted(command_of("nig"), "alpha,beta,delta\n40,-8,0.02,\"junk\n").substr(0, 10),
+            "3/p.csv:2:");
+  EXPECT_EQ(converted(command_of("nig", "alpha=40,beta=-8,delta=1,\"junk")).substr(0, 15), "2/--parameters:");
+}
+
 TEST_F(Conversion, RejectsWhatCannotBeConverted) {
   EXPECT_EQ(converted(command_of("variance-gamma"), "sigma,nu\n0.1,1\n"),
             "3/p.csv:1: the column theta is missing");
