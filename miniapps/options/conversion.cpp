@@ -43,7 +43,8 @@ class Converter {
     csv::Fields assignments;
     if (const std::string_view wrong = assignments.split(_command.parameters); !wrong.empty())
       throw fail(std::string(wrong));
-    std::vector<double> values(names.size(), 0.0);
+    std::vector<double> values;
+    for (const FamilyParameter& parameter : _family.parameters) values.push_back(parameter.usual);
     std::vector<bool> is_given(names.size(), false);
     for (std::size_t i = 0; i < assignments.size(); ++i) {
       const std::string_view text = assignments[i], name = text.substr(0, text.find('='));
@@ -98,9 +99,11 @@ class Converter {
       for (std::size_t i = count; i < names.size(); ++i)
         if (header.places[i] >= 0) append_kept(text, kept_columns[i - count], field(i), fail);
       std::vector<double> values;
-      for (std::size_t i = 0; i < count; ++i)
-        values.push_back(
-            field(i).empty() && !_family.parameters[i].required ? 0.0 : number(names[i], field(i), fail));
+      for (std::size_t i = 0; i < count; ++i) {
+        const FamilyParameter& parameter = _family.parameters[i];
+        values.push_back(field(i).empty() && !parameter.required ? parameter.usual
+                                                                 : number(names[i], field(i), fail));
+      }
       append_jump(text, values, fail);
       text += '\n';
     }

@@ -178,6 +178,15 @@ TEST_F(Conversion, CountsTimeInYearsOrInPeriods) {
             "rate,lambda,alpha,beta,delta,variance\n0.05,-0.5,40,-8,5,0\n");
 }
 
+TEST_F(Conversion, TakesTheDefaultScale) {
+  EXPECT_EQ(converted(command_of("genhyperbolic", "p=1,a=1.5,b=-0.4")),
+            "lambda,alpha,beta,delta,variance\n1,1.5,-0.4,1,0\n");
+  EXPECT_EQ(converted(command_of("genhyperbolic"), "p,a,b,scale\n1,1.5,-0.4,\n1,1.5,-0.4,0.5\n"),
+            "lambda,alpha,beta,delta,variance\n1,1.5,-0.4,1,0\n1,3,-0.8,0.5,0\n");
+  EXPECT_EQ(converted(command_of("genhyperbolic", "p=1,a=1.5,b=-0.4,scale=0")),
+            "2/--parameters: scale must be > 0");
+}
+
 TEST_F(Conversion, RejectsLinesThatCannotBeRead) {
   EXPECT_EQ(converted(command_of("nig"), "alpha,beta,delta\n40,-8,0.02" + std::string(70000, ' ') + "\n"),
             "3/p.csv:2: the line is longer than 65536 bytes");
