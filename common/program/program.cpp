@@ -94,8 +94,9 @@ int run_program(const std::string& program, const std::function<ExitCode()>& bod
       std::this_thread::sleep_for(std::chrono::seconds(1));
     }
   }
-  // Lost output, say of --print-scene to a full disk, is a failure.
-  if (std::fflush(stdout) != 0 && code == ExitCode::ok) {
+  // Lost output, say of --print-scene to a full disk, is a failure, also if an earlier write lost it.
+  const bool is_lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+  if (is_lost && code == ExitCode::ok) {
     std::fprintf(stderr, "%s: cannot write to standard output\n", program.c_str());
     code = ExitCode::io_error;
   }

@@ -35,6 +35,20 @@ struct Differences {
   Difference rate, variance;
 };
 
+/// Change of the rate, which moves the drift until maturity by `relative_step` deviations. In the money,
+/// exercise begins to pay where the rate passes q S/K, and there rho falls from about K T to 0 within
+/// q S/K deviations, which near expiry are far fewer than this change. So it is at most a quarter of the
+/// distance or a fifth of that width, but at least a hundredth of itself, since differences of prices on one
+/// mesh have errors of their own.
+double rate_step(const Contract& c, double deviation) {
+  const double step = relative_step * std::min(deviation, 1.0) / c.maturity;
+  const bool in_the_money = c.type == Type::put ? c.spot < c.strike : c.spot > c.strike;
+  if (!in_the_money || c.dividend == 0.0) return step;
+  const double passed = c.dividend * c.spot / c.strike;
+  return std::min(
+      step, std::max({0.25 * std::abs(c.rate - passed), 0.2 * std::abs(passed) * deviation, 0.01 * step}));
+}
+
 /// The rate keeps its distance from values at which other rules of exercise hold. A small rate is changed by
 /// a quarter, since the exercise boundary depends on their ratio.
 Difference rate_difference(const Contract& c, double step) {
@@ -53,8 +67,7 @@ Differences differences_of(const Contract& c) {
   const double variance = std::max(CharacteristicExponent(c).cumulants().second, 1e-100);
   const double deviation = std::sqrt(variance * c.maturity);
   const double variance_step = 2.0 * relative_step * variance;
-  return {rate_difference(c, relative_step * std::min(deviation, 1.0) / c.maturity),
-          {variance_step, c.variance < 2.0 * variance_step}};
+  return {rate_difference(c, rate_step(c, deviation)), {variance_step, c.variance < 2.0 * variance_step}};
 }
 
 bool is_exercised(const Contract& c, const Price& price) {

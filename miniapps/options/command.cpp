@@ -131,20 +131,26 @@ ConversionCommand conversion_of(const OptionValues& values) {
   return conversion;
 }
 
+/// Parts of `text` between separators, without the blanks around each.
+std::vector<std::string> trimmed_parts(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    const std::size_t first = std::min(part.find_first_not_of(" \t"), part.size());
+    parts.push_back(part.substr(first, part.find_last_not_of(" \t") + 1 - first));
+    begin = end + 1;
+  }
+  return parts;
+}
+
 }  // namespace
 
 std::vector<double> parse_values(const std::string& option, const std::string& text) {
   constexpr double min = 1e-300, max = 1e300;
   constexpr int max_values = 10000;
   const char separator = text.find(':') == std::string::npos ? ',' : ':';
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator) {
-      parts.emplace_back();
-    } else if (c != ' ' && c != '\t') {
-      parts.back() += c;
-    }
-  }
+  const std::vector<std::string> parts = trimmed_parts(text, separator);
   std::vector<double> values;
   if (separator == ',') {
     if (parts.size() > max_values)

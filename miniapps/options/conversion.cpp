@@ -41,8 +41,10 @@ class Converter {
     };
     const std::vector<std::string> names = parameter_names();
     csv::Fields assignments;
-    (void)assignments.split(_command.parameters);
-    std::vector<double> values(names.size(), 0.0);
+    if (const std::string_view wrong = assignments.split(_command.parameters); !wrong.empty())
+      throw fail(std::string(wrong));
+    std::vector<double> values;
+    for (const FamilyParameter& parameter : _family.parameters) values.push_back(parameter.usual);
     std::vector<bool> is_given(names.size(), false);
     for (std::size_t i = 0; i < assignments.size(); ++i) {
       const std::string_view text = assignments[i], name = text.substr(0, text.find('='));
@@ -83,6 +85,8 @@ class Converter {
       const Fail fail = [&](const std::string& sentence) {
         return csv::invalid_at(reader.file(), line.number, sentence);
       };
+      if (line.too_long)
+        throw fail("the line is longer than " + std::to_string(csv::LineReader::longest) + " bytes");
       if (const std::string_view wrong = fields.split(line.text); !wrong.empty())
         throw fail(std::string(wrong));
       fields.drop_trailing_empty(columns);
@@ -95,9 +99,11 @@ class Converter {
       for (std::size_t i = count; i < names.size(); ++i)
         if (header.places[i] >= 0) append_kept(text, kept_columns[i - count], field(i), fail);
       std::vector<double> values;
-      for (std::size_t i = 0; i < count; ++i)
-        values.push_back(
-            field(i).empty() && !_family.parameters[i].required ? 0.0 : number(names[i], field(i), fail));
+      for (std::size_t i = 0; i < count; ++i) {
+        const FamilyParameter& parameter = _family.parameters[i];
+        values.push_back(field(i).empty() && !parameter.required ? parameter.usual
+                                                                 : number(names[i], field(i), fail));
+      }
       append_jump(text, values, fail);
       text += '\n';
     }
@@ -143,12 +149,15 @@ class Converter {
       throw fail(std::string(clause));
     options::Contract contract;
     _family.convert(values.data(), contract.jump);
+    const options::Contract of_period = contract;
     if (!_command.unit_is_period && !scale_periods(contract.jump, _command.periods))
       throw fail(
           "sums of such returns are not generalized hyperbolic, except for variance gamma and p = -0.5: "
           "--time-unit period gives rows that count time in periods");
     if (const std::string_view clause = options::violated_condition(contract); !clause.empty())
-      throw fail(std::string(clause));
+      throw fail(std::string(clause) + (options::violated_condition(of_period).empty()
+                                            ? "; --time-unit period gives rows that count time in periods"
+                                            : ""));
     for (const double parameter : contract.jump) {
       csv::append_number(text, parameter);
       text += ',';
@@ -166,7 +175,7 @@ ExitCode convert_parameters(const ConversionCommand& command) {
   const Converter converter(command);
   const std::string text = command.input.empty() ? converter.from_option() : converter.from_file();
   if (command.out.empty()) {
-    std::cout << text << std::flush;
+    std::cout << text;  // the program flushes it, and reports what cannot be written
   } else {
     run::AtomicFile file(command.out);
     file.write(text);

@@ -67,6 +67,7 @@ class CommandLine(options_program.OptionsTest):
             ("surface", "example", "--strikes", "1:2", "--maturities", "1"): "first:last:count",
             ("surface", "example", "--strikes", "0", "--maturities", "1"): "--strikes",
             ("surface", "example", "--strikes", "1", "--maturities", "1,,2"): "--maturities",
+            ("surface", "example", "--strikes", "100 110", "--maturities", "1"): "--strikes = '100 110'",
             ("surface", "example", "--strikes", "60:140:1", "--maturities", "1"): "--strikes = '60:140:1' has two ends but a count of 1",
             ("price", "example", "--out", "-"): "standard output is /dev/stdout",
             ("price", "example", "--result", "-"): "standard output is /dev/stdout",
@@ -413,6 +414,11 @@ class Files(options_program.OptionsTest):
         for words in (("--out", "/dev/full"), ("--boundary", "/dev/full"), ("--result", "/dev/full")):
             run = self.expect(6, "price", file, "--quiet", *words)
             self.assertEqual("drogue-options: cannot write '/dev/full': No space left on device\n", run.stderr)
+        given = {size: self.write("alpha,beta,delta\n" + size * "40,-8,0.02\n", f"{size}.csv") for size in (1, 10000)}
+        for words in (("--list-batches",), ("convert", "nig", given[1]), ("convert", "nig", given[10000])):
+            with self.subTest(words), open("/dev/full", "w", encoding="utf-8") as full:
+                run = subprocess.run([options_program.PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+                self.assertEqual((6, "drogue-options: cannot write to standard output\n"), (run.returncode, run.stderr))
         self.expect(0, "price", file, "--out", "/dev/null", "--boundary", "/dev/null", "--result", "/dev/null")
         head, line = "id,spot,rate,lambda,alpha,beta,delta,variance", "a,1,0.05,1,8.15,-2.5,0.767,0.04"
         sets = self.write(f"{head}\n{line}\n", "sets.csv")

@@ -46,13 +46,10 @@ std::string_view violated_of_genhyperbolic(const double* p) {
 
 const std::vector<ParameterFamily>& parameter_families() {
   static const std::vector<ParameterFamily> families = {
-      {"variance-gamma",
-       {{"sigma", true}, {"nu", true}, {"theta", true}},
-       from_variance_gamma,
-       violated_of_variance_gamma},
-      {"nig", {{"alpha", true}, {"beta", true}, {"delta", true}, {"mu", false}}, from_nig, violated_of_nig},
+      {"variance-gamma", {{"sigma"}, {"nu"}, {"theta"}}, from_variance_gamma, violated_of_variance_gamma},
+      {"nig", {{"alpha"}, {"beta"}, {"delta"}, {"mu", false}}, from_nig, violated_of_nig},
       {"genhyperbolic",
-       {{"p", true}, {"a", true}, {"b", true}, {"loc", false}, {"scale", true}},
+       {{"p"}, {"a"}, {"b"}, {"loc", false}, {"scale", false, 1.0}},
        from_genhyperbolic,
        violated_of_genhyperbolic},
   };

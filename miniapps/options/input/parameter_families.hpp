@@ -11,7 +11,8 @@ namespace drogue::options_app {
 /// Parameter of a family.
 struct FamilyParameter {
   const char* name;
-  bool required;
+  bool required = true;
+  double usual = 0.0;  ///< value if it is not required and not given
 };
 
 /// Distribution of the log returns over one period, or of the increments of a process over it, in parameters

@@ -221,6 +221,47 @@ TEST(OptionsGreeks, AmericanSensitivitiesAreDifferencesOfFinePrices) {
   expect_differences(cosines(), random_americans(8, 5));
 }
 
+/// American contracts in the money, days to weeks before expiry, with rates at which exercise is about to pay
+/// or has just begun to: it pays for a put above r = q S/K, for a call below.
+std::vector<Contract> about_to_be_exercised() {
+  std::vector<Contract> contracts;
+  for (const Type type : {Type::put, Type::call})
+    for (const double distance : {0.05, 0.1})
+      for (const double maturity : {0.01, 0.03, 0.1})
+        for (const double ratio : {0.75, 0.9, 0.97, 1.0, 1.03, 1.1}) {
+          Contract c{.type = type, .strike = 100.0, .rate = 0.05, .maturity = maturity, .variance = 0.04};
+          c.spot = type == Type::put ? 100.0 * (1.0 - distance) : 100.0 * (1.0 + distance);
+          c.dividend = c.rate * c.strike / c.spot * (type == Type::put ? 1.0 / ratio : ratio);
+          const double jumps[] = {1.0, 40.0, -2.0, 0.0};
+          std::copy_n(jumps, 4, c.jump);
+          contracts.push_back(c);
+        }
+  return contracts;
+}
+
+TEST(OptionsGreeks, AmericanRhoHoldsWhereExerciseBeginsToPay) {
+  const std::vector<Contract> contracts = about_to_be_exercised();
+  const std::vector<Sensitivities> all = sensitivities_of({}, contracts);
+  std::vector<Contract> moved;
+  for (const double sign : {1.0, -1.0})
+    for (Contract c : contracts) {
+      c.rate += sign * 1e-4;
+      moved.push_back(c);
+    }
+  const std::vector<Price> fine = priced(on_mesh(1024, 256), moved);
+  std::size_t compared = 0, near = 0;
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    if (all[k].rho == 0.0) continue;
+    const double scale = contracts[k].strike * contracts[k].maturity;
+    const double rho = (fine[k].price - fine[contracts.size() + k].price) / 2e-4;
+    ++compared;
+    near += std::abs(all[k].rho - rho) < 0.02 * scale;
+    EXPECT_NEAR(all[k].rho, rho, 0.05 * scale) << k;
+  }
+  EXPECT_GE(compared, contracts.size() / 2);
+  EXPECT_GE(near, compared * 19 / 20);
+}
+
 TEST(OptionsGreeks, PureJumpsHaveNoVegaAndRowsDoNotDependOnOthers) {
   Contract c{.spot = 1.0, .strike = 1.05, .rate = 0.04, .maturity = 0.5};
   const double nig[] = {-0.5, 12.0, -4.0, 0.4};

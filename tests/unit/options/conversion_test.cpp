@@ -159,10 +159,40 @@ TEST_F(Conversion, CountsTimeInYearsOrInPeriods) {
   command.unit_is_period = true;
   EXPECT_EQ(converted(command, fit),
             "rate,dividend,maturity,lambda,alpha,beta,delta,variance\n2e-04,,125,1,150,-50,0.01,0\n");
+  command = command_of("variance-gamma", "sigma=0.01,nu=0.8,theta=0");
+  command.periods = 252.0;
+  EXPECT_EQ(
+      converted(command),
+      "2/--parameters: lambda must lie between -128 and 128; --time-unit period gives rows that count time "
+      "in periods");
+  command.unit_is_period = true;
+  EXPECT_TRUE(converted(command).starts_with("lambda,alpha,beta,delta,variance\n1.25,"));
+  command.parameters = "sigma=0.01,nu=0.001,theta=0";
+  for (const bool unit_is_period : {true, false}) {
+    command.unit_is_period = unit_is_period;
+    EXPECT_EQ(converted(command), "2/--parameters: lambda must lie between -128 and 128");
+  }
   command = command_of("nig");
   command.periods = 250.0;
   EXPECT_EQ(converted(command, "alpha,beta,delta,rate\n40,-8,0.02,0.05\n"),
             "rate,lambda,alpha,beta,delta,variance\n0.05,-0.5,40,-8,5,0\n");
+}
+
+TEST_F(Conversion, TakesTheDefaultScale) {
+  EXPECT_EQ(converted(command_of("genhyperbolic", "p=1,a=1.5,b=-0.4")),
+            "lambda,alpha,beta,delta,variance\n1,1.5,-0.4,1,0\n");
+  EXPECT_EQ(converted(command_of("genhyperbolic"), "p,a,b,scale\n1,1.5,-0.4,\n1,1.5,-0.4,0.5\n"),
+            "lambda,alpha,beta,delta,variance\n1,1.5,-0.4,1,0\n1,3,-0.8,0.5,0\n");
+  EXPECT_EQ(converted(command_of("genhyperbolic", "p=1,a=1.5,b=-0.4,scale=0")),
+            "2/--parameters: scale must be > 0");
+}
+
+TEST_F(Conversion, RejectsLinesThatCannotBeRead) {
+  EXPECT_EQ(converted(command_of("nig"), "alpha,beta,delta\n40,-8,0.02" + std::string(70000, ' ') + "\n"),
+            "3/p.csv:2: the line is longer than 65536 bytes");
+  EXPECT_EQ(converted(command_of("nig"), "alpha,beta,delta\n40,-8,0.02,\"junk\n").substr(0, 10),
+            "3/p.csv:2:");
+  EXPECT_EQ(converted(command_of("nig", "alpha=40,beta=-8,delta=1,\"junk")).substr(0, 15), "2/--parameters:");
 }
 
 TEST_F(Conversion, RejectsWhatCannotBeConverted) {
