@@ -64,6 +64,7 @@ std::string history_header(const std::vector<Column>& columns) {
 }
 
 void require_same_columns(const std::filesystem::path& file, const std::vector<Column>& columns) {
+  if (access(file.c_str(), W_OK) != 0 && errno != ENOENT) throw io_failure("write", file, errno);
   std::ifstream stream(file, std::ios::binary);
   header_of(stream, file, history_header(columns));
 }

@@ -148,15 +148,32 @@ class RestartFiles(gas_program.GasTest):
 
     def test_names_the_variable_that_locks_files(self):
         """A reader that locks fields.h5, as a viewer does while it has it open."""
+        (self.folder / "run/fields.png").write_bytes(b"picture")
+        later = [*SETS, "run.end_time=0.25", "output.times=[0.1, 0.2, 0.25]"]
         with open(self.folder / "run/fields.h5", "rb") as reader:
             fcntl.flock(reader, fcntl.LOCK_SH)
             before = self.contents()
             words = ["--quiet", "--backend", "serial", "--out", "run", "--restart", "auto"]
-            message = self.expect(6, "sod", *words, sets=SETS, environment={"HDF5_USE_FILE_LOCKING": "TRUE"}).stderr
+            message = self.expect(6, "sod", *words, sets=later, environment={"HDF5_USE_FILE_LOCKING": "TRUE"}).stderr
             self.assertIn("fields.h5", message)
             self.assertIn("HDF5_USE_FILE_LOCKING = TRUE", message)
-            self.assertEqual(before.keys() - {"result.json"}, self.contents().keys() - {"result.json"})
-            self.expect(0, "sod", *words, sets=SETS)
+            self.assertEqual(before, self.contents())
+        (self.folder / "run/fields.png").unlink()
+        self.resume(0, sets=later)
+
+    def test_refuses_files_that_it_must_not_write(self):
+        later = [*SETS, "run.end_time=0.25", "output.times=[0.1, 0.2, 0.25]"]
+        for name in ("history.csv", "fields.h5"):
+            with self.subTest(name):
+                file = self.folder / "run" / name
+                file.chmod(0o444)
+                if os.access(file, os.W_OK):
+                    self.skipTest("this user may write every file")
+                before = self.contents()
+                self.assertIn(f"{name}': Permission denied", self.resume(6, sets=later))
+                self.assertEqual(before, self.contents())
+                file.chmod(0o644)
+        self.resume(0, sets=later)
 
     def test_continues_on_another_backend(self):
         self.expect(0, "sod", "--quiet", "--backend", gas_program.threaded(), "--out", "run", "--restart", "auto", sets=SETS)
