@@ -125,6 +125,17 @@ class RestartFiles(gas_program.GasTest):
                 for key in ("steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter"):
                     self.assertEqual(self.result("whole")[key], self.result("part")[key], key)
 
+    def test_end_of_a_continued_run_replaces_the_restart_file_of_the_former_end(self):
+        """Also if the interval of restart files is longer than the run; the last file of an interval stays."""
+        words = ["--quiet", "--backend", "serial", "--out"]
+        sets = ["mesh.cells=200", "verify.l1_density=1.0", "output.times=[0.1, 0.2]"]
+        self.expect(0, "sod", *words, "part", sets=[*sets, "run.end_time=0.1", "output.times=[0.1]"])
+        self.expect(0, "sod", *words, "part", "--restart", "auto", sets=[*sets, "output.restart_every=1000", "run.end_time=0.2"])
+        self.expect(0, "sod", *words, "whole", sets=[*sets, "run.end_time=0.2"])
+        self.assertEqual(self.contents("whole")["restart.h5"], self.contents("part")["restart.h5"])
+        self.resume(0)
+        self.assertEqual(self.bytes, self.file.read_bytes())
+
     def test_refuses_to_continue_a_finished_run_without_a_restart_file(self):
         """It would begin anew, and its files would be lost."""
         sets = [*SETS, "output.restart_every=0"]
