@@ -29,7 +29,8 @@ void finish(MPI_Request& request) {
 }
 
 /// Has ranks that wait inside of Open MPI leave their core to ranks that work. A core with one rank costs
-/// nothing by it. A value of the user, by the environment or --mca, stays.
+/// nothing by it. A value of the environment or of --mca stays; one of a file of parameters, such as
+/// ~/.openmpi/mca-params.conf, does not, since Open MPI prefers the environment.
 void yield_while_waiting() { setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0); }
 
 std::string of_rank(const std::string& sentence, int rank) {

@@ -64,6 +64,7 @@ std::string history_header(const std::vector<Column>& columns) {
 }
 
 void require_same_columns(const std::filesystem::path& file, const std::vector<Column>& columns) {
+  if (access(file.c_str(), W_OK) != 0 && errno != ENOENT) throw io_failure("write", file, errno);
   std::ifstream stream(file, std::ios::binary);
   header_of(stream, file, history_header(columns));
 }
@@ -120,17 +121,17 @@ void HistoryWriter::flush() {
     done += static_cast<std::size_t>(written);
   }
   _pending.clear();
-  // A file that was deleted takes rows all the same.
-  struct stat opened {
-  }, present{};
-  if (fstat(_descriptor, &opened) != 0 || stat(_file.c_str(), &present) != 0 ||
-      opened.st_ino != present.st_ino || opened.st_dev != present.st_dev)
-    throw Failure(ExitCode::io_error, "'" + _file.string() + "' was deleted or replaced during the run");
 }
 
 void HistoryWriter::finish() {
   if (_descriptor < 0) return;
   flush();
+  // A file that was deleted takes rows all the same, and the run its time: its state is in the restart file.
+  struct stat opened {
+  }, present{};
+  if (fstat(_descriptor, &opened) != 0 || stat(_file.c_str(), &present) != 0 ||
+      opened.st_ino != present.st_ino || opened.st_dev != present.st_dev)
+    throw Failure(ExitCode::io_error, "'" + _file.string() + "' was deleted or replaced during the run");
   const int sync_error = fsync(_descriptor) == 0 ? 0 : errno;
   const int close_error = close(std::exchange(_descriptor, -1)) == 0 ? 0 : errno;
   if (sync_error != 0 || close_error != 0)

@@ -19,8 +19,8 @@ struct Column {
 /// Header line of history.csv, including its line end.
 [[nodiscard]] std::string history_header(const std::vector<Column>& columns);
 
-/// Throws `Failure` (io_error) if `file` has a header that is not that of `columns`, so that a run cannot
-/// continue it. An absent or empty file has none.
+/// Throws `Failure` (io_error) if `file` must not be written or has a header that is not that of `columns`,
+/// so that a run cannot continue it. An absent file may be, and an empty one has none.
 void require_same_columns(const std::filesystem::path& file, const std::vector<Column>& columns);
 
 /// Writes history.csv: first column `time [s]`, one row per reported step, numbers in the shortest form that

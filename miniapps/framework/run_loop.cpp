@@ -23,7 +23,6 @@ class RunLoop {
         _wanted(simulation.output()),
         _end(simulation.end_time().time),
         _now(simulation.now()),
-        _begin(_now.step),
         _progress(request.quiet),
         _phases_before(simulation.phases().phases()) {}
 
@@ -52,8 +51,17 @@ class RunLoop {
   /// With an interval, the last file of it continues the run as if it had not ended.
   [[nodiscard]] bool needs_restart_of_end() const {
     if (_wanted.restart_every == 0) return false;
-    const bool is_later = _now.step > _begin && !_wanted.restart_every;
-    return is_later || !std::filesystem::exists(_request.files.directory->file("restart.h5"));
+    const int every = restart_interval();
+    const bool has_last = every > 0 && _restart_step == _now.step / every * every;
+    return !has_last && _restart_step != _now.step;
+  }
+
+  /// Step of the restart.h5 from which the run continues in the same directory.
+  [[nodiscard]] std::optional<std::int64_t> continued_step() const {
+    std::error_code absent;
+    const bool is_here = std::filesystem::equivalent(_request.files.restart,
+                                                     _request.files.directory->file("restart.h5"), absent);
+    return is_here ? std::optional(_now.step) : std::nullopt;
   }
 
   void describe_times() {
@@ -67,7 +75,10 @@ class RunLoop {
   [[nodiscard]] bool ended() const { return _stop == Stop::interrupted || _stop == Stop::failed; }
 
   void open_files() {
-    if (_request.files.directory != nullptr) _output.emplace(_simulation, _request.files);
+    if (_request.files.directory != nullptr) {
+      _output.emplace(_simulation, _request.files);
+      _restart_step = continued_step();
+    }
     if (_output && _output->lacks_row(_now.time)) _output->write_row(_simulation.row());
     if (_request.files.restart.empty() && is_output_time(_wanted, _now.time)) write_output_now();
   }
@@ -102,7 +113,10 @@ class RunLoop {
     if (_now.time == limits.target_time && is_output_time(_wanted, _now.time)) write_output_now();
     const bool can_continue = _stop != Stop::target || _simulation.plan_next_interval();
     const int every = restart_interval();
-    if (_output && every > 0 && _now.step % every == 0 && !ended()) _output->write_restart();
+    if (_output && every > 0 && _now.step % every == 0 && !ended()) {
+      _output->write_restart();
+      _restart_step = _now.step;
+    }
     if (!can_continue) _stop = Stop::failed;
   }
 
@@ -127,7 +141,7 @@ class RunLoop {
   const OutputRequest& _wanted;
   const double _end;
   SimulationTime _now;
-  const std::int64_t _begin;  // step
+  std::optional<std::int64_t> _restart_step;  ///< of the restart.h5 of the directory, if known
   ProgressLine _progress;
   const double _phases_before;  ///< that setup has taken, s
   const Stopwatch _stopwatch;

@@ -119,10 +119,11 @@ class BatchRun {
   }
 
   void describe(const WorkerUsage& usage, double seconds) {
-    _result.timing.h2d_s = usage.wall_times.h2d;
-    _result.timing.compute_s = usage.wall_times.compute;
-    _result.timing.d2h_s = usage.wall_times.d2h;
-    _result.timing.io_s = std::max(0.0, seconds - usage.pricing / _result.ranks);
+    run::ResultDocument::WallTimes& timing = _result.timing;
+    timing.h2d_s = usage.wall_times.h2d / _result.ranks;
+    timing.compute_s = usage.wall_times.compute / _result.ranks;
+    timing.d2h_s = usage.wall_times.d2h / _result.ranks;
+    timing.io_s = std::max(0.0, seconds - (timing.h2d_s + timing.compute_s + timing.d2h_s));
     _result.timing.wall_s = _wall_time.seconds();
     _result.describe_ledger(usage.counters);
   }

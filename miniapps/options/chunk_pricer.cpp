@@ -121,11 +121,9 @@ std::vector<options::BoundaryPoint> ChunkPricer::boundary_of(const options::Cont
 }
 
 void ChunkPricer::price_contracts() {
-  const Stopwatch pricing;
   _usage.wall_times.add(_pricer.price(_contracts, _prices));
   if (_sensitivity_pricer != nullptr)
     _usage.wall_times.add(_sensitivity_pricer->compute(_contracts, _prices, _sensitivities));
-  _usage.pricing += pricing.seconds();
 }
 
 void ChunkPricer::submit(WorkQueue& queue, bool ends_chunk) {

@@ -72,7 +72,12 @@ ExitCode write_report(const std::string& folder, const std::string& out, const s
   if (code == ExitCode::invalid_scene || code == ExitCode::interrupted) return code;
   write(fs::path(out) / "records.csv", to_csv(records));
   write(fs::path(out) / "reframe.json", to_reframe(records));
-  if (!verdicts.empty()) write(fs::path(out) / "verdicts.json", verdicts);
+  const fs::path verdicts_file = fs::path(out) / "verdicts.json";
+  if (!verdicts.empty())
+    write(verdicts_file, verdicts);
+  else if (fs::remove(verdicts_file, error); error)  // of a former report, on other records
+    throw Failure(ExitCode::io_error,
+                  "'" + verdicts_file.string() + "' cannot be removed: " + error.message());
   if (code == ExitCode::ok && changed(page) != former) return code;
   if (code == ExitCode::usage || code == ExitCode::io_error) return ExitCode::io_error;
   throw Failure(ExitCode::io_error,

@@ -59,6 +59,14 @@ class Results(RanksTest):
     LINES = [row(k, style="american" if k % 2 else "european", spot=0.7 + 0.02 * k, maturity=0.1 + 0.05 * k,
                  beta=9 if k % 11 == 5 else -2.5) for k in range(40)]
 
+    def test_times_add_up(self):
+        file = self.write(batch([row(k, spot=1 + 1e-6 * k, style="american") for k in range(30000)]))
+        for ranks in (1, 2):
+            self.expect_ranks(0, ranks, "price", file, "--mesh", "32", "--steps", "8", "--quiet", "--result", "r.json")
+            times = json.loads((self.folder / "r.json").read_text())["timing"]
+            wall = times.pop("wall_s")
+            self.assertLess(abs(wall - sum(times.values())), 0.02 + 0.05 * wall, times)
+
     def test_prices_and_boundaries_are_independent_of_ranks_and_chunks(self):
         """The last case has fewer chunks than ranks."""
         file = self.write(batch(self.LINES))

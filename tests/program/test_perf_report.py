@@ -50,8 +50,9 @@ class Report(perf_program.PerfTest):
         self.assertIn(verdicts["summary"], page)
         slower, = (case for case, verdict in found.items() if verdict == "SLOWER")
         self.assertRegex(page, rf'(?s){slower}</td>\s*<td class="bad">SLOWER')
-        self.expect(0, "report", ".", "--out", "plain")
-        self.assertNotIn('id="verdicts"', (self.folder / "plain/report.html").read_text(encoding="utf-8"))
+        self.expect(0, "report", ".", "--out", "made")
+        self.assertNotIn('id="verdicts"', (self.folder / "made/report.html").read_text(encoding="utf-8"))
+        self.assertFalse((self.folder / "made/verdicts.json").exists())
         self.assertIn("missing", self.expect(2, "report", ".", "--baseline", "missing").stderr)
 
     def test_refuses_records_with_file_and_line_and_writes_nothing(self):

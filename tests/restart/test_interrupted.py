@@ -64,6 +64,15 @@ class Interrupted(restarting.RestartTest):
                 self.interrupt(signal.SIGINT, "--overwrite", *words, sets=sets)
                 (self.folder / "part/restart.h5").unlink()
 
+    def test_run_without_its_history_leaves_a_restart_file(self):
+        process = self.begin("sod", "serial", sets=[*restarting.CASES["sod"], "run.end_time=0.4", "output.times=[0.4]"])
+        (self.folder / "part/history.csv").unlink()
+        (self.folder / "part/restart.h5").unlink()
+        self.assertEqual(6, process.wait(timeout=60))
+        self.assertIn(b"history.csv' was deleted or replaced during the run", process.stderr.read())
+        self.assertEqual(0.4, self.result("part")["time"])
+        self.assertTrue((self.folder / "part/restart.h5").exists())
+
     def test_finished_run_is_not_repeated(self):
         """Resubmission of the job script of a finished run changes nothing."""
         self.whole("sod", "serial")

@@ -125,6 +125,17 @@ class RestartFiles(gas_program.GasTest):
                 for key in ("steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter"):
                     self.assertEqual(self.result("whole")[key], self.result("part")[key], key)
 
+    def test_end_of_a_continued_run_replaces_the_restart_file_of_the_former_end(self):
+        """Also if the interval of restart files is longer than the run; the last file of an interval stays."""
+        words = ["--quiet", "--backend", "serial", "--out"]
+        sets = ["mesh.cells=200", "verify.l1_density=1.0", "output.times=[0.1, 0.2]"]
+        self.expect(0, "sod", *words, "part", sets=[*sets, "run.end_time=0.1", "output.times=[0.1]"])
+        self.expect(0, "sod", *words, "part", "--restart", "auto", sets=[*sets, "output.restart_every=1000", "run.end_time=0.2"])
+        self.expect(0, "sod", *words, "whole", sets=[*sets, "run.end_time=0.2"])
+        self.assertEqual(self.contents("whole")["restart.h5"], self.contents("part")["restart.h5"])
+        self.resume(0)
+        self.assertEqual(self.bytes, self.file.read_bytes())
+
     def test_refuses_to_continue_a_finished_run_without_a_restart_file(self):
         """It would begin anew, and its files would be lost."""
         sets = [*SETS, "output.restart_every=0"]
@@ -148,15 +159,32 @@ class RestartFiles(gas_program.GasTest):
 
     def test_names_the_variable_that_locks_files(self):
         """A reader that locks fields.h5, as a viewer does while it has it open."""
+        (self.folder / "run/fields.png").write_bytes(b"picture")
+        later = [*SETS, "run.end_time=0.25", "output.times=[0.1, 0.2, 0.25]"]
         with open(self.folder / "run/fields.h5", "rb") as reader:
             fcntl.flock(reader, fcntl.LOCK_SH)
             before = self.contents()
             words = ["--quiet", "--backend", "serial", "--out", "run", "--restart", "auto"]
-            message = self.expect(6, "sod", *words, sets=SETS, environment={"HDF5_USE_FILE_LOCKING": "TRUE"}).stderr
+            message = self.expect(6, "sod", *words, sets=later, environment={"HDF5_USE_FILE_LOCKING": "TRUE"}).stderr
             self.assertIn("fields.h5", message)
             self.assertIn("HDF5_USE_FILE_LOCKING = TRUE", message)
-            self.assertEqual(before.keys() - {"result.json"}, self.contents().keys() - {"result.json"})
-            self.expect(0, "sod", *words, sets=SETS)
+            self.assertEqual(before, self.contents())
+        (self.folder / "run/fields.png").unlink()
+        self.resume(0, sets=later)
+
+    def test_refuses_files_that_it_must_not_write(self):
+        later = [*SETS, "run.end_time=0.25", "output.times=[0.1, 0.2, 0.25]"]
+        for name in ("history.csv", "fields.h5"):
+            with self.subTest(name):
+                file = self.folder / "run" / name
+                file.chmod(0o444)
+                if os.access(file, os.W_OK):
+                    self.skipTest("this user may write every file")
+                before = self.contents()
+                self.assertIn(f"{name}': Permission denied", self.resume(6, sets=later))
+                self.assertEqual(before, self.contents())
+                file.chmod(0o644)
+        self.resume(0, sets=later)
 
     def test_continues_on_another_backend(self):
         self.expect(0, "sod", "--quiet", "--backend", gas_program.threaded(), "--out", "run", "--restart", "auto", sets=SETS)

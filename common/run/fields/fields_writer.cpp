@@ -254,7 +254,7 @@ void FieldsWriter::require_same_fields(const std::filesystem::path& directory,
   state.file = directory / "fields.h5";
   state.fields = fields;
   if (!std::filesystem::exists(state.file)) return;
-  const h5::Handle handle = h5::open_file(state.file, false);
+  const h5::Handle handle = h5::open_file(state.file, true);  // which a reader's lock refuses
   const h5::Handle index = h5::open_group(handle, "steps");
   for (const std::string& name : h5::children(index)) {
     const h5::Handle output = h5::open_group(index, name);

@@ -21,7 +21,6 @@ void RowCounts::add(const RowCounts& later) {
 
 void WorkerUsage::add(const WorkerUsage& other) {
   wall_times.add(other.wall_times);
-  pricing += other.pricing;
   counters.kernel_launches += other.counters.kernel_launches;
   counters.fences += other.counters.fences;
   counters.allocations_after_warmup += other.counters.allocations_after_warmup;

@@ -26,7 +26,6 @@ struct RowCounts {
 /// Wall times and profiling counters of a worker.
 struct WorkerUsage {
   options::WallTimes wall_times;
-  double pricing = 0.0;  ///< wall time inside the pricer, s
   device::ProfilingCounters counters;
 
   /// Sums times and counters, and takes the maximum of peak memory.

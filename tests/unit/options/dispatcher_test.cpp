@@ -26,7 +26,7 @@ class FakeWorker final : public WorkerProxy {
     ResultBatch batch;
     if (_is_shut_down || (_finishes_early && _line == 2)) {
       batch.worker_finished = true;
-      batch.usage.pricing = 1.0;
+      batch.usage.wall_times.compute = 1.0;
       return batch;
     }
     if (_chunks.empty() || ++_polls % _delay != 0) return std::nullopt;
@@ -76,7 +76,7 @@ class OptionsDispatcher : public ::testing::Test {
     ProgressLine progress(true);
     Dispatcher dispatcher(source, outputs, progress, workers, 350);
     const bool is_complete = dispatcher.run();
-    EXPECT_EQ(dispatcher.usage().pricing, static_cast<double>(workers.size()));
+    EXPECT_EQ(dispatcher.usage().wall_times.compute, static_cast<double>(workers.size()));
     if (is_complete) outputs.commit();
     return is_complete;
   }
