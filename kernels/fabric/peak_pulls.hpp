@@ -122,8 +122,9 @@ class PeakPulls {
                         RecordPullsFunctor<ExecutionSpace, StepTime>{_views, positions, step_time});
   }
 
-  /// Peaks so far, on the device, and those of the last checkpoint. Do not throw.
+  /// Peaks so far, N and s, on the device. Does not throw.
   [[nodiscard]] const ListView<ExecutionSpace, PeakPull>& present() const { return _views.peak; }
+  /// Place of the peaks of a checkpoint, N and s, on the device. Does not throw.
   [[nodiscard]] const ListView<ExecutionSpace, PeakPull>& saved() const { return _saved; }
 
   /// Peaks so far. Blocks. Throws only after a failed kernel.

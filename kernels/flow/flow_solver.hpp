@@ -109,7 +109,7 @@ class FlowSolver {
   [[nodiscard]] bool has_failed() const { return read_control().trial.stop == Stop::failed; }
   /// True if the velocity outgrew its stability limit in the last step, whose result is not to be trusted.
   /// Blocks. Throws std::runtime_error after a failed kernel.
-  [[nodiscard]] bool has_outgrown_step() const {
+  [[nodiscard]] bool last_step_violates_cfl() const {
     const Control control = read_control();
     return control.trial.stop == Stop::failed && !control.has_failed() &&
            control.now.last_dt > largest_excess * control.trial.dt;

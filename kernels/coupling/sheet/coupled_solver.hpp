@@ -356,7 +356,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
                                                   const flow::Poll& poll) {
   while (true) {
     const flow::Progress now = _flow.progress();
-    if (_flow.has_outgrown_step()) {
+    if (_flow.last_step_violates_cfl()) {
       return_to_last_step(now);
       return flow::Stop::failed;
     }
