@@ -612,6 +612,11 @@ class ClothDrops(parachute_program.FlowTest):
         # One kernel a step, and the stability limit of a block.
         self.assertLess(more - some, 1.1 * (more_steps - steps))
 
+    def test_largest_forces_need_a_first_part_that_kept_them(self):
+        self.drop("out", "run.end_time=0.1")
+        said = self.drop("out", "verify={peak_force=[{force=[0,1e9]}]}", "run.end_time=0.2", code=6, restart="auto").stderr
+        self.assertIn("verify.peak_force", said)
+
     def test_fixed_payload_catches_the_cloth(self):
         fixed = CLOTH.replace("mass = 0.1", "fixed = true").replace("end_time = 0.4", "end_time = 1.3")
         checks = "verify={energy_drift=2e-2,peak_force=[{force=[0.1,1000]}],oscillation=[{column='canopy_0_payload_z',amplitude={value=1,tolerance=1}}]}"

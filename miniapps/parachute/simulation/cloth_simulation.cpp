@@ -53,7 +53,7 @@ ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::Simula
 void ClothSimulation::start() {
   const ScopedStopwatch stopwatch(_h2d_s);
   _solver->upload(_sheets.positions, std::vector<Vector>(_sheets.positions.size()));
-  _solver->watch_pulls(pulls_on_payloads(_sheets));
+  if (watches_pulls()) _solver->watch_pulls(pulls_on_payloads(_sheets));
   allocate_buffers();
 }
 
@@ -244,7 +244,7 @@ run::ResultDocument::WallTimes ClothSimulation::phases() const {
 }
 
 ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
-  _record.set_peaks(_solver->peak_pulls());
+  if (watches_pulls()) _record.set_peaks(_solver->peak_pulls());
   check_canopies(_scene.verify, _record, result);
   check_oscillations(_scene.verify, directory, result);
   check_energy_drift(_scene, directory, result);
@@ -276,7 +276,8 @@ void ClothSimulation::write_restart(run::RestartWriter& writer) {
     writer.array(name, 3 * vectors->size());
     writer.write(name, 0, {vectors->front().data(), 3 * vectors->size()});
   }
-  _record.set_peaks(_solver->peak_pulls());
+  writer.integer("watches_pulls", watches_pulls() ? 1 : 0);
+  if (watches_pulls()) _record.set_peaks(_solver->peak_pulls());
   _record.write(writer);
 }
 
@@ -292,8 +293,14 @@ void ClothSimulation::restore(const run::RestartReader& reader) {
   _solver->set_time_state(clock);
   _solver->upload(positions, velocities);
   _record.read(reader);
-  _solver->watch_pulls(pulls_on_payloads(_sheets));
-  _solver->set_peak_pulls(_record.peaks());
+  if (watches_pulls()) {
+    if (reader.integer("watches_pulls") == 0)
+      throw Failure(ExitCode::io_error,
+                    "verify.peak_force: the run that wrote the restart file did not ask for it and kept no "
+                    "largest forces; start anew, or leave the key out");
+    _solver->watch_pulls(pulls_on_payloads(_sheets));
+    _solver->set_peak_pulls(_record.peaks());
+  }
   if (_cuts.restart_at(now().time)) _solver->set_line_stiffness(_cuts.stiffness());
   allocate_buffers();
 }
