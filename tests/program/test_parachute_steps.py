@@ -126,9 +126,11 @@ class Drives(parachute_program.FlowTest):
         cylinder = """
 [[body]]
 kind = "cylinder"
+axis = "z"
 centre = [0.5, 0.5, 0.5]
 radius = 0.2
-edge_length = 0.04
+length = 1
+edge_length = 0.02
 """
         for text in (CHANNEL, CHANNEL + cylinder):
             said = self.expect(4, self.write(text), *QUIET, sets=["fluid.viscosity=2e-5", "grid.cells=[32,32,1]",
@@ -138,7 +140,7 @@ edge_length = 0.04
 
     def test_lid_over_a_body_at_rest(self):
         lid = ["fluid.viscosity=2e-5", "grid.cells=[32,32,1]", "grid.boundary={x='wall',y='wall'}", "grid.wall_velocity={y_high=[1,0,0]}",
-               "body=[{kind='cylinder',centre=[0.5,0.5,0.5],radius=0.2,edge_length=0.04}]", "run.end_time=2"]
+               "body=[{kind='cylinder',axis='z',centre=[0.5,0.5,0.5],radius=0.2,length=1,edge_length=0.02}]", "run.end_time=2"]
         rows, fine = self.check(CHANNEL, *lid), self.check(CHANNEL, *lid, "run.max_dt=0.005")
         self.assertAlmostEqual(fine["max_speed"][-1], rows["max_speed"][-1], delta=5e-3)
 
