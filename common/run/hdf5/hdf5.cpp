@@ -103,7 +103,10 @@ Handle create_file(const std::filesystem::path& path, std::uint64_t user_block) 
   const Lock lock;
   const Handle access = file_access(path);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-  if (!creation || H5Pset_userblock(creation.id(), user_block) < 0) fail("create", path);
+  // Equal content has equal bytes, whenever it is written: the root group has no times, as other objects.
+  if (!creation || H5Pset_userblock(creation.id(), user_block) < 0 ||
+      H5Pset_obj_track_times(creation.id(), false) < 0)
+    fail("create", path);
   // The operating system writes whole pages, even if the process is killed. HDF5 aligns to pages only without
   // a user block.
   if (user_block == 0 && H5Pset_alignment(access.id(), index_page - 256, index_page) < 0)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace drogue::reference {
@@ -52,7 +53,8 @@ double two_rarefaction_pressure(const Primitive& l, const Primitive& r, double g
 /// within a bracket, with bisection if an iterate leaves it.
 double solve_pressure(const Primitive& l, const Primitive& r, double gamma) {
   double low = 0.0;
-  double high = two_rarefaction_pressure(l, r, gamma);
+  // Beyond pressure ratios of 1e308 that is 0, which no factor raises.
+  double high = std::max(two_rarefaction_pressure(l, r, gamma), std::numeric_limits<double>::min());
   const auto f = [&](double p) {
     const ValueAndSlope a = wave(l, p, gamma);
     const ValueAndSlope b = wave(r, p, gamma);

@@ -172,6 +172,10 @@ TEST(ExactRiemann, SolvesForPressuresOverSixteenDecades) {
   }
 }
 
+TEST(ExactRiemann, EndsForPressureRatiosBeyondTheRangeOfNumbers) {
+  EXPECT_GT(ExactRiemann({1, 0, 1e200}, {1, 0, 1e-200}, 1.4).star_pressure(), 0.0);
+}
+
 TEST(ExactRiemann, RejectsUnphysicalStates) {
   EXPECT_THROW(ExactRiemann({1, 0, -1}, {1, 0, 1}, 1.4), std::invalid_argument);
   EXPECT_THROW(ExactRiemann({1, 0, 1}, {0, 0, 1}, 1.4), std::invalid_argument);
