@@ -295,9 +295,10 @@ void ClothSimulation::restore(const run::RestartReader& reader) {
   _record.read(reader);
   if (watches_pulls()) {
     if (reader.integer("watches_pulls") == 0)
-      throw Failure(ExitCode::io_error,
-                    "verify.peak_force: the run that wrote the restart file did not ask for it and kept no "
-                    "largest forces; start anew, or leave the key out");
+      throw Failure(
+          ExitCode::io_error,
+          "verify.peak_force: the run that wrote the restart file kept no largest forces, since its scene "
+          "lacked the key; start anew, or leave the key out");
     _solver->watch_pulls(pulls_on_payloads(_sheets));
     _solver->set_peak_pulls(_record.peaks());
   }
