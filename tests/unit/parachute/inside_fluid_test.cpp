@@ -83,20 +83,71 @@ TEST(PeriodicImages, AreThoseAcrossPeriodicSides) {
   EXPECT_EQ(periods_of(p), (std::vector<Vector>{{0.0, 0.0, 2.0}}));
 }
 
-TEST(PeriodicImages, AreMetByTrianglesAndLines) {
-  const std::vector<Vector> periods = periods_of(unit_domain());
-  // A triangle at the low side, and one that sticks out of the high side across its image.
+/// A triangle at the low side along x, and a line that ends at `to` within the image of it, at 2.2.
+struct TriangleAndLine {
   std::vector<Vector> x = {
       {0.2, 0.0, 0.0}, {0.2, 1.0, 0.0}, {0.2, 0.0, 1.0}, {1.9, 0.3, 0.3}, {2.4, 0.3, 0.3}};
-  const std::vector<std::array<int, 3>> triangles = {{0, 1, 2}};
-  const std::vector<std::array<int, 2>> lines = {{3, 4}};
-  const auto found = image_intersections(x, triangles, lines, periods, 0);
+  std::vector<std::array<int, 3>> triangles = {{0, 1, 2}};
+  std::vector<std::array<int, 2>> lines = {{3, 4}};
+  SheetParts parts;
+  std::vector<Vector> periods = periods_of(unit_domain());
+
+  [[nodiscard]] std::vector<ImageIntersection> found() const {
+    return image_intersections(x, {triangles, lines}, periods, parts);
+  }
+  [[nodiscard]] double distance() const { return distance_from_images(x, lines, periods, parts); }
+};
+
+SheetParts parts_with(std::size_t bodies, std::vector<std::size_t> ends) {
+  const std::size_t n = ends.size();
+  return {std::move(ends), bodies, n - bodies, std::vector<bool>(n, true)};
+}
+
+TEST(PeriodicImages, AreMetByTrianglesAndLines) {
+  TriangleAndLine sheets;
+  sheets.parts = parts_with(0, {5});
+  const auto found = sheets.found();
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].of_segment, 3);
   EXPECT_EQ(found[0].of_triangle, 0);
-  EXPECT_TRUE(image_intersections(x, triangles, lines, periods, 5).empty()) << "both are bodies";
-  x[4][0] = 2.1;
-  EXPECT_TRUE(image_intersections(x, triangles, lines, periods, 0).empty());
+  sheets.parts = parts_with(0, {3, 5});
+  EXPECT_EQ(sheets.found().size(), 1U);
+  EXPECT_LE(sheets.distance(), 0.0);
+  sheets.x[4][0] = 2.1;
+  EXPECT_TRUE(sheets.found().empty());
+  EXPECT_NEAR(sheets.distance(), 0.1, 1e-8) << "of the line from the image of the triangle";
+}
+
+TEST(PeriodicImages, MayTouchTheirOwnBodyAndNoOther) {
+  TriangleAndLine sheets;
+  sheets.parts = parts_with(1, {5});
+  EXPECT_TRUE(sheets.found().empty());
+  EXPECT_TRUE(std::isinf(sheets.distance()));
+  sheets.parts = parts_with(2, {3, 5});
+  EXPECT_EQ(sheets.found().size(), 1U);
+  EXPECT_LE(sheets.distance(), 0.0);
+  sheets.parts.moves = {false, false};
+  EXPECT_EQ(sheets.found().size(), 1U);
+  EXPECT_TRUE(std::isinf(sheets.distance())) << "they stay apart or not";
+}
+
+TEST(PeriodicImages, BeginWhereWhatReachesTheSidesEnds) {
+  TriangleAndLine sheets;
+  sheets.parts = parts_with(0, {3, 5});
+  sheets.x[3][0] = 0.2, sheets.x[4][0] = 2.2;  // as long as the domain
+  EXPECT_TRUE(sheets.found().empty());
+  EXPECT_GT(sheets.distance(), 0.0);
+  sheets.x[4][0] = 2.2 + 1e-8;
+  EXPECT_EQ(sheets.found().size(), 1U);
+}
+
+TEST(PeriodicImages, PartsAreNamedAsInTheScene) {
+  const SheetParts parts = parts_with(1, {3, 5, 9});
+  EXPECT_EQ(parts.of(2), 0U);
+  EXPECT_EQ(parts.of(3), 1U);
+  EXPECT_EQ(parts.of(8), 2U);
+  EXPECT_EQ(parts.name(0), "body[0]");
+  EXPECT_EQ(parts.name(2), "canopy[1]");
 }
 
 }  // namespace
