@@ -151,6 +151,9 @@ class FabricSolver {
   void watch_pulls(std::span<const Pull> pulls) {
     if (_parameters.integrator != Integrator::verlet)
       throw std::invalid_argument("fabric solver: pulls are watched in steps of the velocity Verlet method");
+    // The contact of an interval moves its last state after the forces on it were compared.
+    if (_contact && !has_contact_in_steps())
+      throw std::invalid_argument("fabric solver: pulls are watched with contact in every step");
     if (pulls.size() > _parameters.mesh.rest.size())
       throw std::invalid_argument("fabric solver: there are more pulls than vertices");
     synchronize();

@@ -124,7 +124,8 @@ class Solver {
 
   /// Records the largest forces of lines on vertices, N, from now on, those of the present state included:
   /// after every step of the velocity Verlet method, on the device. Replaces former pulls. Blocks. Throws
-  /// std::invalid_argument for lines that do not end at their vertex, and for other integrators.
+  /// std::invalid_argument for lines that do not end at their vertex, for other integrators, and with an
+  /// interval of contact, which changes states after they were recorded.
   virtual void watch_pulls(std::span<const Pull> pulls) = 0;
 
   /// Peaks of the pulls that are watched. Blocks. Throws only after a failed kernel.

@@ -208,7 +208,40 @@ class BadFlows(parachute_program.FlowTest):
         self.assertIn("canopy[0] overlaps the image, beyond periodic sides, of canopy[0]", self.refusal(*narrow))
         # The lines of a canopy reach through the cloth of its image below.
         below = ('grid.boundary.z="periodic"', "grid.domain=[[-2,2],[-1,1],[-0.4,0.6]]", "grid.cells=[40,20,10]")
-        self.assertIn("canopy[0] with its lines crosses an image beyond the periodic sides", self.refusal(*below))
+        self.assertIn("canopy[0] with its lines crosses the image of canopy[0] beyond the periodic sides at the start", self.refusal(*below))
+
+    def test_rejects_bodies_that_meet_images_of_others(self):
+        """Bodies may overlap, and touch images at the sides, but not cross the image of another one."""
+        ball = 'kind = "sphere"\ncentre = [0.5, 0.4, 0.4]\nradius = 0.2\nedge_length = 0.05\n'
+        second = "[[body]]\n" + ball.replace("0.4, 0.4]", "0.4, 0.6]")
+        head = bad_bodies.GOOD[:bad_bodies.GOOD.index("kind")]
+        scene = head + ball + second + "[run]\nend_time = 0.5\nmax_dt = 0.01\n"
+        self.scene.write_text(scene, encoding="utf-8")
+        self.expect(0, self.scene, "--check")  # overlap
+        self.expect(0, self.scene, "--check", sets=["body[0].centre=[0.5,0.4,0.2]"])  # touch at one point
+        across = "body[0].centre=[0.5,0.4,0.05]"
+        message = self.refusal(across)
+        self.assertIn("body[1] crosses the image of body[0] beyond the periodic sides at the start", message)
+        self.assertIn(":15: ", message)
+        self.expect(0, self.scene, "--check", sets=[across, "body[1].centre=[1.1,0.4,0.6]"])
+        moves = "body[1].motion={z='0.4*t'}"
+        self.expect(0, self.scene, "--check", sets=["body[0].centre=[0.5,0.4,0.15]", "body[1].centre=[0.5,0.4,0.5]"])
+        self.assertRegex(self.refusal("body[0].centre=[0.5,0.4,0.15]", "body[1].centre=[0.5,0.4,0.5]", moves),
+                         r"body\[1\] crosses the image of body\[0\] beyond the periodic sides at t = 0\.1[2-4]\d* s")
+        # Plates of a duct that spans the domain meet along edges that touch their images at the sides.
+        wall = 'kind = "plate"\nnormal = "y"\ncentre = [0.8, 0.2, 0.4]\nlengths = [0.4, 0.8]\nedge_length = 0.05\n'
+        side = '[[body]]\nkind = "plate"\nnormal = "x"\ncentre = [0.6, 0.4, 0.4]\nlengths = [0.4, 0.8]\nedge_length = 0.05\n'
+        self.scene.write_text(scene.replace(ball + second, wall + side), encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+
+    def test_rejects_flags_that_meet_images_of_others(self):
+        """Two flags lean apart, and one crosses the image of the other."""
+        first = bad_flags.GOOD[bad_flags.GOOD.index("[[flag]]"):bad_flags.GOOD.index("[coupling]")]
+        second = first.replace("0.02]", "-1.4]").replace("angle = 18", "angle = -18")
+        scene = bad_flags.GOOD.replace('y = "slip"', 'y = "periodic"').replace(first, first.replace("0.02]", "1.2]") + second)
+        self.scene.write_text(scene, encoding="utf-8")
+        self.assertIn("flag[1] crosses the image of flag[0] beyond the periodic sides at the start", self.refusal())
+        self.expect(0, self.scene, "--check", sets=["flag[0].angle=-18"])
 
     def test_rejects_surfaces_with_one_side_and_turns_the_faces_of_others(self):
         scene = bad_bodies.ROUND.replace('kind = "sphere"', 'kind = "file"\nfile = "body.obj"').replace("radius = 0.2\nedge_length = 0.05\n", "", 1)

@@ -14,7 +14,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 import gas_program
 import parachute_program
 import small_disk
-from parachute_program import CANOPY, GUST, PLATE, PROGRAM, VORTICES
+from parachute_program import CANOPY, DRIFT, GUST, PLATE, PROGRAM, VORTICES
 from rank_processes import LAUNCHER, RANK_ENVIRONMENT, processes_of
 
 QUIET = ("--quiet", "--backend", "serial")
@@ -186,6 +186,13 @@ class Failures(RanksTest):
         self.assertEqual("numerical-failure", self.result("out")["status"])
         self.assertEqual(sentence, self.run_on(4, 4, self.write(free), *QUIET, "--out", "out", "--restart", "auto",
                                                sets=["run.end_time=5", "output.times=[5]"]))
+
+    def test_reports_a_sheet_that_meets_an_image_once(self):
+        scene = self.write(DRIFT)
+        sentences = [self.run_on(4, ranks, scene, *QUIET, "--out", f"on{ranks}") for ranks in (1, 2)]
+        words = [sentence.split(" m after ") for sentence in sentences]
+        self.assertIn("canopy[0] meets the image of body[0] beyond the periodic sides at ", words[0][0])
+        self.assertEqual(words[0][1], words[1][1])
 
     def test_reports_a_full_disk_once(self):
         """The disk fills in the first output, in a restart file and in a later output."""

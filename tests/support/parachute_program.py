@@ -142,6 +142,37 @@ history_every = 2
 force_balance = 1e-14
 """
 
+# A sheet that the air carries through a periodic side to the image of a disk.
+DRIFT = """\
+app = "parachute"
+[fluid]
+density = 1.2
+viscosity = 0.01
+velocity = [0, 0, 2]
+[grid]
+cells = [16, 16, 16]
+domain = [[0, 1.6], [0, 1.6], [0, 1.6]]
+boundary = { x = "slip", y = "slip", z = "periodic" }
+[[body]]
+kind = "disk"
+normal = "z"
+centre = [0.8, 0.8, 0.2]
+radius = 0.25
+edge_length = 0.07
+[[canopy]]
+kind = "sheet"
+diameter = 0.8
+gores = 6
+vent = 0
+edge_length = 0.07
+centre = [0.8, 0.8, 1.2]
+[run]
+end_time = 0.6
+max_dt = 0.01
+[output]
+history_every = 10
+"""
+
 
 class FlowTest(gas_program.GasTest):
     """Test case whose programs run in an empty temporary folder."""

@@ -106,6 +106,9 @@ struct CompletedFlowStep {
 /// of the cloth: within a block, no step waits for the host, copies to it or allocates. A block ends early
 /// where the air has become too fast for its dt.
 ///
+/// Sheets may cross periodic sides, but contact does not act between them and their images: a caller whose
+/// sheets may meet images compares them, with the state after a call of `advance`.
+///
 /// On a group of several ranks each holds a box of the cells and the whole cloth, with the same bits.
 /// Functions are then collective, except those that only return values of the cloth, and every step waits for
 /// the host.

@@ -238,25 +238,6 @@ void check_overlaps(const Table& root, const FlowScene& scene, const std::vector
     check_all(bodies[k], scene.bodies[k].largest_edge(), "body[" + std::to_string(k) + "]");
 }
 
-/// Checks that no line of a canopy crosses the image of cloth or a body beyond periodic sides.
-void check_images(const Table& root, const FlowScene& scene) {
-  const std::vector<Vector> periods = periods_of(scene.parameters);
-  if (periods.empty()) return;
-  const Sheets sheets =
-      make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density, scene.parameters.viscosity);
-  const auto found =
-      image_intersections(sheets.positions, sheets.fabric.mesh.triangles, sheets.fabric.mesh.lines, periods,
-                          static_cast<int>(sheets.canopies.front().begin));
-  if (found.empty()) return;
-  const auto vertex = static_cast<std::size_t>(std::max(found.front().of_segment, found.front().of_triangle));
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
-    if (vertex < sheets.canopies[i].end)
-      contradict(root, place_key(scene.canopies[i], name_of(i)),
-                 name_of(i) +
-                     " with its lines crosses an image beyond the periodic sides at the start: the "
-                     "domain must be wider, or have other sides");
-}
-
 /// The grid moves with the first payload.
 void check_frame(const Table& root, const FlowScene& scene) {
   if (scene.frame != Frame::follow) return;
@@ -379,7 +360,6 @@ void check_canopies(const Table& root, const FlowScene& scene) {
   }
   check_contact(root, scene);
   if (!scene.has_fluid()) return;
-  check_images(root, scene);
   check_frame(root, scene);
   check_method(root, scene);
 }

@@ -1,7 +1,8 @@
 #include "miniapps/parachute/canopy/periodic_images.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <limits>
 
 #include "kernels/reference/fabric/intersections.hpp"
 
@@ -10,24 +11,71 @@ namespace {
 
 using fabric::Vector;
 
-/// True if the boxes around points and around their image overlap.
-bool may_meet(std::span<const Vector> positions, const Vector& period) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::ranges::minmax(positions, {}, [axis](const Vector& x) { return x[axis]; });
-    if (high[axis] - low[axis] < std::abs(period[axis])) return false;
-  }
-  return true;
+/// Low and high end along each axis, m.
+using Box = std::array<std::array<double, 2>, 3>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Box nothing = {{{infinity, -infinity}, {infinity, -infinity}, {infinity, -infinity}}};
+
+/// Displacement to an image, from which rounding parts what ends at the sides.
+Vector beyond(Vector period) {
+  for (double& x : period) x *= 1.0 + 1e-9;
+  return period;
 }
 
-/// Parts, then the same of the image, whose vertices follow those of the original.
-template <std::size_t n>
-std::vector<std::array<int, n>> doubled(std::span<const std::array<int, n>> parts, int vertices) {
-  std::vector<std::array<int, n>> result(parts.begin(), parts.end());
-  for (std::array<int, n> part : parts) {
-    for (int& i : part) i += vertices;
-    result.push_back(part);
-  }
+Vector displaced(const Vector& x, const Vector& by) { return {x[0] + by[0], x[1] + by[1], x[2] + by[2]}; }
+
+void extend(Box& box, const Vector& x) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    box[axis] = {std::min(box[axis][0], x[axis]), std::max(box[axis][1], x[axis])};
+}
+
+Box displaced(Box box, const Vector& by) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (double& x : box[axis]) x += by[axis];
+  return box;
+}
+
+/// Distance of boxes, m, along the axis where it is largest; negative if they overlap.
+double distance(const Box& a, const Box& b) {
+  double result = -infinity;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    result = std::max({result, a[axis][0] - b[axis][1], b[axis][0] - a[axis][1]});
   return result;
+}
+
+/// Intersection of two boxes; inverted if they have none.
+Box common(Box a, const Box& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    a[axis] = {std::max(a[axis][0], b[axis][0]), std::min(a[axis][1], b[axis][1])};
+  return a;
+}
+
+/// Boxes around the vertices of every part, and around its lines to common payloads.
+std::vector<Box> boxes_of(std::span<const Vector> positions, std::span<const std::array<int, 2>> lines,
+                          const SheetParts& parts) {
+  std::vector<Box> boxes(parts.ends.size(), nothing);
+  std::size_t vertex = 0;
+  for (std::size_t part = 0; part < boxes.size(); ++part)
+    for (; vertex < parts.ends[part]; ++vertex) extend(boxes[part], positions[vertex]);
+  for (const auto& [a, b] : lines) extend(boxes[parts.of(a)], positions[static_cast<std::size_t>(b)]);
+  return boxes;
+}
+
+/// Appends the elements of a part that reach into a box, with numbers of vertices from `first` on.
+template <std::size_t n>
+void append_near(std::span<const std::array<int, n>> elements, std::span<const Vector> positions,
+                 const SheetParts& parts, std::size_t part, const Box& box, int first,
+                 std::vector<std::array<int, n>>& result) {
+  for (std::array<int, n> element : elements) {
+    if (parts.of(element[0]) != part) continue;
+    Box around = nothing;
+    for (int& i : element) {
+      extend(around, positions[static_cast<std::size_t>(i)]);
+      i += first;
+    }
+    if (distance(around, box) <= 0.0) result.push_back(element);
+  }
 }
 
 }  // namespace
@@ -54,24 +102,89 @@ std::vector<Vector> periods_of(const flow::Parameters& p) {
   return periods;
 }
 
+std::size_t SheetParts::of(int vertex) const {
+  const auto found = std::ranges::upper_bound(ends, static_cast<std::size_t>(vertex));
+  return std::min(static_cast<std::size_t>(found - ends.begin()), ends.size() - 1);
+}
+
+std::string SheetParts::name(std::size_t part) const {
+  const auto named = [](const char* kind, std::size_t number) {
+    return std::string(kind) + "[" + std::to_string(number) + "]";
+  };
+  if (part < bodies) return named("body", part);
+  if (part < bodies + canopies) return named("canopy", part - bodies);
+  return named("flag", part - bodies - canopies);
+}
+
+SheetParts parts_of(const std::vector<Body>& bodies, const Sheets& sheets) {
+  SheetParts parts;
+  std::size_t end = 0;
+  for (const Body& body : bodies) {
+    parts.ends.push_back(end += static_cast<std::size_t>(body.vertices()));
+    parts.moves.push_back(body.moves() || body.mount);
+  }
+  for (const CanopyRows& rows : sheets.canopies) parts.ends.push_back(rows.end);
+  for (const FlagRows& rows : sheets.flags) parts.ends.push_back(rows.end);
+  parts.moves.resize(parts.ends.size(), true);
+  parts.bodies = bodies.size();
+  parts.canopies = sheets.canopies.size();
+  return parts;
+}
+
 std::vector<ImageIntersection> image_intersections(std::span<const Vector> positions,
-                                                   std::span<const std::array<int, 3>> triangles,
-                                                   std::span<const std::array<int, 2>> lines,
-                                                   std::span<const Vector> periods, int bodies_end) {
+                                                   const SheetElements& elements,
+                                                   std::span<const Vector> periods, const SheetParts& parts) {
   std::vector<ImageIntersection> found;
+  const std::vector<Box> boxes = boxes_of(positions, elements.lines, parts);
   const auto n = static_cast<int>(positions.size());
+  std::vector<Vector> both(positions.begin(), positions.end());
+  both.resize(2 * positions.size());
+  const std::span<Vector> images = std::span(both).subspan(positions.size());
   for (const Vector& period : periods) {
-    if (!may_meet(positions, period)) continue;
-    std::vector<Vector> both(positions.begin(), positions.end());
-    for (const Vector& x : positions) both.push_back({x[0] + period[0], x[1] + period[1], x[2] + period[2]});
-    const auto faces = doubled(triangles, n);
-    for (const auto& [segment, number] : reference::intersections(both, faces, doubled(lines, n))) {
-      const int one = segment[0], other = faces[number][0];
-      if ((one < n) == (other < n)) continue;  // both belong to one copy
-      if (one % n >= bodies_end || other % n >= bodies_end) found.push_back({one % n, other % n});
-    }
+    const Vector by = beyond(period);
+    std::ranges::transform(positions, images.begin(), [&](const Vector& x) { return displaced(x, by); });
+    for (std::size_t a = 0; a < boxes.size(); ++a)
+      for (std::size_t b = 0; b < boxes.size(); ++b) {
+        const Box image = displaced(boxes[b], by);
+        if ((a == b && a < parts.bodies) || distance(boxes[a], image) > 0.0) continue;
+        const Box region = common(boxes[a], image);
+        std::vector<std::array<int, 3>> triangles;
+        std::vector<std::array<int, 2>> lines;
+        append_near(elements.triangles, positions, parts, a, region, 0, triangles);
+        append_near(elements.lines, positions, parts, a, region, 0, lines);
+        append_near(elements.triangles, images, parts, b, region, n, triangles);
+        append_near(elements.lines, images, parts, b, region, n, lines);
+        for (const auto& [segment, number] : reference::intersections(both, triangles, lines))
+          if (const int one = segment[0], other = triangles[number][0]; (one < n) != (other < n))
+            found.push_back({one % n, other % n});
+      }
   }
   return found;
+}
+
+double distance_from_images(std::span<const Vector> positions, std::span<const std::array<int, 2>> lines,
+                            std::span<const Vector> periods, const SheetParts& parts) {
+  const std::vector<Box> boxes = boxes_of(positions, lines, parts);
+  double least = infinity;
+  for (const Vector& period : periods)
+    for (std::size_t a = 0; a < boxes.size(); ++a)
+      for (std::size_t b = 0; b < boxes.size(); ++b)
+        if (!(a == b && a < parts.bodies) && (parts.moves[a] || parts.moves[b]))
+          least = std::min(least, distance(boxes[a], displaced(boxes[b], beyond(period))));
+  return least;
+}
+
+std::vector<std::array<int, 2>> whole_lines(const Sheets& sheets, double time) {
+  if (sheets.canopies.empty()) return {};
+  const auto& lines = sheets.fabric.mesh.lines;
+  std::vector<bool> is_cut(lines.size(), false);
+  for (const coupling::LineCut& cut : sheets.cuts)
+    for (const int line : cut.lines)
+      if (cut.time < time) is_cut[static_cast<std::size_t>(line)] = true;
+  std::vector<std::array<int, 2>> whole;
+  for (std::size_t line = 0; line < is_cut.size(); ++line)
+    if (!is_cut[line]) whole.push_back(lines[line]);
+  return whole;
 }
 
 }  // namespace drogue::parachute_app

@@ -11,6 +11,7 @@
 #include "kernels/flow/diffusive_step.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
 #include "miniapps/parachute/canopy/canopy_check.hpp"
+#include "miniapps/parachute/canopy/image_check.hpp"
 #include "miniapps/parachute/flags/flag_check.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
@@ -362,6 +363,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   check_and_place_canopies(root, scene.canopies);
   check_canopies(root, scene);
   complete_and_check_flags(root, scene);
+  check_images(root, scene);
   check_gravity(root, scene);
   complete_fields(root, scene);
   check_verify(root, scene);

@@ -184,7 +184,7 @@ framework::HistoryRow ClothSimulation::row() {
   row.values.insert(row.values.end(), {totals.kinetic, totals.elastic, totals.gravity, totals.energy()});
   double intersections = 0.0;
   if (_scene.verify.intersections) {
-    intersections = count_intersections(_sheets, state.positions, time, {});
+    intersections = count_intersections(_scene, _sheets, state.positions, time);
     row.values.push_back(intersections);
   }
   _record.add(time, canopies, 0.0, intersections);

@@ -104,20 +104,17 @@ std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets
   return canopies;
 }
 
-double count_intersections(const Sheets& sheets, const std::vector<Vector>& positions, double time,
-                           std::span<const Vector> periods) {
-  const fabric::Mesh& mesh = sheets.fabric.mesh;
-  std::vector<bool> is_cut(mesh.lines.size(), false);
-  for (const coupling::LineCut& cut : sheets.cuts)
-    for (const int line : cut.lines)
-      if (cut.time < time) is_cut[static_cast<std::size_t>(line)] = true;
-  std::vector<std::array<int, 2>> whole;
-  for (std::size_t line = 0; line < is_cut.size(); ++line)
-    if (!is_cut[line]) whole.push_back(mesh.lines[line]);
-  const int bodies_end = sheets.canopies.empty() ? 0 : static_cast<int>(sheets.canopies.front().begin);
-  return static_cast<double>(
-      reference::intersections(positions, mesh.triangles, whole).size() +
-      image_intersections(positions, mesh.triangles, whole, periods, bodies_end).size());
+double count_intersections(const FlowScene& scene, const Sheets& sheets, std::span<const Vector> positions,
+                           double time) {
+  const auto lines = whole_lines(sheets, time);
+  const auto& triangles = sheets.fabric.mesh.triangles;
+  double count = static_cast<double>(reference::intersections(positions, triangles, lines).size());
+  if (scene.has_fluid())
+    count +=
+        static_cast<double>(image_intersections(positions, {triangles, lines}, periods_of(scene.parameters),
+                                                parts_of(scene.bodies, sheets))
+                                .size());
+  return count;
 }
 
 run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name) {

@@ -23,9 +23,9 @@ std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets
                                             const fabric::Vector& velocity, framework::HistoryRow& row);
 
 /// Number of intersections of sheets and lines that are not cut at a time, s, with sheets and with their
-/// images at `periods`, m (`periods_of`). Throws only std::bad_alloc.
-[[nodiscard]] double count_intersections(const Sheets& sheets, const std::vector<fabric::Vector>& positions,
-                                         double time, std::span<const fabric::Vector> periods);
+/// images beyond periodic sides. Throws only std::bad_alloc.
+[[nodiscard]] double count_intersections(const FlowScene& scene, const Sheets& sheets,
+                                         std::span<const fabric::Vector> positions, double time);
 
 /// Dataset of a field of canopies. Throws only std::bad_alloc.
 [[nodiscard]] run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name);

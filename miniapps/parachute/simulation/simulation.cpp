@@ -64,6 +64,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     : _scene(scene),
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
                               scene.parameters.viscosity, scene.flags)),
+      _images(scene, _sheets),
       _grids(grids_beside_canopies(scene, _sheets)),
       _record(scene) {
   if (settings.communicator != nullptr) {
@@ -118,9 +119,16 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
   const auto at_pause = [&](std::int64_t step) {
     return limits.pause_step >= 0 && step >= limits.pause_step;
   };
+  const auto fails_by_image = [&] {
+    if (!meets_image()) return false;
+    if (limits.row_every > 0) rows(row());
+    return true;
+  };
   while (true) {
     const std::int64_t before = _solver->progress().step;
     std::int64_t pause = limits.pause_step;
+    if (before >= _images.next() && fails_by_image()) return framework::Stop::failed;
+    if (_images.applies() && (pause < 0 || _images.next() < pause)) pause = _images.next();
     if (limits.row_every > 0) {
       const std::int64_t next_row = (before / limits.row_every + 1) * limits.row_every;
       if (pause < 0 || next_row < pause) pause = next_row;
@@ -131,7 +139,8 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
     // The last good state of a failed run ends its history.
     if (limits.row_every > 0 && (failed || (step > before && step % limits.row_every == 0))) rows(row());
     if (failed) return framework::Stop::failed;
-    if (_stop == flow::Stop::target) return framework::Stop::target;
+    if (_stop == flow::Stop::target)
+      return _images.applies() && fails_by_image() ? framework::Stop::failed : framework::Stop::target;
     if (_stop == flow::Stop::interrupted) return framework::Stop::interrupted;
     if (at_pause(step)) return framework::Stop::pause;
   }

@@ -7,6 +7,7 @@
 #include "kernels/flow/solver.hpp"
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/parachute/bodies/inside_fluid.hpp"
+#include "miniapps/parachute/canopy/image_watch.hpp"
 #include "miniapps/parachute/parallel/rank_solver.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 #include "miniapps/parachute/simulation/sheet_output.hpp"
@@ -54,6 +55,7 @@ class Simulation final : public framework::Simulation {
   /// Values of the fields of one output, in the order of the scene, then positions of grids that move.
   using Snapshot = std::vector<std::vector<double>>;
 
+  [[nodiscard]] bool meets_image();
   void sample_fields(Snapshot& snapshot);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
@@ -92,10 +94,12 @@ class Simulation final : public framework::Simulation {
 
   const FlowScene& _scene;
   Sheets _sheets;
-  std::vector<InsideFluid> _inside;      ///< of each body
-  std::vector<SheetGrid> _grids;         ///< in fields.h5, beside flow and canopies
-  SharedSolver* _shared = nullptr;       ///< `_solver` on several ranks
-  coupling::Solver* _coupled = nullptr;  ///< `_solver` with bodies or canopies
+  ImageWatch _images;
+  std::optional<std::string> _met_image;  ///< what has ended the run
+  std::vector<InsideFluid> _inside;       ///< of each body
+  std::vector<SheetGrid> _grids;          ///< in fields.h5, beside flow and canopies
+  SharedSolver* _shared = nullptr;        ///< `_solver` on several ranks
+  coupling::Solver* _coupled = nullptr;   ///< `_solver` with bodies or canopies
   std::unique_ptr<flow::Solver> _solver;
   RunStatistics _statistics;
   CanopyRecord _record;

@@ -12,7 +12,7 @@
 #include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
-// Messages of failed steps.
+// Steps that fail, and their messages.
 
 namespace drogue::parachute_app {
 namespace {
@@ -208,7 +208,18 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
   return "";
 }
 
+bool Simulation::meets_image() {
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  _coupled->download_cloth(positions, velocities);
+  const flow::Progress now = _solver->progress();
+  _met_image = _images.look({now.step, now.time, now.last_dt, positions, velocities});
+  return _met_image.has_value();
+}
+
 std::string Simulation::failure_cause() {
+  if (_met_image)
+    return *_met_image + " after " + now_text() +
+           "; a larger grid.domain or a shorter run.end_time may save the run";
   if (_stop == flow::Stop::max_steps) return step_limit_text(_scene, now().time);
   const auto reason = _coupled != nullptr ? _coupled->failure_reason() : coupling::FailureReason::flow;
   return reason == coupling::FailureReason::flow ? flow_failure_text() : sheet_failure_text(reason);

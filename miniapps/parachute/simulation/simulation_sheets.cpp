@@ -4,7 +4,6 @@
 #include <sstream>
 #include <string>
 
-#include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
@@ -123,7 +122,7 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
                                        totals.elastic, balance});
   double intersections = 0.0;
   if (_scene.verify.intersections) {
-    intersections = count_intersections(_sheets, state.positions, row.time, periods_of(_scene.parameters));
+    intersections = count_intersections(_scene, _sheets, state.positions, row.time);
     row.values.push_back(intersections);
   }
   if (_scene.frame == Frame::follow)

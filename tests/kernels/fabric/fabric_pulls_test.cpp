@@ -123,12 +123,17 @@ TEST(FabricPulls, ForgetStepsThatAreRolledBack) {
   EXPECT_NEAR(solver->peak_pulls()[0].force, taut, 1e-12 * taut);
 }
 
-TEST(FabricPulls, RefuseLinesThatDoNotPullTheirVertex) {
+TEST(FabricPulls, RefuseLinesThatDoNotPullTheirVertexAndStepsThatContactChangesLater) {
   Case made = falling_payload();
   const auto solver = create_solver(backend, made.parameters);
   EXPECT_THROW(solver->watch_pulls(std::vector<Pull>{{0, {1}}}), std::invalid_argument);
   EXPECT_THROW(solver->watch_pulls(std::vector<Pull>{{3, {3}}}), std::invalid_argument);
   EXPECT_THROW(solver->set_peak_pulls(std::vector<PeakPull>(2)), std::invalid_argument);
+  made.parameters.contact.self = true;
+  made.parameters.contact.interval = 2;
+  EXPECT_THROW(create_solver(backend, made.parameters)->watch_pulls(made.pulls), std::invalid_argument);
+  made.parameters.contact.self = false;
+  EXPECT_NO_THROW(create_solver(backend, made.parameters)->watch_pulls(made.pulls));
   made.parameters.integrator = Integrator::rk4;
   EXPECT_THROW(create_solver(backend, made.parameters)->watch_pulls(made.pulls), std::invalid_argument);
 }

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "miniapps/parachute/bodies/inside_fluid.hpp"
-#include "miniapps/parachute/canopy/periodic_images.hpp"
+#include "miniapps/parachute/canopy/image_watch.hpp"
 
 // Fluid inside of bodies, and images of sheets beyond periodic sides.
 
@@ -83,20 +83,141 @@ TEST(PeriodicImages, AreThoseAcrossPeriodicSides) {
   EXPECT_EQ(periods_of(p), (std::vector<Vector>{{0.0, 0.0, 2.0}}));
 }
 
-TEST(PeriodicImages, AreMetByTrianglesAndLines) {
-  const std::vector<Vector> periods = periods_of(unit_domain());
-  // A triangle at the low side, and one that sticks out of the high side across its image.
+/// A triangle at the low side along x, and a line that ends at `to` within the image of it, at 2.2.
+struct TriangleAndLine {
   std::vector<Vector> x = {
       {0.2, 0.0, 0.0}, {0.2, 1.0, 0.0}, {0.2, 0.0, 1.0}, {1.9, 0.3, 0.3}, {2.4, 0.3, 0.3}};
-  const std::vector<std::array<int, 3>> triangles = {{0, 1, 2}};
-  const std::vector<std::array<int, 2>> lines = {{3, 4}};
-  const auto found = image_intersections(x, triangles, lines, periods, 0);
+  std::vector<std::array<int, 3>> triangles = {{0, 1, 2}};
+  std::vector<std::array<int, 2>> lines = {{3, 4}};
+  SheetParts parts;
+  std::vector<Vector> periods = periods_of(unit_domain());
+
+  [[nodiscard]] std::vector<ImageIntersection> found() const {
+    return image_intersections(x, {triangles, lines}, periods, parts);
+  }
+  [[nodiscard]] double distance() const { return distance_from_images(x, lines, periods, parts); }
+};
+
+SheetParts parts_with(std::size_t bodies, std::vector<std::size_t> ends) {
+  const std::size_t n = ends.size();
+  return {std::move(ends), bodies, n - bodies, std::vector<bool>(n, true)};
+}
+
+TEST(PeriodicImages, AreMetByTrianglesAndLines) {
+  TriangleAndLine sheets;
+  sheets.parts = parts_with(0, {5});
+  const auto found = sheets.found();
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].of_segment, 3);
   EXPECT_EQ(found[0].of_triangle, 0);
-  EXPECT_TRUE(image_intersections(x, triangles, lines, periods, 5).empty()) << "both are bodies";
-  x[4][0] = 2.1;
-  EXPECT_TRUE(image_intersections(x, triangles, lines, periods, 0).empty());
+  sheets.parts = parts_with(0, {3, 5});
+  EXPECT_EQ(sheets.found().size(), 1U);
+  EXPECT_LE(sheets.distance(), 0.0);
+  sheets.x[4][0] = 2.1;
+  EXPECT_TRUE(sheets.found().empty());
+  EXPECT_NEAR(sheets.distance(), 0.1, 1e-8) << "of the line from the image of the triangle";
+}
+
+TEST(PeriodicImages, MayTouchTheirOwnBodyAndNoOther) {
+  TriangleAndLine sheets;
+  sheets.parts = parts_with(1, {5});
+  EXPECT_TRUE(sheets.found().empty());
+  EXPECT_TRUE(std::isinf(sheets.distance()));
+  sheets.parts = parts_with(2, {3, 5});
+  EXPECT_EQ(sheets.found().size(), 1U);
+  EXPECT_LE(sheets.distance(), 0.0);
+  sheets.parts.moves = {false, false};
+  EXPECT_EQ(sheets.found().size(), 1U);
+  EXPECT_TRUE(std::isinf(sheets.distance())) << "they stay apart or not";
+}
+
+TEST(PeriodicImages, BeginWhereWhatReachesTheSidesEnds) {
+  TriangleAndLine sheets;
+  sheets.parts = parts_with(0, {3, 5});
+  sheets.x[3][0] = 0.2, sheets.x[4][0] = 2.2;  // as long as the domain
+  EXPECT_TRUE(sheets.found().empty());
+  EXPECT_GT(sheets.distance(), 0.0);
+  sheets.x[4][0] = 2.2 + 1e-8;
+  EXPECT_EQ(sheets.found().size(), 1U);
+}
+
+TEST(PeriodicImages, PartsAreNamedAsInTheScene) {
+  const SheetParts parts = parts_with(1, {3, 5, 9});
+  EXPECT_EQ(parts.of(2), 0U);
+  EXPECT_EQ(parts.of(3), 1U);
+  EXPECT_EQ(parts.of(8), 2U);
+  EXPECT_EQ(parts.name(0), "body[0]");
+  EXPECT_EQ(parts.name(2), "canopy[1]");
+}
+
+/// A sheet of 1 m in a periodic box of 2 m: the image is 1 m away.
+struct WatchedSheet {
+  FlowScene scene;
+  Sheets sheets;
+  std::vector<Vector> velocities;
+
+  WatchedSheet() {
+    Canopy canopy;
+    canopy.kind = CanopyKind::sheet;
+    canopy.diameter = 1.0;
+    canopy.gores = 8;
+    canopy.vent = 0.0;
+    canopy.edge_length = 0.1;
+    canopy.centre = {1.0, 1.0, 1.0};
+    scene.canopies = {canopy};
+    scene.parameters = unit_domain();
+    sheets = make_all_sheets({}, scene.canopies, 1.2, 1e-5);
+    velocities.assign(sheets.positions.size(), {});
+  }
+};
+
+TEST(ImageWatch, LooksBeforeSheetsCanHaveMet) {
+  WatchedSheet sheet;
+  ImageWatch watch(sheet.scene, sheet.sheets);
+  ASSERT_TRUE(watch.applies());
+  EXPECT_EQ(watch.next(), 0);
+  const auto next = [&](double speed, double dt) {
+    sheet.velocities[3] = {0.0, -speed, 0.0};
+    EXPECT_FALSE(watch.look({100, 0.5, dt, sheet.sheets.positions, sheet.velocities}));
+    return watch.next();
+  };
+  EXPECT_EQ(next(0.0, 0.01), 101) << "how it will move is not known";
+  EXPECT_EQ(next(1e-3, 0.01), 116) << "slow";
+  EXPECT_EQ(next(2.5, 0.01), 110) << "both may reach twice the speed";
+  EXPECT_EQ(next(1e3, 0.01), 101);
+}
+
+TEST(ImageWatch, HasNothingToDoWithoutImagesOrMotion) {
+  WatchedSheet sheet;
+  for (flow::Boundary& side : sheet.scene.parameters.boundary) side.kind = flow::BoundaryKind::slip;
+  EXPECT_FALSE(ImageWatch(sheet.scene, sheet.sheets).applies());
+  FlowScene bodies;
+  bodies.parameters = unit_domain();
+  bodies.bodies = {body_of(BodyKind::disk)};
+  const Sheets one = make_all_sheets(bodies.bodies, {}, 1.2, 1e-5);
+  EXPECT_FALSE(ImageWatch(bodies, one).applies()) << "at rest";
+  bodies.bodies[0].motion[0] = "t";
+  ImageWatch watch(bodies, one);
+  ASSERT_TRUE(watch.applies());
+  const std::vector<Vector> velocities(one.positions.size());
+  EXPECT_FALSE(watch.look({0, 0.0, 0.0, one.positions, velocities}));
+  EXPECT_FALSE(watch.applies()) << "it may meet itself alone";
+}
+
+TEST(ImageWatch, NamesWhatMeetsAndWhere) {
+  WatchedSheet sheet;
+  Canopy second = sheet.scene.canopies[0];
+  second.centre = {1.0, 1.0, 2.9};
+  second.angle = 30.0;
+  sheet.scene.canopies[0].centre[2] = 0.9;
+  sheet.scene.canopies.push_back(second);
+  const Sheets both = make_all_sheets({}, sheet.scene.canopies, 1.2, 1e-5);
+  ImageWatch pair(sheet.scene, both);
+  const std::vector<Vector> velocities(both.positions.size());
+  const auto found = pair.look({7, 0.1, 0.01, both.positions, velocities});
+  ASSERT_TRUE(found);
+  EXPECT_NE(found->find("the image of canopy[0] beyond the periodic sides at ("), std::string::npos)
+      << *found;
 }
 
 }  // namespace
