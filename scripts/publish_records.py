@@ -4,8 +4,8 @@
     scripts/publish_records.py FOLDER MACHINE [--bin build/host/bin]
 
 FOLDER: that of bench.sh, here or brought from the machine; its files NAME.txt begin with the command of NAME.jsonl. Copies
-NAME.jsonl to docs/evidence/NAME-MACHINE.jsonl and the page to report-MACHINE.html; writes their rows in docs/evidence/README.md
-(one of the same name is replaced); starts the scripts that write tables, and drogue-plot of --bin. Older records of the same
+NAME.jsonl to docs/evidence/NAME-MACHINE.jsonl; writes their rows in docs/evidence/README.md (one of the same name is replaced);
+starts the scripts that write tables, and drogue-plot of --bin for the pictures of ladders. Older records of the same
 cases in other files of MACHINE go, with the rows of files that hold no other; files that documents, code or tests quote stay. Does nothing
 if a record failed its check, or was made with --quick.
 """
@@ -15,7 +15,6 @@ import json
 import pathlib
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 
@@ -50,20 +49,16 @@ def row(file, command, record):
 
 def rows(folder, machine):
     """Lines by file of docs/evidence; batches of options alone share one file, and one line."""
-    found, builds = {}, set()
+    found = {}
     for path in sorted(folder.rglob("*.jsonl")):
         name = path.relative_to(folder).with_suffix("").as_posix()
-        records = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
-        record = records[0]
-        builds |= {record["provenance"]["git"] for record in records}
+        record = json.loads(path.read_text(encoding="utf-8").partition("\n")[0])
         command = path.with_suffix(".txt").read_text(encoding="utf-8").partition("\n")[0].strip()
         if name.startswith("alone/"):
             command = command.replace(f"/{name.rpartition('-')[2]}/", "/N/")
         file = published_name(name, record.get("facts", {}).get("backend", ""), machine)
         found.setdefault(file, row(file, command, record))
-    report = f"report-{machine}.html"
-    runs = "one run" if len(builds) == 1 else "runs"
-    return found | {report: f"| `{report}` | `drogue-plot FOLDER --report` | from the records `*-{machine}.jsonl` of {runs} of `scripts/bench.sh` |"}
+    return found
 
 
 def renewed(text, lines):
@@ -79,12 +74,13 @@ def renewed(text, lines):
 
 
 def unlisted(evidence):
-    """Names in the first table of the list of files that match no file, and files that it does not name."""
+    """Names in the first table of the list of files that match no file, and files but pages and their pictures that it does not name."""
     lines = (evidence / "README.md").read_text(encoding="utf-8").split("\n")
     table = lines[next(n for n, line in enumerate(lines) if line.startswith("|---")) + 1 :]
     table = table[: next((n for n, line in enumerate(table) if not line.startswith("|")), len(table))]
     names = [name for line in table for name in re.findall("`([^`]+)`", line.split("|")[1])]
-    files = {path.relative_to(evidence).as_posix() for path in evidence.rglob("*") if path.is_file()} - {"README.md"}
+    made = {"README.md", *(path.name for path in evidence.glob("*.png"))}
+    files = {path.relative_to(evidence).as_posix() for path in evidence.rglob("*") if path.is_file() and path.suffix != ".html"} - made
     matched = {name: {path.relative_to(evidence).as_posix() for path in evidence.glob(name)} for name in names}
     return sorted(name for name in names if not matched[name]), sorted(files.difference(*matched.values()))
 
@@ -186,9 +182,8 @@ def publish(folder, machine, programs):
     if subprocess.run([plot, folder, "--report", "--quiet"], check=False).returncode != 0:
         sys.exit("nothing is published: no page can be made of the records, for the reason above")
     found = rows(folder, machine)
-    published = set(found)
+    published = list(found)
     copy_records(folder, machine, evidence)
-    shutil.copy(folder / "report.html", evidence / f"report-{machine}.html")
     page = evidence / "README.md"
     page.write_text(renewed(page.read_text(encoding="utf-8"), found), encoding="utf-8")
     # Tables of lessons show its pictures.
@@ -197,9 +192,8 @@ def publish(folder, machine, programs):
     for script in GENERATORS:
         subprocess.run([ROOT / "scripts" / script], check=True)
     # After the documents refer to the newest records.
-    emptied = remove_older(evidence, [name for name in published if name.endswith(".jsonl")], machine)
+    emptied = remove_older(evidence, published, machine)
     page.write_text(without_rows(page.read_text(encoding="utf-8"), emptied), encoding="utf-8")
-    subprocess.run([plot, evidence, "--quiet"], check=True)
     missing, unnamed = unlisted(evidence)
     if missing or unnamed:
         sys.exit(f"{page} has rows without a file ({', '.join(missing) or 'none'}), or files have no row ({', '.join(unnamed) or 'none'}): "
