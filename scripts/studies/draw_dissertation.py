@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Draws figures 5.2 to 5.5, 5.7, 5.8 and 5.14 of [Shi] from runs of this build, as docs/images/shi-*.png.
 
-    scripts/draw_dissertation.py --bin build/host/bin [--figures 5.5,5.14] [--backend serial] [--work FOLDER]
-                                 [--to FOLDER]
+    scripts/studies/draw_dissertation.py --bin build/host/bin [--figures 5.5,5.14] [--backend serial] [--work FOLDER]
+                                         [--to FOLDER]
 
 Prints the numbers that the engineering notebooks quote. Needs numpy, matplotlib and h5py.
 """
@@ -14,9 +14,10 @@ import sys
 import h5py
 import numpy as np
 from matplotlib.collections import PolyCollection
-from plot import style
-from record_springs import CHORD, DRUM, GRIPS, THICKNESS, mean_difference, response, study
-from recording import assignments, run
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from plot import style  # noqa: E402
+from record_springs import CHORD, DRUM, GRIPS, THICKNESS, mean_difference, response, study  # noqa: E402
+from recording import assignments, run  # noqa: E402
 
 STRAINS = (0.002, 0.004, 0.006, 0.008, 0.01)
 # Numbers of triangles in [Shi] and the vertices that give the nearest strip.
@@ -200,7 +201,7 @@ def main():
     parser.add_argument("--figures", default=",".join(FIGURES), help="numbers; 5.3 includes 5.4")
     parser.add_argument("--backend", default="serial")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/dissertation"))
-    parser.add_argument("--to", type=pathlib.Path, default=pathlib.Path(__file__).parents[1] / "docs/images")
+    parser.add_argument("--to", type=pathlib.Path, default=pathlib.Path(__file__).parents[2] / "docs/images")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     for name in options.figures.split(","):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Fits the constants of `error_factor` in kernels/options/pide/error_estimate.hpp to runs of drogue-options.
 
-    scripts/fit_error_estimate.py [--program build/host/bin/drogue-options] [--rows 200] [--covered 0.95] [--seed 1] [--backend auto]
+    scripts/studies/fit_error_estimate.py [--program build/host/bin/drogue-options] [--rows 200] [--covered 0.95] [--seed 1] [--backend auto]
 
 Each constant is fitted on a grid on which its term is the largest of the estimate, to European options of random contracts, as
-scripts/measure_coverage.py draws them, against Fourier's integral. The stated error is then proportional to the constant, but for
+scripts/studies/measure_coverage.py draws them, against Fourier's integral. The stated error is then proportional to the constant, but for
 the terms that do not depend on the difference of the grids, which are part of both. So the constant that covers a part of the
 rows is the present one times that quantile of true over stated error. Where the fit is below the present constant, more
 than that part is covered. All models share the constants, so the largest fit of a line counts.

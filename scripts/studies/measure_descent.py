@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures speeds and drag coefficients of canopies in finished runs of drogue-parachute, corrected for blockage.
 
-    scripts/measure_descent.py FOLDER... [--from 5] [--to T] [--period 2.7] [--blockage 1.85] [--limit]
+    scripts/studies/measure_descent.py FOLDER... [--from 5] [--to T] [--period 2.7] [--blockage 1.85] [--limit]
 
 Reads scene.toml and history.csv of each run, whose scene has one canopy, with a payload that is free or held. Down is the
 direction of gravity, or against the stream where there is none; it must be along an axis of the grid. U is the velocity of the
@@ -28,7 +28,8 @@ import pathlib
 import sys
 import tomllib
 
-from recording import read_history
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from recording import read_history  # noqa: E402
 
 AXES = "xyz"
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Prints the added mass of a disk that oscillates along its axis in fluid at rest, on several grids.
 
-    scripts/measure_added_mass.py [--cells 8 16] [--amplitude 0.02] [--bin build/host/bin] [--out out/added-mass]
-                                  [-- ARGUMENT...]
+    scripts/studies/measure_added_mass.py [--cells 8 16] [--amplitude 0.02] [--bin build/host/bin] [--out out/added-mass]
+                                          [-- ARGUMENT...]
 
 The disk of `disk-normal` is moved by amplitude sin(2 pi t), m, for three periods in a box of two diameters to each side.
 --cells: cells per diameter. The part of the force on the disk in phase with its acceleration, over two periods, is printed
@@ -13,10 +13,12 @@ Hydrodynamics, 1932, section 102). ARGUMENTs go to the program, such as `--backe
 
 import argparse
 import math
+import pathlib
 import subprocess
 import sys
 
-from recording import parse_with_arguments, read_history
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from recording import parse_with_arguments, read_history  # noqa: E402
 
 RADIUS, DENSITY = 0.5, 1.0  # m, kg/m^3, of the scene
 OMEGA = 2.0 * math.pi  # angular frequency, rad/s

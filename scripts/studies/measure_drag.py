@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs a scene of drogue-parachute with a body on several grids and prints the forces that its [verify] names.
 
-    scripts/measure_drag.py SCENE --ratio 1,1.5,2 [--bin build/host/bin] [--out out/drag] [-- ARGUMENT...]
+    scripts/studies/measure_drag.py SCENE --ratio 1,1.5,2 [--bin build/host/bin] [--out out/drag] [-- ARGUMENT...]
 
 --ratio: numbers of cells along each axis over those of the scene; axes of one cell keep it. Edges of bodies and max_dt
 shrink with the cells. The last two grids give the value for infinitely many cells, if the error is of first order.
@@ -15,7 +15,8 @@ import subprocess
 import sys
 import tomllib
 
-from recording import parse_with_arguments
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from recording import parse_with_arguments  # noqa: E402
 
 
 def literal(value):

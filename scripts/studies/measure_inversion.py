@@ -2,8 +2,8 @@
 """Drops a canopy at several angles to the stream, each several times with other random displacements of its cloth, and prints
 how often it opens inside out.
 
-    scripts/measure_inversion.py [--angles 15,30,45,60,75,90] [--runs 8] [--amplitude 0.01] [--bin build/host/bin]
-                                 [--out out/inversion] [-- ARGUMENT...]
+    scripts/studies/measure_inversion.py [--angles 15,30,45,60,75,90] [--runs 8] [--amplitude 0.01] [--bin build/host/bin]
+                                         [--out out/inversion] [-- ARGUMENT...]
 
 The scene is c9-angled-60 in a longer box, with the payload at one place for all angles. Openings are chaotic, so that a single run
 means little. For each angle: the inversion index at the end of each run (the share of the lines at whose vertex of the skirt the
@@ -14,11 +14,13 @@ such as `--backend cuda --set run.end_time=3`.
 
 import argparse
 import math
+import pathlib
 import statistics
 import subprocess
 import sys
 
-from recording import parse_with_arguments, read_history
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from recording import parse_with_arguments, read_history  # noqa: E402
 
 PAYLOAD = (-3.0, 0.0, -4.4)  # m
 BOX = ("grid.cells=[45, 45, 48]", "grid.domain=[[-9, 9], [-9, 9], [-9.2, 10]]", "verify={divergence = 1e-12}")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs taylor-green-3d with every turbulence model and prints the table of docs/flow.md.
 
-    scripts/measure_turbulence.py [--cells 32,64] [--advections weno5,central] [--models none,smagorinsky,vreman]
-                                  [--bin build/host/bin] [--out out/turbulence] [-- ARGUMENT...]
+    scripts/studies/measure_turbulence.py [--cells 32,64] [--advections weno5,central] [--models none,smagorinsky,vreman]
+                                          [--bin build/host/bin] [--out out/turbulence] [-- ARGUMENT...]
 
 Energy at t = 10 over that at the start; peak of the fall of the kinetic energy per time between rows of the history, as
 [verify] takes it, with its time, and peak of the viscous dissipation of the resolved flow, as means over the volume; processor
@@ -12,10 +12,13 @@ time per step and cell on one core, all of the program included. ARGUMENTs go to
 import argparse
 import json
 import math
+import pathlib
 import resource
 import subprocess
+import sys
 
-from recording import parse_with_arguments, read_history
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from recording import parse_with_arguments, read_history  # noqa: E402
 
 VOLUME = (2 * math.pi) ** 3
 

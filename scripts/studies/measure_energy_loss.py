@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the energy that steps of cloth and strings lose in violent motion, beside their time and their error.
 
-    scripts/measure_energy_loss.py [--program build/host/bin/drogue-springs] [--motion NAME]... [--safeties 0.2,0.4,0.8] [--repeats 3]
+    scripts/studies/measure_energy_loss.py [--program build/host/bin/drogue-springs] [--motion NAME]... [--safeties 0.2,0.4,0.8] [--repeats 3]
 
 Motions, all without damping, whose energy (kinetic, elastic, of gravity and of pressure) is a constant of the motion:
 

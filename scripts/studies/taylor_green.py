@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Energy and dissipation of the vortices of Taylor and Green from a spectral method, independently of the solver in kernels/flow.
 
-    scripts/taylor_green.py [--modes 64] [--end 10] [--every 1] [--reynolds 1600]    table of time, energy and dissipation
-    scripts/taylor_green.py --series 4                                                 power series of the mean enstrophy in time
+    scripts/studies/taylor_green.py [--modes 64] [--end 10] [--every 1] [--reynolds 1600]    table of time, energy and dissipation
+    scripts/studies/taylor_green.py --series 4                                                 power series of the mean enstrophy in time
 
 The velocity (sin x cos y cos z, -cos x sin y cos z, 0) keeps its symmetries: its components are sums of sine and cosine products whose
 three wave numbers are all even or all odd (Brachet et al. 1983, J. Fluid Mech. 130:411). The method is Fourier-Galerkin with

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Measures how often the stated error of drogue-options covers the true one, on random contracts of every model.
 
-    scripts/measure_coverage.py [--program build/host/bin/drogue-options] [--rows 100] [--tolerance 1e-4,1e-5]
-                                [--mesh M --steps N] [--models gh,kou] [--styles european] [--reference M N] [--seed 1]
-                                [--backend auto] [--out FILE]
+    scripts/studies/measure_coverage.py [--program build/host/bin/drogue-options] [--rows 100] [--tolerance 1e-4,1e-5]
+                                        [--mesh M --steps N] [--models gh,kou] [--styles european] [--reference M N] [--seed 1]
+                                        [--backend auto] [--out FILE]
 
 For a new fit of the constants in kernels/options/pide/error_estimate.hpp. The prices are those of finite differences, to each
 of the tolerances or on a given grid. References: for European options Fourier's integral (`--method cos`), which shares no part
@@ -25,7 +25,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PURE = "gh, pure jumps"
 MODELS = ("gh", "black-scholes", "merton", "kou")
 STYLES = ("european", "american")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Rest of the cloth at the end of the scenes hung-sheet and twist, independently of the solver in kernels/fabric.
 
-    scripts/cloth_at_rest.py hung-sheet [--vertices 900] [--modulus 100]    energy and height of the middle
-    scripts/cloth_at_rest.py twist      [--vertices 200] [--modulus 500]    energy, von Mises stress and contraction of the middle
+    scripts/studies/cloth_at_rest.py hung-sheet [--vertices 900] [--modulus 100]    energy and height of the middle
+    scripts/studies/cloth_at_rest.py twist      [--vertices 200] [--modulus 500]    energy, von Mises stress and contraction of the middle
 
 A state at rest is the least of the total potential energy: that of St Venant and Kirchhoff by triangles, relaxed as in Pipkin (1986)
 where cloth bears no compression, and that of gravity, with a third of the mass of each triangle at its corners. The script searches
