@@ -1,27 +1,28 @@
 #!/usr/bin/env python3
-"""Copies what scripts/bench.sh measured into docs/evidence, and renews what is made of the records there.
+"""Copies what scripts/bench.sh measured into docs/evidence, and renews the tables that documents make of the records there.
 
     scripts/publish_records.py FOLDER MACHINE [--bin build/host/bin]
+    scripts/publish_records.py --tables [--check]    the tables alone; --check: writes nothing, exit code 1 if one differs
 
 FOLDER: that of bench.sh, here or brought from the machine; its files NAME.txt begin with the command of NAME.jsonl. Copies
 NAME.jsonl to docs/evidence/NAME-MACHINE.jsonl; writes their rows in docs/evidence/README.md (one of the same name is replaced);
-starts the scripts that write tables, and drogue-plot of --bin for the pictures of ladders. Older records of the same
-cases in other files of MACHINE go, with the rows of files that hold no other; files that documents, code or tests quote stay. Does nothing
-if a record failed its check, or was made with --quick.
+writes the tables of README.md, docs/transfers.md and docs/lessons/tables.md, and with drogue-plot of --bin the pictures of ladders.
+Older records of the same cases in other files of MACHINE go, with the rows of files that hold no other; files that documents, code
+or tests quote stay. Does nothing if a record failed its check, or was made with --quick.
 """
 
 import argparse
-import json
 import pathlib
 import re
 import shlex
 import subprocess
 import sys
 
-from device_name import device_name
+import tables
+from plot.evidence.perf_record import read_file
+from plot.failure import Failure
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-GENERATORS = ("readme_tables.py", "lesson_tables.py", "transfer_tables.py")
 
 
 def published_name(name, backend, machine):
@@ -33,18 +34,17 @@ def published_name(name, backend, machine):
 
 def row(file, command, record):
     """Line of the table on a file, whose first record is `record`."""
-    here = record["provenance"]
-    name = device_name(here, bool(here["gpu"]))
-    article = "an" if name[0] in "AEIOUaeiou" else "a"
-    if here["gpu"]:
+    here, name = record.provenance, record.device(bool(record.machine.gpu))
+    if record.machine.gpu:
         machine = f"one {name}, CUDA {here['driver']}"
     else:
-        machine = f"{'one thread' if here['threads'] == 1 else str(here['threads']) + ' threads'} of {article} {name}"
+        article = "an" if name[0] in "AEIOUaeiou" else "a"
+        machine = f"{'one thread' if record.threads == 1 else str(record.threads) + ' threads'} of {article} {name}"
     out, per = pathlib.Path(file).name, ""
     if file.startswith("alone/"):
         out, per = "options-N.jsonl", ", one run per N"
     command = f"{command} --out {out}".replace("|", r"\|")
-    return f"| `{file}` | `{command}`{per} | {machine}, {here['date'][:10]}, commit {here['git']} |"
+    return f"| `{file}` | `{command}`{per} | {machine}, {record.run_id[0][:10]}, commit {here['git']} |"
 
 
 def rows(folder, machine):
@@ -52,11 +52,11 @@ def rows(folder, machine):
     found = {}
     for path in sorted(folder.rglob("*.jsonl")):
         name = path.relative_to(folder).with_suffix("").as_posix()
-        record = json.loads(path.read_text(encoding="utf-8").partition("\n")[0])
+        record = read_file(path)[0]
         command = path.with_suffix(".txt").read_text(encoding="utf-8").partition("\n")[0].strip()
         if name.startswith("alone/"):
             command = command.replace(f"/{name.rpartition('-')[2]}/", "/N/")
-        file = published_name(name, record.get("facts", {}).get("backend", ""), machine)
+        file = published_name(name, record.facts.get("backend", ""), machine)
         found.setdefault(file, row(file, command, record))
     return found
 
@@ -93,7 +93,7 @@ def without_rows(text, files):
 
 def identity(record):
     """Case and machine of a record."""
-    return record["case"], record["provenance"]["gpu"], record["provenance"]["cpu"]
+    return record.case, record.machine
 
 
 def quoting(evidence, file):
@@ -114,16 +114,13 @@ def remove_older(evidence, published, machine):
     """
     newest = {}
     for name in published:
-        for line in (evidence / name).read_text(encoding="utf-8").splitlines():
-            record = json.loads(line)
-            newest[identity(record)] = record["provenance"]["date"]
+        newest |= {identity(record): record.run_id[0] for record in read_file(evidence / name)}
     emptied = []
     for file in sorted(evidence.glob(f"*-{machine}.jsonl")):
         if file.name in published:
             continue
         lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
-        records = map(json.loads, lines)
-        kept = [line for line, record in zip(lines, records) if record["provenance"]["date"] >= newest.get(identity(record), "")]
+        kept = [line for line, record in zip(lines, read_file(file), strict=True) if record.run_id[0] >= newest.get(identity(record), "")]
         if len(kept) == len(lines):
             continue
         if pages := quoting(evidence, file):
@@ -145,23 +142,18 @@ def quick_records(folder):
                   if path.with_suffix(".jsonl").exists() and "--quick" in shlex.split(command))  # fmt: skip
 
 
-def cases(file):
-    """Names of the cases of a file, none if it does not exist."""
-    return {json.loads(line)["case"] for line in file.read_text(encoding="utf-8").splitlines()} if file.exists() else set()
-
-
 def copy_records(folder, machine, evidence):
     """Copies all records; those of options alone into one file, in the order of their numbers."""
-    joined = {}
+    joined, cases = {}, {}
     for path in sorted(folder.rglob("*.jsonl"), key=lambda path: (len(path.name), path.name)):
-        text = path.read_text(encoding="utf-8")
-        record = json.loads(text.partition("\n")[0])
+        records = read_file(path)
         name = path.relative_to(folder).with_suffix("").as_posix()
-        file = published_name(name, record.get("facts", {}).get("backend", ""), machine)
-        joined[file] = joined.get(file, "") + text
+        file = published_name(name, records[0].facts.get("backend", ""), machine)
+        joined[file] = joined.get(file, "") + path.read_text(encoding="utf-8")
+        cases.setdefault(file, set()).update(record.case for record in records)
     for file, text in joined.items():
         (evidence / file).parent.mkdir(exist_ok=True)
-        if lost := cases(evidence / file) - {json.loads(line)["case"] for line in text.splitlines()}:
+        if (evidence / file).exists() and (lost := {record.case for record in read_file(evidence / file)} - cases[file]):
             print(f"{file} had {len(lost)} other cases, such as {min(lost)}: the new records replace them too")
         (evidence / file).write_text(text, encoding="utf-8")
 
@@ -189,8 +181,7 @@ def publish(folder, machine, programs):
     # Tables of lessons show its pictures.
     if any((evidence / "ladders").glob("*.jsonl")):
         subprocess.run([plot, evidence / "ladders", "--quiet"], check=True)
-    for script in GENERATORS:
-        subprocess.run([ROOT / "scripts" / script], check=True)
+    tables.renew()
     # After the documents refer to the newest records.
     emptied = remove_older(evidence, published, machine)
     page.write_text(without_rows(page.read_text(encoding="utf-8"), emptied), encoding="utf-8")
@@ -202,14 +193,21 @@ def publish(folder, machine, programs):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path, help="records of scripts/bench.sh, here or brought from the machine")
-    parser.add_argument("machine", metavar="MACHINE", help="part of the names of files, such as h200")
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=pathlib.Path, help="records of scripts/bench.sh, here or brought from the machine")
+    parser.add_argument("machine", metavar="MACHINE", nargs="?", help="part of the names of files, such as h200")
     parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/host/bin",
                         help="folder of drogue-plot, which makes the pages (default: build/host/bin)")  # fmt: skip
+    parser.add_argument("--tables", action="store_true", help="renew the tables alone")
+    parser.add_argument("--check", action="store_true", help="with --tables: write nothing, and fail if a table differs")
     options = parser.parse_args()
-    if not re.fullmatch("[a-z0-9-]+", options.machine):
+    if (options.folder if options.tables else options.check or not options.machine):
+        parser.error("give FOLDER and MACHINE, or --tables")
+    if options.machine and not re.fullmatch("[a-z0-9-]+", options.machine):
         parser.error(f"the machine '{options.machine}' is part of names of files: use a-z, 0-9 and -")
-    publish(options.folder, options.machine, options.bin)
+    try:
+        tables.renew(options.check) if options.tables else publish(options.folder, options.machine, options.bin)
+    except Failure as failure:
+        sys.exit(str(failure))
 
 
 if __name__ == "__main__":

@@ -1,25 +1,18 @@
-#!/usr/bin/env python3
-"""Writes the tables of README.md between their marks, from the records in docs/evidence/.
-
-    scripts/readme_tables.py [--check]     --check: writes nothing, exit code 1 if a table differs from the records
+"""Tables of README.md between their marks.
 
 A table names its records by case. Of several records of a case the latest one counts; one that failed its check stops the
-script. scripts/bench.sh and scripts/publish_records.py make the records anew.
+script.
 """
 
-import json
-import pathlib
 import re
 import statistics
 import sys
-import textwrap
 
-from device_name import device_name
+from plot.evidence.perf_record import read_file
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / "README.md"
-EVIDENCE = ROOT / "docs/evidence"
-MARK = re.compile(r"(<!-- scripts/readme_tables\.py: ([\w-]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
+from .forms import EVIDENCE, error_of, table, time_of, wrapped
+
+MARK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
 
 
 class Records:
@@ -28,11 +21,10 @@ class Records:
     def __init__(self, evidence, files):
         self._evidence, self._found, self.used = evidence, {}, []
         for file in sorted(evidence.glob(f"{files}.jsonl")):
-            for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
-                record = json.loads(line) | {"file": file, "place": f"{file}:{number}"}
-                old = self._found.get(record["case"])
-                if not old or record["provenance"]["date"] >= old["provenance"]["date"]:
-                    self._found[record["case"]] = record
+            for record in read_file(file):
+                old = self._found.get(record.case)
+                if not old or record.run_id[0] >= old.run_id[0]:
+                    self._found[record.case] = record
 
     def cases(self):
         return list(self._found)
@@ -42,43 +34,27 @@ class Records:
         if case not in self._found:
             sys.exit(f"{self._evidence} holds no record of {case}: run scripts/bench.sh and scripts/publish_records.py")
         record = self._found[case]
-        if record["check"] != "passed" or not record["samples"]:
-            sys.exit(f"{record['place']}: {case} failed its check or has no samples")
+        if record.check != "passed" or not record.samples:
+            sys.exit(f"{record.place}: {case} failed its check or has no samples")
         self.used.append(record)
         return record
 
     def source(self, command):
         """Machine, date and commit of the records in use, their files, and the command that made them."""
-        here = self.used[0]["provenance"]
-        on_gpu = self.used[0]["facts"]["backend"] == "cuda"
-        machines = sorted({record["provenance"]["gpu" if on_gpu else "cpu"] for record in self.used})
+        first = self.used[0]
+        backend, here = first.facts["backend"], first.provenance
+        on_gpu = backend == "cuda"
+        machines = sorted({record.machine.gpu if on_gpu else record.machine.cpu for record in self.used})
         if len(machines) > 1:
             sys.exit(f"records of {' and '.join(machines)} in one table, for {command}: record all of its cases on one of them")
-        name = device_name(here, on_gpu)
-        dates = sorted({record["provenance"]["date"][:10] for record in self.used})
-        files = sorted({record["file"] for record in self.used})
+        name = first.device(on_gpu)
+        dates = sorted({record.run_id[0][:10] for record in self.used})
+        files = sorted({record.file for record in self.used})
         links = ", ".join(f"[records](docs/evidence/{file.relative_to(self._evidence).as_posix()})" for file in files)
         machine = f"One {name}, CUDA {here['driver']}" if on_gpu else f"{here['threads']} of the cores of an {name}"
-        if not on_gpu and self.used[0]["facts"]["backend"] == "serial":
+        if backend == "serial":
             machine = f"One core of an {name}"
         return f"{machine}, {' and '.join(dates)} ({links}): `{command}`."
-
-
-def time_of(record, unit):
-    """Median in `unit` (1e3: ms) with three digits and no exponent."""
-    value = unit * statistics.median(record["samples"])
-    return f"{value:.0f}" if value >= 100 else f"{value:#.3g}".rstrip(".")
-
-
-def error_of(record, digits=2):
-    """Error with some digits; two with an exponent below 0.1, so that tables show the order."""
-    value = record["error"]
-    return re.sub(r"e-0*", "e-", f"{value:.{digits - 1}e}") if digits == 2 and value < 0.1 else f"{value:.{digits}g}"
-
-
-def table(heading, rows):
-    """Lines of a table whose columns are numbers."""
-    return ["| " + " | ".join(heading) + " |", "|" + "---:|" * len(heading)] + ["|" + "|".join(f" {cell} " if cell else " " for cell in row) + "|" for row in rows]
 
 
 def gas_table(evidence):
@@ -87,7 +63,7 @@ def gas_table(evidence):
     for cells in (200, 400, 800, 1600):
         own = [records(f"gas-solution/shu-osher/cuda/{scheme}/{cells}") for scheme in schemes]
         rows.append([str(cells), *(error_of(record, 3) for record in own), *(time_of(record, 1e3) for record in own)])
-        times = [statistics.median(record["samples"]) for record in own]
+        times = [statistics.median(record.samples) for record in own]
         ratios.append(max(times) / min(times) - 1)
     command = "drogue-perf work-precision --app gas --filter '^shu-osher$' --backend cuda"
     return [
@@ -139,7 +115,7 @@ def flow_table(evidence):
                 row += [""] * 3
                 continue
             record = records(case)
-            row += [time_of(record, 1e3), time_of(record, 1e9 / record["facts"]["cells"]), error_of(record)]
+            row += [time_of(record, 1e3), time_of(record, 1e9 / record.facts["cells"]), error_of(record)]
         rows.append(row)
     heading = ["cells", "periodic, ms per step", "ns per cell", "error", "inflow and outflow, ms per step", "ns per cell", "error"]
     return [records.source("drogue-perf run --filter '^flow-step/cuda'"), "", *table(heading, rows)]
@@ -164,39 +140,9 @@ def canopy_table(evidence):
 TABLES = {"gas": gas_table, "springs": springs_table, "options": options_table, "flow": flow_table, "canopy": canopy_table}
 
 
-def wrapped(lines):
-    """Text of lines; prose before and after a table is one paragraph of at most 120 columns, with whole commands."""
-    found, prose, space = [], [], "\0"
-    for line in [*lines, ""]:
-        if line and not line.startswith("|"):
-            prose.append(line)
-            continue
-        if prose:
-            text = re.sub(r"`[^`]*`", lambda code: code[0].replace(" ", space), " ".join(prose))
-            found += [line.replace(space, " ") for line in textwrap.wrap(text, 120, break_long_words=False, break_on_hyphens=False)]
-            prose = []
-        found.append(line)
-    return "\n".join(found[:-1]) + "\n"
-
-
 def renewed(text, evidence=EVIDENCE):
     """The text of a page with all its tables from the records of `evidence`."""
     marks = MARK.findall(text)
     if sorted(name for _, name, _ in marks) != sorted(TABLES):
         sys.exit(f"README.md has marks for {[name for _, name, _ in marks]}, and tables are {list(TABLES)}")
     return MARK.sub(lambda found: found[1] + wrapped(TABLES[found[2]](evidence)) + found[3], text)
-
-
-def main(words):
-    if words not in ([], ["--check"]):
-        sys.exit(__doc__)
-    text = PAGE.read_text(encoding="utf-8")
-    new = renewed(text)
-    if not words:
-        PAGE.write_text(new, encoding="utf-8")
-    elif new != text:
-        sys.exit("README.md differs from the records: run scripts/readme_tables.py")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

@@ -1,25 +1,12 @@
-#!/usr/bin/env python3
-"""Writes docs/transfers.md: the tables of transfers as recorded in docs/evidence/*-transfers-MACHINE.jsonl.
+"""docs/transfers.md: the tables of transfers as recorded in docs/evidence/*-transfers-MACHINE.jsonl."""
 
-    scripts/transfer_tables.py [--check]     --check: writes nothing, exit code 1 if the page differs from the records
-
-scripts/bench.sh and scripts/publish_records.py make the records anew.
-"""
-
-import json
-import pathlib
 import statistics
-import sys
 
-from device_name import device_name
-from readme_tables import error_of, wrapped
+from .forms import EVIDENCE, error_of, passed, table, wrapped
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs/transfers.md"
-EVIDENCE = ROOT / "docs/evidence"
 HEAD = """# Transfers: tables 5.5 to 5.8 of [Shi]
 
-Written by `scripts/transfer_tables.py` from the records that `drogue-perf table transfers --app A --out FILE` wrote:
+Written by `scripts/publish_records.py --tables` from the records that `drogue-perf table transfers --app A --out FILE` wrote:
 copy to the device, compute, copy to the host, total, microseconds. In brackets: the times of [Shi] on its Quadro 6000.
 Parts and total are medians of their own, which need not add up. CPU: the computation of the row on one core, and its
 ratios to compute and total, in brackets those of the CPU of [Shi]; a dash where no record has such a time. Of several
@@ -34,14 +21,14 @@ class Row:
     """A record of transfers; times in us."""
 
     def __init__(self, record):
-        facts = record["facts"]
-        self.record, self.facts, self.app = record, facts, record["case"].partition("-")[0]
+        facts = record.facts
+        self.record, self.facts, self.app = record, facts, record.case.partition("-")[0]
         self.size, self.mesh, self.steps = facts["cells"], facts.get("mesh"), facts.get("substeps")
         self.ours = facts.get("method", "ours" if self.app != "gas" else "seed") != "seed"
         # Records before the memory was a fact: options had pinned memory in our scheme alone.
         self.memory = facts.get("memory") or ("pinned" if self.app == "options" and self.ours else "pageable")
         self.time = {part: 1e6 * facts[f"{part}_s"] for part in PARTS if part != "total"}
-        self.time["total"] = 1e6 * statistics.median(record["samples"])
+        self.time["total"] = 1e6 * statistics.median(record.samples)
         self.thesis = {part: facts.get("thesis", {}).get(f"{part}_us") for part in (*PARTS, "cpu")}
         self.core = 1e6 * facts["cpu_s"] if "cpu_s" in facts else None
         self.copies = self.time["h2d"] + self.time["d2h"]
@@ -130,7 +117,7 @@ def options_words(rows):
     theirs, ours = (pick(rows, size=size, ours=ours)[-1] for ours in (False, True))
     thesis = theirs.thesis["total"]
     # This commit had masses of cells as weights of the scheme of [Shi].
-    note = " (three times that of the printed nodal weights, which came later)" if theirs.record["provenance"]["git"].startswith("8334d94") else ""
+    note = " (three times that of the printed nodal weights, which came later)" if theirs.record.run_id[1].startswith("8334d94") else ""
     return (f"{size} puts on a mesh of {theirs.mesh} take {1e-6 * thesis:.2f} s on the device of [Shi]. Its scheme takes "
             f"{number(theirs.time['total'])} us here, with an error of {error_of(theirs.record)} of the strike{note}: the puts of a "
             "batch share the device, which [Shi] fills with the integrals of one put at a time. Ours takes "
@@ -159,22 +146,19 @@ APPS = {
 
 def read(file):
     """Rows of a file of records; stops the script if one failed its check."""
-    records = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
-    for record in records:
-        if record["check"] != "passed":
-            sys.exit(f"{file}: {record['case']} failed its check")
-    return [Row(record) for record in records]
+    return [Row(record) for record in passed(file)]
 
 
 def latest(found):
     """File with its rows whose first record is the latest; None without files."""
-    return max(found, key=lambda one: one[1][0].record["provenance"]["date"], default=None)
+    return max(found, key=lambda one: one[1][0].record.run_id, default=None)
 
 
 def origin(file, rows):
     """Machine, date, commit and link of a file of records."""
-    here = rows[0].record["provenance"]
-    return f"{device_name(here, rows[0].on_gpu)}, {here['date'][:10]}, commit {here['git']} ([records](evidence/{file.name}))"
+    record = rows[0].record
+    date, commit = record.run_id
+    return f"{record.device(rows[0].on_gpu)}, {date[:10]}, commit {commit} ([records](evidence/{file.name}))"
 
 
 def section(app, files):
@@ -193,9 +177,7 @@ def section(app, files):
         source += f" CPU: one core of {origin(*host)}."
     with_core = any(row.core or row.thesis["cpu"] for row in rows)
     heading = [*columns, *PARTS.values(), *(ON_CORE if with_core else []), "error"]
-    left = columns.index("memory") + 1
-    lines = ["| " + " | ".join(heading) + " |", "|" + "---|" * left + "---:|" * (len(heading) - left)]
-    lines += ["| " + " | ".join(row.cells(with_core)) + " |" for row in rows]
+    lines = table(heading, (row.cells(with_core) for row in rows), range(columns.index("memory") + 1))
     return f"\n## {title}\n" + wrapped([words(rows)]) + "\n" + wrapped([source, "", *lines])
 
 
@@ -203,16 +185,3 @@ def page(evidence=EVIDENCE):
     """Text of the page."""
     found = {app: sorted(evidence.glob(f"{app}-transfers-*.jsonl")) for app in APPS}
     return HEAD + "".join(section(app, files) for app, files in found.items() if files)
-
-
-def main(words):
-    if words not in ([], ["--check"]):
-        sys.exit(__doc__)
-    if not words:
-        PAGE.write_text(page(), encoding="utf-8")
-    elif PAGE.read_text(encoding="utf-8") != page():
-        sys.exit("docs/transfers.md differs from its records: run scripts/transfer_tables.py")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])
