@@ -2,7 +2,7 @@
 """Compares two builds of the programs: the bits of their results, or their speed in alternating runs.
 
     scripts/compare_builds.py OLD NEW [--backend serial] [--only REGEX]
-    scripts/compare_builds.py OLD NEW --speed FILTER [--rounds 5] [--quick] [--keep FOLDER]
+    scripts/compare_builds.py OLD NEW --speed FILTER [--rounds 5] [--quick] [--fail-on slower] [--keep FOLDER]
 
 OLD and NEW are folders of programs, such as build/exact/bin. Without --speed, both builds run every shipped scene and
 batch, and datasets, histories and prices are compared byte for byte; needs h5py and builds of the preset `exact`, since
@@ -10,7 +10,7 @@ the compiler chooses fused operations differently. A scene that fails, or writes
 different: its bits are unknown; a program that neither build has is left out. With --speed, both builds alternately
 run `drogue-perf run --filter FILTER` (with --quick, its shorter form) and NEW's `drogue-perf compare` prints a verdict per
 case; --keep writes the records, old.jsonl and new.jsonl, and the verdicts, compare.txt, into FOLDER. The exit code is
-then that of `compare --fail-on slower`. Otherwise it is 1 if a result differs, 2 if nothing was compared.
+then that of `compare --fail-on`. Otherwise it is 1 if a result differs, 2 if nothing was compared.
 """
 
 import argparse
@@ -90,8 +90,8 @@ def compare_bits(old, new, backend, only):
     return compared, count
 
 
-def compare_speed(programs, words, rounds, work):
-    """Prints the verdicts of `drogue-perf compare`, which stay in `work`; returns its exit code, 0 if no case takes longer.
+def compare_speed(programs, words, rounds, fail_on, work):
+    """Prints the verdicts of `drogue-perf compare`, which stay in `work`; returns its exit code, 0 if no case has a verdict of `fail_on`.
 
     `programs`: drogue-perf of both builds; `words`: arguments of its subcommand `run`.
     """
@@ -111,7 +111,7 @@ def compare_speed(programs, words, rounds, work):
                 records.write(file.read_text())
             file.unlink()
     done = subprocess.run(
-        [sides["new"], "compare", work / "old.jsonl", work / "new.jsonl", "--fail-on", "slower"],
+        [sides["new"], "compare", work / "old.jsonl", work / "new.jsonl", "--fail-on", fail_on],
         stdout=subprocess.PIPE,
         text=True,
         check=False,
@@ -134,6 +134,7 @@ def main():
     )
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--quick", action="store_true", help="as in drogue-perf run")
+    parser.add_argument("--fail-on", default="slower", help="as in drogue-perf compare")
     parser.add_argument(
         "--keep", type=pathlib.Path, metavar="FOLDER", help="folder for the records and verdicts of --speed"
     )
@@ -145,7 +146,7 @@ def main():
         with tempfile.TemporaryDirectory() as temporary:
             work = arguments.keep or pathlib.Path(temporary)
             work.mkdir(parents=True, exist_ok=True)
-            return compare_speed(programs, words, arguments.rounds, work)
+            return compare_speed(programs, words, arguments.rounds, arguments.fail_on, work)
     compared, different = compare_bits(old, new, arguments.backend, arguments.only)
     if compared == 0:
         print("nothing was compared: no case has such a name", file=sys.stderr)

@@ -1,28 +1,28 @@
 #!/usr/bin/env python3
-"""Copies what scripts/bench.sh measured into docs/evidence, and renews what is made of the records there.
+"""Copies what scripts/bench.sh measured into docs/evidence, and renews the tables that documents make of the records there.
 
     scripts/publish_records.py FOLDER MACHINE [--bin build/host/bin]
+    scripts/publish_records.py --tables [--check]    the tables alone; --check: writes nothing, exit code 1 if one differs
 
 FOLDER: that of bench.sh, here or brought from the machine; its files NAME.txt begin with the command of NAME.jsonl. Copies
-NAME.jsonl to docs/evidence/NAME-MACHINE.jsonl and the page to report-MACHINE.html; writes their rows in docs/evidence/README.md
-(one of the same name is replaced); starts the scripts that write tables, and drogue-plot of --bin. Older records of the same
-cases in other files of MACHINE go, with the rows of files that hold no other; files that documents, code or tests quote stay. Does nothing
-if a record failed its check, or was made with --quick.
+NAME.jsonl to docs/evidence/NAME-MACHINE.jsonl; writes their rows in docs/evidence/README.md (one of the same name is replaced);
+writes the tables of README.md, docs/transfers.md and docs/lessons/tables.md, and with drogue-plot of --bin the pictures of ladders.
+Older records of the same cases in other files of MACHINE go, with the rows of files that hold no other; files that documents, code
+or tests quote stay. Does nothing if a record failed its check, or was made with --quick.
 """
 
 import argparse
-import json
 import pathlib
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 
-from device_name import device_name
+import tables
+from plot.evidence.perf_record import read_file
+from plot.failure import Failure
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-GENERATORS = ("readme_tables.py", "lesson_tables.py", "transfer_tables.py")
 
 
 def published_name(name, backend, machine):
@@ -34,36 +34,31 @@ def published_name(name, backend, machine):
 
 def row(file, command, record):
     """Line of the table on a file, whose first record is `record`."""
-    here = record["provenance"]
-    name = device_name(here, bool(here["gpu"]))
-    article = "an" if name[0] in "AEIOUaeiou" else "a"
-    if here["gpu"]:
+    here, name = record.provenance, record.device(bool(record.machine.gpu))
+    if record.machine.gpu:
         machine = f"one {name}, CUDA {here['driver']}"
     else:
-        machine = f"{'one thread' if here['threads'] == 1 else str(here['threads']) + ' threads'} of {article} {name}"
+        article = "an" if name[0] in "AEIOUaeiou" else "a"
+        machine = f"{'one thread' if record.threads == 1 else str(record.threads) + ' threads'} of {article} {name}"
     out, per = pathlib.Path(file).name, ""
     if file.startswith("alone/"):
         out, per = "options-N.jsonl", ", one run per N"
     command = f"{command} --out {out}".replace("|", r"\|")
-    return f"| `{file}` | `{command}`{per} | {machine}, {here['date'][:10]}, commit {here['git']} |"
+    return f"| `{file}` | `{command}`{per} | {machine}, {record.run_id[0][:10]}, commit {here['git']} |"
 
 
 def rows(folder, machine):
     """Lines by file of docs/evidence; batches of options alone share one file, and one line."""
-    found, builds = {}, set()
+    found = {}
     for path in sorted(folder.rglob("*.jsonl")):
         name = path.relative_to(folder).with_suffix("").as_posix()
-        records = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
-        record = records[0]
-        builds |= {record["provenance"]["git"] for record in records}
+        record = read_file(path)[0]
         command = path.with_suffix(".txt").read_text(encoding="utf-8").partition("\n")[0].strip()
         if name.startswith("alone/"):
             command = command.replace(f"/{name.rpartition('-')[2]}/", "/N/")
-        file = published_name(name, record.get("facts", {}).get("backend", ""), machine)
+        file = published_name(name, record.facts.get("backend", ""), machine)
         found.setdefault(file, row(file, command, record))
-    report = f"report-{machine}.html"
-    runs = "one run" if len(builds) == 1 else "runs"
-    return found | {report: f"| `{report}` | `drogue-plot FOLDER --report` | from the records `*-{machine}.jsonl` of {runs} of `scripts/bench.sh` |"}
+    return found
 
 
 def renewed(text, lines):
@@ -79,12 +74,13 @@ def renewed(text, lines):
 
 
 def unlisted(evidence):
-    """Names in the first table of the list of files that match no file, and files that it does not name."""
+    """Names in the first table of the list of files that match no file, and files but pages and their pictures that it does not name."""
     lines = (evidence / "README.md").read_text(encoding="utf-8").split("\n")
     table = lines[next(n for n, line in enumerate(lines) if line.startswith("|---")) + 1 :]
     table = table[: next((n for n, line in enumerate(table) if not line.startswith("|")), len(table))]
     names = [name for line in table for name in re.findall("`([^`]+)`", line.split("|")[1])]
-    files = {path.relative_to(evidence).as_posix() for path in evidence.rglob("*") if path.is_file()} - {"README.md"}
+    made = {"README.md", *(path.name for path in evidence.glob("*.png"))}
+    files = {path.relative_to(evidence).as_posix() for path in evidence.rglob("*") if path.is_file() and path.suffix != ".html"} - made
     matched = {name: {path.relative_to(evidence).as_posix() for path in evidence.glob(name)} for name in names}
     return sorted(name for name in names if not matched[name]), sorted(files.difference(*matched.values()))
 
@@ -97,7 +93,7 @@ def without_rows(text, files):
 
 def identity(record):
     """Case and machine of a record."""
-    return record["case"], record["provenance"]["gpu"], record["provenance"]["cpu"]
+    return record.case, record.machine
 
 
 def quoting(evidence, file):
@@ -118,16 +114,13 @@ def remove_older(evidence, published, machine):
     """
     newest = {}
     for name in published:
-        for line in (evidence / name).read_text(encoding="utf-8").splitlines():
-            record = json.loads(line)
-            newest[identity(record)] = record["provenance"]["date"]
+        newest |= {identity(record): record.run_id[0] for record in read_file(evidence / name)}
     emptied = []
     for file in sorted(evidence.glob(f"*-{machine}.jsonl")):
         if file.name in published:
             continue
         lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
-        records = map(json.loads, lines)
-        kept = [line for line, record in zip(lines, records) if record["provenance"]["date"] >= newest.get(identity(record), "")]
+        kept = [line for line, record in zip(lines, read_file(file), strict=True) if record.run_id[0] >= newest.get(identity(record), "")]
         if len(kept) == len(lines):
             continue
         if pages := quoting(evidence, file):
@@ -149,23 +142,18 @@ def quick_records(folder):
                   if path.with_suffix(".jsonl").exists() and "--quick" in shlex.split(command))  # fmt: skip
 
 
-def cases(file):
-    """Names of the cases of a file, none if it does not exist."""
-    return {json.loads(line)["case"] for line in file.read_text(encoding="utf-8").splitlines()} if file.exists() else set()
-
-
 def copy_records(folder, machine, evidence):
     """Copies all records; those of options alone into one file, in the order of their numbers."""
-    joined = {}
+    joined, cases = {}, {}
     for path in sorted(folder.rglob("*.jsonl"), key=lambda path: (len(path.name), path.name)):
-        text = path.read_text(encoding="utf-8")
-        record = json.loads(text.partition("\n")[0])
+        records = read_file(path)
         name = path.relative_to(folder).with_suffix("").as_posix()
-        file = published_name(name, record.get("facts", {}).get("backend", ""), machine)
-        joined[file] = joined.get(file, "") + text
+        file = published_name(name, records[0].facts.get("backend", ""), machine)
+        joined[file] = joined.get(file, "") + path.read_text(encoding="utf-8")
+        cases.setdefault(file, set()).update(record.case for record in records)
     for file, text in joined.items():
         (evidence / file).parent.mkdir(exist_ok=True)
-        if lost := cases(evidence / file) - {json.loads(line)["case"] for line in text.splitlines()}:
+        if (evidence / file).exists() and (lost := {record.case for record in read_file(evidence / file)} - cases[file]):
             print(f"{file} had {len(lost)} other cases, such as {min(lost)}: the new records replace them too")
         (evidence / file).write_text(text, encoding="utf-8")
 
@@ -186,20 +174,17 @@ def publish(folder, machine, programs):
     if subprocess.run([plot, folder, "--report", "--quiet"], check=False).returncode != 0:
         sys.exit("nothing is published: no page can be made of the records, for the reason above")
     found = rows(folder, machine)
-    published = set(found)
+    published = list(found)
     copy_records(folder, machine, evidence)
-    shutil.copy(folder / "report.html", evidence / f"report-{machine}.html")
     page = evidence / "README.md"
     page.write_text(renewed(page.read_text(encoding="utf-8"), found), encoding="utf-8")
     # Tables of lessons show its pictures.
     if any((evidence / "ladders").glob("*.jsonl")):
         subprocess.run([plot, evidence / "ladders", "--quiet"], check=True)
-    for script in GENERATORS:
-        subprocess.run([ROOT / "scripts" / script], check=True)
+    tables.renew()
     # After the documents refer to the newest records.
-    emptied = remove_older(evidence, [name for name in published if name.endswith(".jsonl")], machine)
+    emptied = remove_older(evidence, published, machine)
     page.write_text(without_rows(page.read_text(encoding="utf-8"), emptied), encoding="utf-8")
-    subprocess.run([plot, evidence, "--quiet"], check=True)
     missing, unnamed = unlisted(evidence)
     if missing or unnamed:
         sys.exit(f"{page} has rows without a file ({', '.join(missing) or 'none'}), or files have no row ({', '.join(unnamed) or 'none'}): "
@@ -208,14 +193,21 @@ def publish(folder, machine, programs):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path, help="records of scripts/bench.sh, here or brought from the machine")
-    parser.add_argument("machine", metavar="MACHINE", help="part of the names of files, such as h200")
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=pathlib.Path, help="records of scripts/bench.sh, here or brought from the machine")
+    parser.add_argument("machine", metavar="MACHINE", nargs="?", help="part of the names of files, such as h200")
     parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/host/bin",
                         help="folder of drogue-plot, which makes the pages (default: build/host/bin)")  # fmt: skip
+    parser.add_argument("--tables", action="store_true", help="renew the tables alone")
+    parser.add_argument("--check", action="store_true", help="with --tables: write nothing, and fail if a table differs")
     options = parser.parse_args()
-    if not re.fullmatch("[a-z0-9-]+", options.machine):
+    if (options.folder if options.tables else options.check or not options.machine):
+        parser.error("give FOLDER and MACHINE, or --tables")
+    if options.machine and not re.fullmatch("[a-z0-9-]+", options.machine):
         parser.error(f"the machine '{options.machine}' is part of names of files: use a-z, 0-9 and -")
-    publish(options.folder, options.machine, options.bin)
+    try:
+        tables.renew(options.check) if options.tables else publish(options.folder, options.machine, options.bin)
+    except Failure as failure:
+        sys.exit(str(failure))
 
 
 if __name__ == "__main__":

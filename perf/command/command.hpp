@@ -23,7 +23,6 @@ Command run_command(CLI::App& program);
 Command table_command(CLI::App& program);
 Command work_precision_command(CLI::App& program);
 Command compare_command(CLI::App& program);
-Command bisect_command(CLI::App& program);
 Command report_command(CLI::App& program);
 Command ladder_command(CLI::App& program);
 Command ncu_command(CLI::App& program);

@@ -14,12 +14,12 @@
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/files/temporary_folder.hpp"
 #include "common/run/statistics.hpp"
-#include "perf/bisect/child_process.hpp"
-#include "perf/bisect/failed_run.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/memory/device_memory.hpp"
 #include "perf/models/scaling.hpp"
 #include "perf/problems/streams.hpp"
+#include "perf/process/child_process.hpp"
+#include "perf/process/failed_run.hpp"
 #include "perf/rows/timed_columns.hpp"
 #include "perf/tables/tables.hpp"
 
@@ -70,7 +70,7 @@ std::vector<std::string> command_of(const ScalingRequest& request, const Scaling
 void run_point(const ScalingRequest& request, device::Backend backend, const std::filesystem::path& folder,
                ScalingPoint& point) {
   const std::filesystem::path out = folder / "out", log = folder / "log";
-  const int status = run_child(command_of(request, point, backend, out), folder, log, true).status;
+  const int status = run_child(command_of(request, point, backend, out), folder, log, true);
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
   std::ifstream file(out / "result.json");
   point.result = nlohmann::json::parse(file, nullptr, false);

@@ -10,10 +10,10 @@
 #include "common/program/signals.hpp"
 #include "common/run/files/temporary_folder.hpp"
 #include "common/run/statistics.hpp"
-#include "perf/bisect/child_process.hpp"
-#include "perf/bisect/failed_run.hpp"
 #include "perf/compare/record_file.hpp"
 #include "perf/models/scaling.hpp"
+#include "perf/process/child_process.hpp"
+#include "perf/process/failed_run.hpp"
 #include "perf/rows/timed_columns.hpp"
 #include "perf/tables/tables.hpp"
 
@@ -48,7 +48,7 @@ std::vector<MeasuredCase> run_with_threads(const std::string& pattern, int threa
                                     "--out",
                                     file};
   if (quick) words.emplace_back("--quick");
-  const int status = run_child(words, folder.path(), log).status;
+  const int status = run_child(words, folder.path(), log);
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
   if (status != 0 && status != static_cast<int>(ExitCode::verification_failed))
     throw failed_run(std::to_string(threads) + " threads", status, log);

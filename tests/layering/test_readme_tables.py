@@ -9,14 +9,15 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import layers
 
 ROOT = layers.repository(os.environ)
 sys.path.insert(0, str(ROOT / "scripts"))
 import publish_records  # noqa: E402
-import readme_tables  # noqa: E402
-import transfer_tables  # noqa: E402
+from plot.evidence.perf_record import SCHEMA  # noqa: E402
+from tables import forms, readme, transfers  # noqa: E402
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -32,10 +33,10 @@ def scenes(name):
 
 class Repository(unittest.TestCase):
     def test_tables_equal_their_records(self):
-        self.assertEqual(readme_tables.renewed(README), README, "run scripts/readme_tables.py")
+        self.assertEqual(readme.renewed(README), README, "run scripts/publish_records.py --tables")
 
     def test_every_table_of_numbers_has_marks(self):
-        outside = readme_tables.MARK.sub("", README)
+        outside = readme.MARK.sub("", README)
         self.assertNotRegex(outside, r"\n\|(?:---:\|){2,}\n")
 
     def test_numbers_of_other_programs_stand_in_the_notebook(self):
@@ -65,8 +66,8 @@ class Generator(unittest.TestCase):
         (self.evidence / "alone").mkdir()
         for name in ("gas-solution-h100", "springs-solution-h200", "springs-solution-epyc", "options-epyc", "flow-h200",
                      "parachute-solution-h200", "flight-h200"):  # fmt: skip
-            shutil.copy(readme_tables.EVIDENCE / f"{name}.jsonl", self.evidence)
-        shutil.copy(readme_tables.EVIDENCE / "alone/options-h200.jsonl", self.evidence / "alone")
+            shutil.copy(forms.EVIDENCE / f"{name}.jsonl", self.evidence)
+        shutil.copy(forms.EVIDENCE / "alone/options-h200.jsonl", self.evidence / "alone")
 
     def change(self, case, **values):
         """Appends a later record of a case of flow."""
@@ -77,35 +78,35 @@ class Generator(unittest.TestCase):
 
     def test_latest_record_counts(self):
         self.change("flow-step/cuda/64x64x64/periodic", samples=[2e-3, 3e-3, 1e-3], error=2.5e-9)
-        changed = readme_tables.renewed(README, self.evidence)
+        changed = readme.renewed(README, self.evidence)
         self.assertIn("| 64x64x64 | 2.00 | 7.63 | 2.5e-9 | | | |", changed)
         self.assertIn("2099-01-01", changed)
 
     def test_refuses_failed_and_missing_records(self):
         self.change("flow-step/cuda/64x64x64/periodic", check="failed")
         with self.assertRaisesRegex(SystemExit, r"flow-later-h200\.jsonl:1: .* failed its check"):
-            readme_tables.renewed(README, self.evidence)
+            readme.renewed(README, self.evidence)
         (self.evidence / "options-epyc.jsonl").unlink()
         (self.evidence / "springs-solution-h200.jsonl").unlink()
         with self.assertRaisesRegex(SystemExit, "holds no record of springs-solution/drum/cuda/biquadratic/61"):
-            readme_tables.springs_table(self.evidence)
+            readme.springs_table(self.evidence)
 
     def test_refuses_a_table_of_two_machines(self):
         case = "flow-step/cuda/64x64x64/periodic"
-        old = readme_tables.Records(self.evidence, "flow*")(case)["provenance"]
+        old = readme.Records(self.evidence, "flow*")(case).provenance
         self.change(case, provenance=old | {"gpu": "another GPU", "date": "2099-01-01T00:00:00Z"})
         with self.assertRaisesRegex(SystemExit, "records of NVIDIA H200 and another GPU in one table"):
-            readme_tables.flow_table(self.evidence)
+            readme.flow_table(self.evidence)
 
     def test_refuses_pages_without_a_mark(self):
         with self.assertRaisesRegex(SystemExit, "README.md has marks for"):
-            readme_tables.renewed(README.replace("readme_tables.py: gas", "other: gas"), self.evidence)
+            readme.renewed(README.replace("table: gas", "other: gas"), self.evidence)
 
     def test_numbers_have_three_digits_and_short_exponents(self):
         times = {1.0: "1000", 0.0123456: "12.3", 9.154: "9154", 1e-6: "0.00100", 0.1: "100"}
-        self.assertEqual(list(times.values()), [readme_tables.time_of({"samples": [s]}, 1e3) for s in times])
+        self.assertEqual(list(times.values()), [forms.time_of(SimpleNamespace(samples=[s]), 1e3) for s in times])
         errors = [(0.045, 3, "0.045"), (0.017, 2, "1.7e-2"), (2.5e-18, 2, "2.5e-18"), (3.6e-6, 2, "3.6e-6"), (0.0, 2, "0.0e+00")]
-        self.assertEqual([text for *_, text in errors], [readme_tables.error_of({"error": e}, n) for e, n, _ in errors])
+        self.assertEqual([text for *_, text in errors], [forms.error_of(SimpleNamespace(error=e), n) for e, n, _ in errors])
 
 
 class Transfers(unittest.TestCase):
@@ -120,19 +121,20 @@ class Transfers(unittest.TestCase):
         lines = []
         for facts in rows:
             facts = {"backend": "cuda", "h2d_s": 1e-5, "compute_s": 6e-5, "d2h_s": 3e-5} | facts
-            lines.append({"case": f"{app}-transfers/cuda/x", "check": "passed", "error": 2.5e-6, "samples": [1e-4], "facts": facts,
+            lines.append({"schema": SCHEMA, "case": f"{app}-transfers/cuda/x", "check": "passed", "error": 2.5e-6, "samples": [1e-4],
+                          "median": 1e-4, "interval": [1e-4, 1e-4], "facts": facts,
                           "provenance": {"gpu": "a GPU", "cpu": "a core", "date": date, "git": "abc"}})
         text = "".join(json.dumps(line) + "\n" for line in lines)
         (self.evidence / f"{app}-transfers-{machine}.jsonl").write_text(text, encoding="utf-8")
 
     def test_page_equals_its_records(self):
-        self.assertEqual(transfer_tables.page(), transfer_tables.PAGE.read_text(encoding="utf-8"), "run scripts/transfer_tables.py")
+        self.assertEqual(transfers.page(), (ROOT / "docs/transfers.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
 
     def test_shows_our_scheme_of_gas_beside_that_of_the_dissertation(self):
         thesis = {"h2d_us": 500, "compute_us": 300, "d2h_us": 200, "total_us": 1000}
         self.write("gas", *({"cells": 8192, "memory": memory, "method": method, "thesis": thesis}
                             for method in ("seed", "ours") for memory in ("pageable", "pinned")))
-        text = transfer_tables.page(self.evidence)
+        text = transfers.page(self.evidence)
         self.assertIn("| ours | pinned | 8192 | 10 (500) | 60 (300) | 30 (200) | 100 (1000) | 2.5e-6 |", text)
         words = " ".join(text.split())
         self.assertIn("[Shi] spends 70 % of 1000 us on copies", words)
@@ -145,7 +147,7 @@ class Transfers(unittest.TestCase):
         self.write("gas", *(row | {"cells": cells, "thesis": thesis | printed} | core
                             for cells, printed, core in ((1024, {}, {"cpu_s": 6e-4}), (2048, {"cpu_us": 6000}, {"cpu_s": 1.2e-3}),
                                                          (3072, {"cpu_us": 9000}, {}))))
-        text = transfer_tables.page(self.evidence)
+        text = transfers.page(self.evidence)
         self.assertIn("| total | CPU | CPU / compute | CPU / total | error |", text)
         cells = {line.split(" | ")[2]: line.split(" | ")[7:10] for line in text.splitlines() if line.startswith("| of [Shi]")}
         self.assertEqual({"1024": ["600", "10", "6"], "2048": ["1200 (6000)", "20 (20)", "12 (6)"],
@@ -157,7 +159,7 @@ class Transfers(unittest.TestCase):
         self.write("gas", row | {"compute_s": 9e-5}, machine="old", date="2026-01-01T00:00:00Z")
         self.write("gas", row | {"backend": "openmp", "cpu_s": 6e-4}, machine="host", date="2026-03-01T00:00:00Z")
         self.write("gas", row | {"backend": "serial", "cpu_s": 9e-4}, machine="old-host", date="2026-01-01T00:00:00Z")
-        text = transfer_tables.page(self.evidence)
+        text = transfers.page(self.evidence)
         self.assertEqual(1, text.count("## Gas"))
         self.assertIn("evidence/gas-transfers-new.jsonl", text)
         self.assertIn("CPU: one core of a core, 2026-03-01, commit abc ([records](evidence/gas-transfers-host.jsonl)).", " ".join(text.split()))
@@ -165,7 +167,7 @@ class Transfers(unittest.TestCase):
 
     def test_parachutes_have_no_times_of_the_dissertation(self):
         self.write("parachute", *({"cells": 3456, "grid": "12x12x24", "memory": "pageable", "substeps": steps} for steps in (1, 20)))
-        text = transfer_tables.page(self.evidence)
+        text = transfers.page(self.evidence)
         self.assertIn("| pageable | 12x12x24 | 20 | 10 | 60 | 30 | 100 | 2.5e-6 |", text)
         self.assertIn("would take 40 us, 40 % of the step", " ".join(text.split()))
 
@@ -174,14 +176,14 @@ class EvidenceRows(unittest.TestCase):
     PAGE = "# Evidence\n\n| file | written by | machine |\n|---|---|---|\n| `a-h200.jsonl` | `old` | old |\n| `z.png` | x | y |\n\nEnd\n"
 
     def test_files_of_the_repository_have_rows_and_rows_have_files(self):
-        self.assertEqual(([], []), publish_records.unlisted(readme_tables.EVIDENCE))
+        self.assertEqual(([], []), publish_records.unlisted(forms.EVIDENCE))
 
     def test_finds_rows_without_a_file_and_files_without_a_row(self):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            (folder / "README.md").write_text(self.PAGE.replace("z.png", "*.png`, `b/*-h200.jsonl"), encoding="utf-8")
+            (folder / "README.md").write_text(self.PAGE.replace("z.png", "b/*.png`, `b/*-h200.jsonl"), encoding="utf-8")
             (folder / "b").mkdir()
-            for file in ("z.png", "b/c-h200.jsonl", "b/c-epyc.jsonl", "End"):
+            for file in ("page.html", "page.png", "b/z.png", "b/c-h200.jsonl", "b/c-epyc.jsonl", "b/page.html", "End"):
                 (folder / file).touch()
             self.assertEqual((["a-h200.jsonl"], ["End", "b/c-epyc.jsonl"]), publish_records.unlisted(folder))
 
@@ -195,7 +197,7 @@ class EvidenceRows(unittest.TestCase):
                 ("alone/options-4096", "drogue-perf run --filter '^options/cuda/4096/'"),
             ):
                 origin = {"gpu": "NVIDIA H200", "cpu": "", "driver": "13.0", "date": "2026-11-27T01:02:03Z", "git": "abc"}
-                line = json.dumps({"facts": {"backend": "cuda"}, "provenance": origin})
+                line = json.dumps({"schema": SCHEMA, "case": record, "check": "passed", "facts": {"backend": "cuda"}, "provenance": origin})
                 (folder / f"{record}.jsonl").write_text(line + "\n", encoding="utf-8")
                 (folder / f"{record}.txt").write_text(command + " \nprinted\n", encoding="utf-8")
             text = publish_records.renewed(self.PAGE, publish_records.rows(folder, "h200"))
@@ -205,7 +207,6 @@ class EvidenceRows(unittest.TestCase):
              f"| `a-h200.jsonl` | `drogue-perf run --filter '^(a\\|b)/' --out a-h200.jsonl` | {machine} |", "| `z.png` | x | y |",
              f"| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/' --out options-N.jsonl`, one run per N | {machine} |",
              f"| `ladders/weno-cuda-h200.jsonl` | `drogue-perf ladder weno --out weno-cuda-h200.jsonl` | {machine} |",
-             "| `report-h200.html` | `drogue-plot FOLDER --report` | from the records `*-h200.jsonl` of one run of `scripts/bench.sh` |",
              "", "End", ""],
             text.split("\n"))  # fmt: skip
 

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 SOURCE = Path(os.environ.get("DROGUE_SOURCE") or Path(__file__).resolve().parents[2])
-sys.path.insert(0, str(SOURCE / "scripts"))
+sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "scripts/studies")]
 
 if not all(importlib.util.find_spec(name) for name in ("numpy", "matplotlib", "h5py", "PIL", "jinja2")):
     _venv = Path(os.environ.get("DROGUE_VENV") or SOURCE / "build" / "venv")

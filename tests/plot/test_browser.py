@@ -64,8 +64,9 @@ class Pages(Folder):
             self.assertIn("missing.png", "".join(browser.requests()))
             self.assertEqual([["", False, False]], browser.evaluate(FIGURES))
 
-    def test_committed_pages_open(self):
-        pages = sorted((Path(os.environ["DROGUE_SOURCE"]) / "docs/evidence").glob("*.html"))
+    def test_pages_of_the_records_of_the_documents_open(self):
+        self.assertEqual((0, ""), plot(Path(os.environ["DROGUE_SOURCE"]) / "docs/evidence", "--dpi", 50, "--out", self.folder)[::2])
+        pages = sorted(self.folder.glob("*.html"))
         self.assertGreaterEqual(len(pages), 4)
         with headless.Browser() as browser:
             for page in pages:

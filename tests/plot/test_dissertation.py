@@ -17,7 +17,7 @@ class Dissertation(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def draw(self, figures):
-        command = [sys.executable, packages.SOURCE / "scripts/draw_dissertation.py", "--bin", os.environ["DROGUE_BIN"],
+        command = [sys.executable, packages.SOURCE / "scripts/studies/draw_dissertation.py", "--bin", os.environ["DROGUE_BIN"],
                    "--figures", figures, "--work", self.folder / "runs", "--to", self.folder]  # fmt: skip
         return subprocess.run(command, capture_output=True, text=True, check=False)
 

@@ -1,4 +1,4 @@
-"""Added masses as scripts/measure_added_mass.py measures them, on made histories."""
+"""Added masses as scripts/studies/measure_added_mass.py measures them, on made histories."""
 
 import math
 import os
@@ -7,7 +7,7 @@ import sys
 import unittest
 from pathlib import Path
 
-SCRIPT = Path(os.environ["DROGUE_SOURCE"]) / "scripts/measure_added_mass.py"
+SCRIPT = Path(os.environ["DROGUE_SOURCE"]) / "scripts/studies/measure_added_mass.py"
 sys.path.insert(0, str(SCRIPT.parent))
 
 import measure_added_mass

@@ -1,5 +1,5 @@
 # ctest-label: no-sanitizer
-"""Coverage of the stated error of drogue-options as scripts/measure_coverage.py measures it."""
+"""Coverage of the stated error of drogue-options as scripts/studies/measure_coverage.py measures it."""
 
 import json
 import os
@@ -8,7 +8,7 @@ import sys
 import unittest
 
 SOURCE = os.environ["DROGUE_SOURCE"]
-sys.path[:0] = [SOURCE + "/tests/support", SOURCE + "/scripts"]
+sys.path[:0] = [SOURCE + "/tests/support", SOURCE + "/scripts/studies"]
 
 import fit_error_estimate
 import gas_program
@@ -39,7 +39,7 @@ class Coverage(gas_program.GasTest):
         """Output of the script on few contracts, and the table that it writes."""
         out = self.folder / "coverage.json"
         done = subprocess.run(
-            [sys.executable, "-B", SOURCE + "/scripts/measure_coverage.py", "--program", program, "--backend", "serial",
+            [sys.executable, "-B", SOURCE + "/scripts/studies/measure_coverage.py", "--program", program, "--backend", "serial",
              "--rows", "8", "--out", out, *words],
             capture_output=True, text=True, check=False, timeout=300, env=gas_program.ENVIRONMENT)
         self.assertEqual(code, done.returncode, done.stderr)
@@ -110,7 +110,7 @@ class Fit(gas_program.GasTest):
 
     def test_fits_present_constants_within_their_order(self):
         done = subprocess.run(
-            [sys.executable, "-B", SOURCE + "/scripts/fit_error_estimate.py", "--program", options_program.PROGRAM,
+            [sys.executable, "-B", SOURCE + "/scripts/studies/fit_error_estimate.py", "--program", options_program.PROGRAM,
              "--backend", "serial", "--rows", "20"],
             capture_output=True, text=True, check=False, timeout=300, env=gas_program.ENVIRONMENT)
         self.assertEqual(0, done.returncode, done.stderr)

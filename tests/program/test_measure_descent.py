@@ -1,4 +1,4 @@
-"""Speeds and drag coefficients of canopies as scripts/measure_descent.py measures them, on made histories."""
+"""Speeds and drag coefficients of canopies as scripts/studies/measure_descent.py measures them, on made histories."""
 
 import csv
 import math
@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = os.environ["DROGUE_SOURCE"]
-SCRIPT = Path(SOURCE) / "scripts/measure_descent.py"
+SCRIPT = Path(SOURCE) / "scripts/studies/measure_descent.py"
 sys.path.insert(0, str(SCRIPT.parent))
 
 import measure_descent

@@ -16,7 +16,7 @@ class TemporaryFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return _path; }
 
-  /// Removes the folder early. Does not throw.
+  /// Removes the folder early.
   void remove() noexcept;
 
  private:

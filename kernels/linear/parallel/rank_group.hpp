@@ -21,9 +21,9 @@ class Transfers {
   /// No messages. Does not throw.
   Transfers();
   ~Transfers();
-  /// Takes over the messages of `other`. Does not throw.
+  /// Takes over the messages of `other`.
   Transfers(Transfers&& other) noexcept;
-  /// Waits for its own messages, then takes over those of `other`. Does not throw.
+  /// Waits for its own messages, then takes over those of `other`.
   Transfers& operator=(Transfers&& other) noexcept;
 
   /// Blocks until all messages are complete. Does not throw.

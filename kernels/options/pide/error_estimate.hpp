@@ -10,9 +10,10 @@ namespace drogue::options {
 /// The numerical constants below are empirical unless a derivation is given. They were calibrated on random
 /// contracts, with maturities from an hour to thirty years, so that the estimate covers 95 % of the rows of
 /// each kind. The references were Fourier prices for European options and finer grids for others.
-/// docs/options.md, "Stated error", lists the constants. `scripts/fit_error_estimate.py` fits those of
-/// `error_factor`; how the others were fitted is not preserved. `scripts/measure_coverage.py` measures the
-/// coverage on random contracts against such references. The tests `OptionsError` assert nine rows of ten.
+/// docs/options.md, "Stated error", lists the constants. `scripts/studies/fit_error_estimate.py` fits those
+/// of `error_factor`; how the others were fitted is not preserved. `scripts/studies/measure_coverage.py`
+/// measures the coverage on random contracts against such references. The tests `OptionsError` assert nine
+/// rows of ten.
 template <class R>
 struct ErrorEstimate {
   R factor;    ///< of the largest difference of the two grids near the spot

@@ -2,9 +2,10 @@
 
 import json
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 
-from ..failure import INVALID, Failure
+from ..failure import INVALID, IO_ERROR, Failure
 
 SCHEMA = "drogue.perf/1"
 BACKENDS = {"serial": "Serial", "openmp": "OpenMP", "cuda": "CUDA"}
@@ -144,6 +145,7 @@ class Record:
     provenance: dict
     samples: tuple[float, ...] = ()  # s per unit of work
     cold_caches: bool = False  # before each work
+    place: str = field(default="", compare=False)  # FILE:LINE
 
     @property
     def kind(self) -> str:
@@ -162,6 +164,14 @@ class Record:
     @property
     def machine(self) -> Machine:
         return Machine(str(self.provenance.get("gpu") or ""), str(self.provenance.get("cpu") or ""))
+
+    def device(self, on_gpu: bool) -> str:
+        """Name of the GPU, or of the processor."""
+        return (Machine(self.machine.gpu, "") if on_gpu else Machine("", self.machine.cpu)).name
+
+    @property
+    def file(self) -> Path:
+        return Path(self.place.rpartition(":")[0])
 
     @property
     def run_id(self) -> tuple[str, str]:
@@ -277,4 +287,16 @@ def parse(line: str, place: str) -> Record:
     caches = instrument.get("caches", "warm") if isinstance(instrument, dict) else None
     if caches not in ("cold", "warm"):
         raise Failure(INVALID, f"{place}: the caches of {case} are neither cold nor warm.")
-    return Record(case, unit, check, median, interval, error, facts, provenance, tuple(samples), caches == "cold")
+    return Record(case, unit, check, median, interval, error, facts, provenance, tuple(samples), caches == "cold", place)
+
+
+def read_file(file: Path) -> list[Record]:
+    """Records of a file; raises Failure: INVALID for an invalid line, IO_ERROR for an unreadable file."""
+    try:
+        lines = file.read_bytes().decode("utf-8").split("\n")
+    except OSError as error:
+        raise Failure(IO_ERROR, f"{file} cannot be read: {error}.") from None
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        raise Failure(INVALID, f"{file}:{line}: the file is no text in UTF-8.") from None
+    return [parse(line, f"{file}:{number}") for number, line in enumerate(lines, 1) if line.strip()]

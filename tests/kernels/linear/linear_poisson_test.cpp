@@ -188,7 +188,7 @@ TYPED_TEST(Poisson, SolvesWithFewLaunchesAndWithoutAllocations) {
   // Launches of Kokkos; cuFFT and cuBLAS launch kernels of their own. Three transforms each way and the
   // scaling, or two each way and the systems along z.
   const int on_host = std::is_same_v<TypeParam, LaplacianSolver> ? 5 : 7;
-  EXPECT_EQ(after.kernel_launches - before.kernel_launches, device::is_host<Space> ? on_host : 1);
+  EXPECT_LE(after.kernel_launches - before.kernel_launches, device::is_host<Space> ? on_host : 1);
   EXPECT_EQ(after.allocations - before.allocations, 0);
   EXPECT_EQ(after.copies - before.copies, 0);
   EXPECT_EQ(after.fences - before.fences, 0);

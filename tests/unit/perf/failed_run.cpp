@@ -1,4 +1,4 @@
-#include "perf/bisect/failed_run.hpp"
+#include "perf/process/failed_run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Runs a scene of drogue-parachute with a body on several grids and prints the forces that its [verify] names.
+
+    scripts/studies/measure_drag.py SCENE --ratio 1,1.5,2 [--bin build/host/bin] [--out out/drag] [-- ARGUMENT...]
+
+--ratio: numbers of cells along each axis over those of the scene; axes of one cell keep it. Edges of bodies and max_dt
+shrink with the cells. The last two grids give the value for infinitely many cells, if the error is of first order.
+ARGUMENTs go to the program, such as `--backend serial --set run.end_time=100`.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tomllib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from recording import parse_with_arguments  # noqa: E402
+
+
+def literal(value):
+    """TOML text of a value."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, list):
+        return "[" + ", ".join(literal(entry) for entry in value) + "]"
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {literal(entry)}" for key, entry in value.items()) + " }"
+    return repr(value)
+
+
+def assignments(scene, ratio):
+    """--set arguments of the scene on a grid with `ratio` times the cells along each axis."""
+    cells = [n if n == 1 else round(ratio * n) for n in scene["grid"]["cells"]]
+    bodies = [{**body, "edge_length": body["edge_length"] / ratio} for body in scene["body"]]
+    values = {"grid.cells": cells, "body": bodies, "run.max_dt": scene["run"]["max_dt"] / ratio}
+    return [word for key, value in values.items() for word in ("--set", f"{key}={literal(value)}")]
+
+
+def refuse(scene, ratios):
+    """Ends the program with a sentence if the scene cannot be run on grids of these ratios."""
+    verify = scene.get("verify", {})
+    if "max_dt" not in scene["run"] or not (verify.get("mean_force") or verify.get("frequency")):
+        sys.exit("measure_drag.py: the scene needs run.max_dt and a [[verify.mean_force]] or [[verify.frequency]].")
+    for ratio in ratios:
+        for n in scene["grid"]["cells"]:
+            if n > 1 and (ratio <= 0 or ratio * n != round(ratio * n)):
+                sys.exit(f"measure_drag.py: --ratio {ratio:g} makes {ratio * n:g} of {n} cells: choose a whole number.")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scene")
+    parser.add_argument("--ratio", required=True, type=lambda text: [float(part) for part in text.split(",")])
+    options, arguments = parse_with_arguments(parser, "out/drag")
+    program = options.bin / "drogue-parachute"
+    printed = subprocess.run([program, options.scene, "--print-scene"], capture_output=True, text=True, check=True)
+    scene = tomllib.loads(printed.stdout)
+    refuse(scene, options.ratio)
+    rows = []
+    for ratio in options.ratio:
+        out = options.out / f"{pathlib.Path(options.scene).stem}-{ratio:g}"
+        run = subprocess.run([program, options.scene, "--quiet", "--overwrite", "--out", out, *assignments(scene, ratio),
+                              *arguments], check=False)
+        if run.returncode not in (0, 5):  # a check may fail: its value is the point
+            return run.returncode
+        rows.append((ratio, json.loads((out / "result.json").read_text(encoding="utf-8"))["forces"]))
+        print(f"ratio {ratio:g}:", ", ".join(f"{name} {value:.4f}" for name, value in rows[-1][1].items()), flush=True)
+    if len(rows) > 1:
+        (coarse, of_coarse), (fine, of_fine) = rows[-2:]
+        limits = {name: (fine * of_fine[name] - coarse * of_coarse[name]) / (fine - coarse) for name in of_fine}
+        print("extrapolated:", ", ".join(f"{name} {value:.4f}" for name, value in limits.items()))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
