@@ -92,6 +92,23 @@ TEST(OptionsGreeks, CosinesResolveTheExerciseBoundary) {
   }
 }
 
+// The gamma of finite differences is 6.73e-4; the series gives 1.27e-3.
+TEST(OptionsGreeks, CosinesGiveNoGammaOfPureVarianceGamma) {
+  Contract c{.spot = 1369.41, .strike = 1200.0, .rate = 0.0541, .dividend = 0.012, .maturity = 0.56164};
+  const double jump[] = {1.9914368216668328, 11.00863799607121, -5.33254111089244, 0.0};
+  std::copy_n(jump, 4, c.jump);
+  Contract exercised = c, with_brownian = c;
+  exercised.spot = 600.0;
+  with_brownian.variance = 0.01;
+  const std::vector<Price> prices = priced(cosines(), {c, exercised, with_brownian}),
+                           fine = priced(on_mesh(1024, 512), {c, exercised, with_brownian});
+  EXPECT_NEAR(prices[0].price, fine[0].price, prices[0].error + fine[0].error);
+  EXPECT_NEAR(prices[0].delta, fine[0].delta, 2e-3);
+  EXPECT_TRUE(std::isnan(prices[0].gamma)) << prices[0].gamma;
+  EXPECT_EQ(prices[1].gamma, 0.0);
+  EXPECT_NEAR(prices[2].gamma, fine[2].gamma, 0.02 * fine[2].gamma);
+}
+
 std::vector<Sensitivities> sensitivities_of(const Settings& settings,
                                             const std::vector<Contract>& contracts) {
   Settings with_greeks = settings;
