@@ -1,6 +1,7 @@
 #include "kernels/options/sensitivities.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -33,20 +34,21 @@ constexpr double relative_step = 0.01;
 /// Differences in the rate and in the variance of a contract with early exercise.
 struct Differences {
   Difference rate, variance;
+  bool narrow;  ///< the rate changes so little that its prices need a finer mesh than the price itself
 };
 
 /// Change of the rate, which moves the drift until maturity by `relative_step` deviations. In the money,
 /// exercise begins to pay where the rate passes q S/K, and there rho falls from about K T to 0 within
 /// q S/K deviations, which near expiry are far fewer than this change. So it is at most a quarter of the
-/// distance or a fifth of that width, but at least a hundredth of itself, since differences of prices on one
+/// distance or a fifth of that width, but at least `least_part` of itself, since differences of prices on one
 /// mesh have errors of their own.
-double rate_step(const Contract& c, double deviation) {
-  const double step = relative_step * std::min(deviation, 1.0) / c.maturity;
+double rate_step(const Contract& c, double deviation, double step) {
+  constexpr double least_part = 1e-4;
   const bool in_the_money = c.type == Type::put ? c.spot < c.strike : c.spot > c.strike;
   if (!in_the_money || c.dividend == 0.0) return step;
   const double passed = c.dividend * c.spot / c.strike;
-  return std::min(
-      step, std::max({0.25 * std::abs(c.rate - passed), 0.2 * std::abs(passed) * deviation, 0.01 * step}));
+  return std::min(step, std::max({0.25 * std::abs(c.rate - passed), 0.2 * std::abs(passed) * deviation,
+                                  least_part * step}));
 }
 
 /// The rate keeps its distance from values at which other rules of exercise hold. A small rate is changed by
@@ -67,7 +69,10 @@ Differences differences_of(const Contract& c) {
   const double variance = std::max(CharacteristicExponent(c).cumulants().second, 1e-100);
   const double deviation = std::sqrt(variance * c.maturity);
   const double variance_step = 2.0 * relative_step * variance;
-  return {rate_difference(c, rate_step(c, deviation)), {variance_step, c.variance < 2.0 * variance_step}};
+  const double widest = relative_step * std::min(deviation, 1.0) / c.maturity;
+  const Difference rate = rate_difference(c, rate_step(c, deviation, widest));
+  return {
+      rate, {variance_step, c.variance < 2.0 * variance_step}, !rate.one_sided && rate.step < 0.01 * widest};
 }
 
 bool is_exercised(const Contract& c, const Price& price) {
@@ -106,11 +111,17 @@ SensitivityPricer::SensitivityPricer(device::Backend backend, const Settings& se
   _settings.greeks = false;
 }
 
+SensitivityPricer::Resolution SensitivityPricer::resolution_of(const Price& price, bool narrow) const {
+  if (_settings.method == Method::cos) return {0, price.steps};
+  return narrow ? Resolution{std::max(price.mesh, 256), std::max(price.steps, 64)}
+                : Resolution{price.mesh, price.steps};
+}
+
 Pricer& SensitivityPricer::pricer_of(const Resolution& resolution) {
   std::unique_ptr<Pricer>& pricer = _pricers[resolution];
   if (pricer == nullptr) {
     Settings settings = _settings;
-    settings.mesh = settings.method == Method::cos ? 0 : resolution.first;
+    settings.mesh = resolution.first;
     settings.steps = resolution.second;
     pricer = create_pricer(_backend, settings);
   }
@@ -119,39 +130,43 @@ Pricer& SensitivityPricer::pricer_of(const Resolution& resolution) {
 
 WallTimes SensitivityPricer::compute(std::span<const Contract> contracts, std::span<const Price> prices,
                                      std::span<Sensitivities> sensitivities) {
-  std::map<Resolution, std::vector<std::size_t>> rows;
+  struct Row {
+    std::size_t index;
+    Differences differences;
+    std::array<double, nodes> values;
+  };
+  std::vector<Row> rows;
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     const Contract& c = contracts[k];
-    const NormalizedPut put = normalize(c);
     sensitivities[k] = {};
     if (prices[k].status == PriceStatus::failed) {
       sensitivities[k].vega = sensitivities[k].rho = std::numeric_limits<double>::quiet_NaN();
-    } else if (!put.early) {
+    } else if (!normalize(c).early) {
       sensitivities[k] = bounded(of_european(c, prices[k]), c.type);
     } else if (!is_exercised(c, prices[k])) {
-      const int mesh = _settings.method == Method::cos ? 0 : prices[k].mesh;
-      rows[{mesh, prices[k].steps}].push_back(k);
+      rows.push_back({k, differences_of(c), {}});
     }
   }
+  // Neighbours that differ in their strikes alone stay so, and share solves of a surface.
+  std::map<Resolution, std::vector<std::pair<Row*, std::size_t>>> moves;
+  for (std::size_t node = 0; node < nodes; ++node)
+    for (Row& row : rows)
+      moves[resolution_of(prices[row.index], node < 2 && row.differences.narrow)].emplace_back(&row, node);
   WallTimes times;
-  for (const auto& [resolution, own] : rows) {
-    std::vector<Differences> differences;
-    for (const std::size_t k : own) differences.push_back(differences_of(contracts[k]));
-    // Neighbours that differ in their strikes alone stay so, and share solves of a surface.
+  for (const auto& [resolution, own] : moves) {
     std::vector<Contract> bumped;
-    for (std::size_t node = 0; node < nodes; ++node)
-      for (std::size_t i = 0; i < own.size(); ++i)
-        bumped.push_back(moved(contracts[own[i]], differences[i], node));
+    for (const auto& [row, node] : own)
+      bumped.push_back(moved(contracts[row->index], row->differences, node));
     std::vector<Price> values(bumped.size());
     times.add(pricer_of(resolution).price(bumped, values));
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      const Contract& c = contracts[own[i]];
-      const auto value = [&](std::size_t node) { return values[node * own.size() + i].price; };
-      const double now = prices[own[i]].price;
-      const double by_variance = differences[i].variance(now, value(2), value(3));
-      sensitivities[own[i]] = bounded(
-          {2.0 * std::sqrt(c.variance) * by_variance, differences[i].rate(now, value(0), value(1))}, c.type);
-    }
+    for (std::size_t i = 0; i < own.size(); ++i) own[i].first->values[own[i].second] = values[i].price;
+  }
+  for (const auto& [k, differences, values] : rows) {
+    const double now = prices[k].price;
+    sensitivities[k] =
+        bounded({2.0 * std::sqrt(contracts[k].variance) * differences.variance(now, values[2], values[3]),
+                 differences.rate(now, values[0], values[1])},
+                contracts[k].type);
   }
   return times;
 }

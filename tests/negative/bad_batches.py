@@ -112,6 +112,7 @@ BAD_FILES = [
     (HEADER.replace(",strike", "").encode(), 1, ['missing column "strike"']),
     (HEADER.replace(",delta", "").encode(), 1, ['missing column "delta"']),
     (HEADER.replace(",spot", "").encode(), 1, ['missing column "spot"']),
+    (b"spot,strike,rate,maturity,variance\n100,100,0.05,1,0.04\n", 1, ['missing column "lambda"', 'gh', 'column "model"']),
     (b"\n\n" + HEADER.replace(",rate", "").encode(), 3, ['missing column "rate"']),
     ((HEADER + ",spot").encode(), 1, ['"spot" is named twice']),
     ((HEADER + ",").encode(), 1, ["unknown column"]),

@@ -118,6 +118,10 @@ Price american_price(const Contract& c, const AmericanPut& put, const BermudanVa
   price.delta = is_put ? unit * slope / c.spot : price.price / c.spot - slope;
   price.gamma = unit * (curvature - slope) / (c.spot * c.spot);
   price.theta = unit * extrapolate(values, &BermudanValue::theta).four_levels;
+  // Over the first, short interval the density of variance gamma has a pole, and the series of the second
+  // derivative does not converge: it is off by up to its own size.
+  if (c.model == JumpModel::generalized_hyperbolic && c.variance == 0.0 && c.jump[3] == 0.0)
+    price.gamma = std::numeric_limits<double>::quiet_NaN();
   if (exercised) set_exercised_greeks(c, price);
   price.exercise_boundary = std::numeric_limits<double>::quiet_NaN();
   price.mesh = static_cast<int>(put.psi_re.size());

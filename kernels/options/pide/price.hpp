@@ -54,7 +54,8 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
       2.0 * (4.0 * fine.interpolation_error + coarse.interpolation_error) * (1.0 / 3);
   const double near_weight = boundary_weight(put, fine.boundary, 0.5 * h),
                hidden_error = estimate.offset + truncation_error(mesh);
-  const double contact_error = near_weight > 0.0 ? boundary_error(fine) : 0.0;
+  const double contact_error =
+      near_weight > 0.0 ? boundary_error(fine, coarse, estimate.variance, 0.5 * h) : 0.0;
   const double contact_weight =
       near_weight > 0.0 ? device::maximum(near_weight, standing_boundary_weight(put, fine, estimate.variance))
                         : 0.0;

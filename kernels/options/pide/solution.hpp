@@ -13,6 +13,7 @@ struct SolutionAtSpot {
   double time_value_step;  ///< increase of the time value over the second interval above the boundary; 0
                            ///< without a boundary
   double time_value_rate;  ///< dV/dtau at the end of that interval, per year; 0 without a boundary
+  double standing_error;   ///< `standing_boundary_error`; 0 without a boundary
 };
 
 /// Values of one member on the nodes of a pack.
@@ -51,6 +52,20 @@ KOKKOS_INLINE_FUNCTION double time_value_step(const MemberValues& value, int exe
   if (exercised < 0) return 0.0;
   return device::absolute(time_value(value, exercised + 2, strike, h) -
                           time_value(value, exercised + 1, strike, h));
+}
+
+/// Error of exercise at nodes beside a boundary that stands, as a fraction of the strike. The time value is
+/// B (x - b)^2/2 there. The nodes solve u_{i+1} - 2 u_i + u_{i-1} = B h^2 above the last exercised one, and
+/// u = 0 at that one, so it lies within half a step of b. With u given far above, u is too small by d^2 B/2
+/// beside b, where d = b - x of that node. u_2 - 2 u_1 = B h^2 and u_1 = B h (h/2 - d) give both.
+KOKKOS_INLINE_FUNCTION double standing_boundary_error(const MemberValues& value, int exercised, int strike,
+                                                      double h) {
+  if (exercised < 0) return 0.0;
+  const double first = time_value(value, exercised + 1, strike, h),
+               second_difference = time_value(value, exercised + 2, strike, h) - 2.0 * first;
+  if (!(second_difference > 1e-300)) return 0.0;
+  const double within = device::minimum(0.5, device::absolute(0.5 - first / second_difference));
+  return 0.5 * within * within * second_difference;
 }
 
 /// Grid of one member.
@@ -118,7 +133,7 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_below_grid(const NormalizedPut& p
   const double strike = discount.strike, price = discount.asset * asset;
   const bool immediate = put.early && strike == 1.0 && discount.asset == 1.0;
   const double time_derivative = immediate ? 0.0 : put.dividend * price - put.rate * strike;
-  return {strike - price, -price, -price, time_derivative, boundary, 0.0, 0.0, 0.0};
+  return {strike - price, -price, -price, time_derivative, boundary, 0.0, 0.0, 0.0, 0.0};
 }
 
 /// Interpolates the solution of one member. `time_derivative` holds dV/dtau.
@@ -128,7 +143,7 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
   const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
-  SolutionAtSpot solution{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0, 0.0};
+  SolutionAtSpot solution{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0, 0.0, 0.0};
   if (!(h < 1e30)) {
     solution.value = device::portable::not_a_number();
     return solution;
@@ -137,6 +152,7 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
     solution.boundary = boundary_of(value, nodes.exercised, strike, h);
     solution.time_value_step = time_value_step(value, nodes.exercised, strike, h);
     solution.time_value_rate = nodes.exercised < 0 ? 0.0 : time_derivative(nodes.exercised + 2);
+    solution.standing_error = standing_boundary_error(value, nodes.exercised, strike, h);
   }
   const double t = x / h + strike;
   if (!(t == t)) {  // no cell contains NaN
@@ -152,7 +168,8 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
               solution.boundary,
               0.0,
               solution.time_value_step,
-              solution.time_value_rate};
+              solution.time_value_rate,
+              solution.standing_error};
   }
   if (t <= 0.0) return solution_below_grid(put, asset, solution.boundary);
   if (t >= mesh) return solution;

@@ -220,8 +220,10 @@ KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_solve_error(const PutPack<R>& p
                                                              int steps) {
   ErrorEstimate<R> estimate = estimate_error(put, measure, grid.h, steps, payoff_spread(put, jumps));
   estimate.offset += stiff_jump_error(put, measure, jumps, steps, grid.h);
-  if (put.model == JumpModel::merton || put.model == JumpModel::kou)
+  if (put.model == JumpModel::merton || put.model == JumpModel::kou) {
     estimate.factor = device::maximum(estimate.factor, frequent_jump_factor(put, measure, jumps, steps));
+    estimate.offset += rare_jump_truncation(put, grid.mesh);
+  }
   return estimate;
 }
 

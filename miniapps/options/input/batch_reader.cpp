@@ -40,8 +40,8 @@ std::vector<std::size_t> repeated_hashes(std::vector<std::size_t> hashes) {
 BatchReader::BatchReader(const std::filesystem::path& file, RowKind kind) : _lines(file), _kind(kind) {
   csv::Header header = csv::read_header(_lines, columns_of(kind));
   _columns = std::move(header.places);
-  if (const char* missing = missing_column(kind, _columns))
-    throw csv::invalid_at(file, header.line, "missing column \"" + std::string(missing) + '"');
+  if (const std::string missing = missing_column(kind, _columns); !missing.empty())
+    throw csv::invalid_at(file, header.line, "missing column " + missing);
 }
 
 bool BatchReader::next(Chunk& chunk, std::size_t max_lines) {

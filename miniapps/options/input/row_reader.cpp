@@ -59,15 +59,17 @@ std::vector<std::string> columns_of(RowKind kind) {
   return names;
 }
 
-const char* missing_column(RowKind kind, const std::vector<int>& columns) {
+std::string missing_column(RowKind kind, const std::vector<int>& columns) {
   const ColumnIndex column_index(kind, columns);
+  const auto quoted = [](const char* name) { return '"' + std::string(name) + '"'; };
   for (const NumberColumn& column : number_columns)
-    if (column.required && belongs_to(column, kind) && column_index(column.name) < 0) return column.name;
-  if (column_index("model") >= 0) return nullptr;  // the model of each row decides
+    if (column.required && belongs_to(column, kind) && column_index(column.name) < 0)
+      return quoted(column.name);
+  if (column_index("model") >= 0) return {};  // the model of each row decides
   for (const ModelParameter& parameter : model_parameters)
     if (parameter.model == options::JumpModel::generalized_hyperbolic && column_index(parameter.name) < 0)
-      return parameter.name;
-  return nullptr;
+      return quoted(parameter.name) + ", a parameter of gh, the model of rows without a column \"model\"";
+  return {};
 }
 
 RowReader::RowReader(RowKind kind, const std::vector<int>& columns) : _kind(kind) {

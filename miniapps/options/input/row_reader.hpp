@@ -59,7 +59,8 @@ class RowReader {
 /// Names of the valid columns of a file.
 [[nodiscard]] std::vector<std::string> columns_of(RowKind kind);
 
-/// First column that every row requires and that is absent (index -1 in `columns`); null if there is none.
-[[nodiscard]] const char* missing_column(RowKind kind, const std::vector<int>& columns);
+/// Name, for a message, of the first column that every row requires and that is absent (index -1 in
+/// `columns`); empty if there is none.
+[[nodiscard]] std::string missing_column(RowKind kind, const std::vector<int>& columns);
 
 }  // namespace drogue::options_app

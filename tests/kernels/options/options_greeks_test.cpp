@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "kernels/options/sensitivities.hpp"
 #include "tests/support/priced.hpp"
+#include "tests/support/random_americans.hpp"
 
 // Greeks of both methods on random contracts of all models and beside exercise boundaries: bounds that hold
 // for every process, exercised rows, and sensitivities against differences of prices on fine grids.
@@ -17,42 +17,7 @@ namespace {
 
 using testing::on_mesh;
 using testing::priced;
-
-/// Random American contracts, three puts for a call, of strike 100, and as many again within 10 % of the
-/// exercise boundaries of the former, most of them within 1 %.
-std::vector<Contract> random_americans(std::size_t count, std::uint64_t seed) {
-  std::mt19937_64 bits(seed);
-  const auto in = [&](double a, double b) {
-    return a + (b - a) * static_cast<double>(bits() >> 11U) * 0x1p-53;
-  };
-  std::vector<Contract> contracts(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    Contract& c = contracts[k];
-    c.model = static_cast<JumpModel>(k % 4);
-    c.type = in(0.0, 1.0) < 0.75 ? Type::put : Type::call;
-    c.strike = 100.0;
-    c.spot = 100.0 * std::exp(in(-0.4, 0.4));
-    c.maturity = std::exp(in(std::log(0.02), std::log(5.0)));
-    c.rate = in(0.005, 0.12);
-    c.dividend = in(0.0, 1.0) < 0.5 ? 0.0 : in(0.0, 0.08);
-    if (c.type == Type::call) std::swap(c.rate, c.dividend);
-    c.variance = in(0.005, 0.16);
-    const double alpha = in(5.0, 30.0);
-    const double jumps[4][4] = {{in(-2.0, 2.0), alpha, in(-0.6, 0.3) * alpha - 0.5, in(0.05, 1.0)},
-                                {},
-                                {in(0.1, 3.0), in(-0.3, 0.1), in(0.05, 0.4)},
-                                {in(0.1, 5.0), in(0.0, 1.0), in(3.0, 20.0), in(2.0, 20.0)}};
-    std::copy_n(jumps[k % 4], 4, c.jump);
-  }
-  const std::vector<Price> prices = priced(on_mesh(512, 128), contracts);
-  for (std::size_t k = 0; k < count; ++k) {
-    Contract beside = contracts[k];
-    const double distances[] = {0.1, 0.01, 0.01, 0.003};
-    beside.spot = prices[k].exercise_boundary * (1.0 + in(-1.0, 1.0) * distances[k / 4 % 4]);
-    if (beside.spot > 1.0 && beside.spot < 1e4) contracts.push_back(beside);
-  }
-  return contracts;
-}
+using testing::random_americans;
 
 double payoff_of(const Contract& c) { return c.type == Type::put ? c.strike - c.spot : c.spot - c.strike; }
 
@@ -125,6 +90,23 @@ TEST(OptionsGreeks, CosinesResolveTheExerciseBoundary) {
     EXPECT_NEAR(prices[k].gamma, fine[k].gamma, 0.006) << spot;
     EXPECT_NEAR(prices[k].theta, fine[k].theta, 0.7) << spot;
   }
+}
+
+// The gamma of finite differences is 6.73e-4; the series gives 1.27e-3.
+TEST(OptionsGreeks, CosinesGiveNoGammaOfPureVarianceGamma) {
+  Contract c{.spot = 1369.41, .strike = 1200.0, .rate = 0.0541, .dividend = 0.012, .maturity = 0.56164};
+  const double jump[] = {1.9914368216668328, 11.00863799607121, -5.33254111089244, 0.0};
+  std::copy_n(jump, 4, c.jump);
+  Contract exercised = c, with_brownian = c;
+  exercised.spot = 600.0;
+  with_brownian.variance = 0.01;
+  const std::vector<Price> prices = priced(cosines(), {c, exercised, with_brownian}),
+                           fine = priced(on_mesh(1024, 512), {c, exercised, with_brownian});
+  EXPECT_NEAR(prices[0].price, fine[0].price, prices[0].error + fine[0].error);
+  EXPECT_NEAR(prices[0].delta, fine[0].delta, 2e-3);
+  EXPECT_TRUE(std::isnan(prices[0].gamma)) << prices[0].gamma;
+  EXPECT_EQ(prices[1].gamma, 0.0);
+  EXPECT_NEAR(prices[2].gamma, fine[2].gamma, 0.02 * fine[2].gamma);
 }
 
 std::vector<Sensitivities> sensitivities_of(const Settings& settings,
@@ -221,15 +203,16 @@ TEST(OptionsGreeks, AmericanSensitivitiesAreDifferencesOfFinePrices) {
   expect_differences(cosines(), random_americans(8, 5));
 }
 
-/// American contracts in the money, days to weeks before expiry, with rates at which exercise is about to pay
-/// or has just begun to: it pays for a put above r = q S/K, for a call below.
-std::vector<Contract> about_to_be_exercised() {
+/// American contracts in the money, before expiry, with `rate` or rates near it at which exercise is about to
+/// pay or has just begun to: it pays for a put above r = q S/K, for a call below.
+std::vector<Contract> about_to_be_exercised(double rate, const std::vector<double>& maturities,
+                                            const std::vector<double>& ratios) {
   std::vector<Contract> contracts;
   for (const Type type : {Type::put, Type::call})
     for (const double distance : {0.05, 0.1})
-      for (const double maturity : {0.01, 0.03, 0.1})
-        for (const double ratio : {0.75, 0.9, 0.97, 1.0, 1.03, 1.1}) {
-          Contract c{.type = type, .strike = 100.0, .rate = 0.05, .maturity = maturity, .variance = 0.04};
+      for (const double maturity : maturities)
+        for (const double ratio : ratios) {
+          Contract c{.type = type, .strike = 100.0, .rate = rate, .maturity = maturity, .variance = 0.04};
           c.spot = type == Type::put ? 100.0 * (1.0 - distance) : 100.0 * (1.0 + distance);
           c.dividend = c.rate * c.strike / c.spot * (type == Type::put ? 1.0 / ratio : ratio);
           const double jumps[] = {1.0, 40.0, -2.0, 0.0};
@@ -239,13 +222,14 @@ std::vector<Contract> about_to_be_exercised() {
   return contracts;
 }
 
-TEST(OptionsGreeks, AmericanRhoHoldsWhereExerciseBeginsToPay) {
-  const std::vector<Contract> contracts = about_to_be_exercised();
+/// Expects that rho is within 5 % of K T of differences of fine prices at rates `step` beside those of
+/// `contracts`, and within 2 % for nineteen rows of twenty.
+void expect_rho(const std::vector<Contract>& contracts, double step) {
   const std::vector<Sensitivities> all = sensitivities_of({}, contracts);
   std::vector<Contract> moved;
   for (const double sign : {1.0, -1.0})
     for (Contract c : contracts) {
-      c.rate += sign * 1e-4;
+      c.rate += sign * step;
       moved.push_back(c);
     }
   const std::vector<Price> fine = priced(on_mesh(1024, 256), moved);
@@ -253,13 +237,23 @@ TEST(OptionsGreeks, AmericanRhoHoldsWhereExerciseBeginsToPay) {
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     if (all[k].rho == 0.0) continue;
     const double scale = contracts[k].strike * contracts[k].maturity;
-    const double rho = (fine[k].price - fine[contracts.size() + k].price) / 2e-4;
+    const double rho = (fine[k].price - fine[contracts.size() + k].price) / (2.0 * step);
     ++compared;
     near += std::abs(all[k].rho - rho) < 0.02 * scale;
     EXPECT_NEAR(all[k].rho, rho, 0.05 * scale) << k;
   }
   EXPECT_GE(compared, contracts.size() / 2);
   EXPECT_GE(near, compared * 19 / 20);
+}
+
+TEST(OptionsGreeks, AmericanRhoHoldsWhereExerciseBeginsToPay) {
+  expect_rho(about_to_be_exercised(0.05, {0.01, 0.03, 0.1}, {0.75, 0.9, 0.97, 1.0, 1.03, 1.1}), 1e-4);
+}
+
+// There rho falls within rates of less than a thousandth of a percent.
+TEST(OptionsGreeks, AmericanRhoHoldsAtLowRatesDaysBeforeExpiry) {
+  for (const double rate : {0.01, 0.003})
+    expect_rho(about_to_be_exercised(rate, {0.002, 0.01, 0.03}, {0.9, 0.98, 1.0, 1.02, 1.1}), 3e-4 * rate);
 }
 
 TEST(OptionsGreeks, PureJumpsHaveNoVegaAndRowsDoNotDependOnOthers) {
