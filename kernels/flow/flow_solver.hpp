@@ -145,6 +145,8 @@ class FlowSolver {
   [[nodiscard]] const ExecutionSpace& space() const { return _instance->space(); }
   [[nodiscard]] Control read_control() const;
   void write_control(Control control);
+  void begin_trial(Control control, double dt);
+  void add_rates(double weight);
   void use_motion();
   [[nodiscard]] double longest_first_dt() const;
   void set_guess() const;
@@ -368,11 +370,7 @@ void FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fracti
   const double dt =
       motion_bound(kept.now, std::min(admissible_dt(kept.now, _constants), _constants.implicit_dt), 1.0).dt;
   // Without a bound, only a force acts, of which the pressure is a multiple.
-  control.trial.dt = fraction * (dt > 0.0 && std::isfinite(dt) ? dt : 1.0);
-  control.trial.stop = Stop::running;
-  control.first_failure = no_failure;
-  control.pressure_failed = control.failed_side = control.is_unbalanced = 0;
-  write_control(control);
+  begin_trial(kept, fraction * (dt > 0.0 && std::isfinite(dt) ? dt : 1.0));
   MomentumSetup<ExecutionSpace> setup = momentum_setup(nu);
   setup.weights = {0.0, 1.0, false};
   enqueue_rates(space(), setup, 1.0);
@@ -590,13 +588,45 @@ void FlowSolver<ExecutionSpace>::change_frame(const std::array<double, 3>& veloc
     shift[c] = velocity[c] - _frame_velocity[c];
     rate += std::abs(shift[c]) * _grid.inverse_h[c];
   }
-  const bool has_rates = _parameters.time_scheme == TimeScheme::ab2;
-  launch_frame_shift(space(), _grid, _boundary.conditions(), _velocity, has_rates ? _rate : Values(), shift);
-  // An upper bound until the next step.
   Control control = read_control();
+  const double dt = control.now.last_dt;
+  // The rates of the previous step change as those of the present velocity do.
+  const bool has_rates = _parameters.time_scheme == TimeScheme::ab2 && dt > 0.0;
+  if (has_rates) {
+    begin_trial(control, dt);
+    add_rates(-1.0 / dt);
+  }
+  device::launch_each(
+      space(), "drogue::flow::shift_velocity", static_cast<int>(_grid.component),
+      ShiftVelocityFunctor<ExecutionSpace>{_velocity, _grid.component, {shift[0], shift[1], shift[2]}});
+  set_frame(velocity);
+  if (has_rates) add_rates(1.0 / dt);
+  // An upper bound until the next step.
   control.now.rate = Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(control.now.rate) + rate);
   write_control(control);
-  set_frame(velocity);
+}
+
+/// Lets kernels of a step of `dt`, s, run between steps, until another control block is written.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::begin_trial(Control control, double dt) {
+  control.trial.dt = dt;
+  control.trial.stop = Stop::running;
+  control.first_failure = no_failure;
+  control.pressure_failed = control.failed_side = control.is_unbalanced = 0;
+  write_control(control);
+}
+
+/// Adds `weight`, 1/s, times the change of the present velocity in the step that `begin_trial` began, without
+/// forces of other kernels, to the rates of the previous step.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::add_rates(double weight) {
+  MomentumSetup<ExecutionSpace> setup = momentum_setup(_diffusion ? 0.0 : kinematic_viscosity());
+  setup.weights = {0.0, 1.0, false};
+  setup.force = Values();
+  enqueue_rates(space(), setup, 1.0);
+  launch_cells(
+      space(), "drogue::flow::add_rates", _grid.n,
+      AddRatesFunctor<ExecutionSpace>{_grid, _boundary.conditions(), _velocity, _predicted, _rate, weight});
 }
 
 template <class ExecutionSpace>
