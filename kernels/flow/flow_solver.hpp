@@ -151,7 +151,7 @@ class FlowSolver {
   [[nodiscard]] double longest_first_dt() const;
   void set_guess() const;
   [[nodiscard]] stepping::MotionBound motion_bound(const Progress& now, double dt, double steps) const;
-  void solve_present_pressure(double nu, double fraction = 1e-4);
+  Control solve_present_pressure(double nu, double fraction = 1e-4);
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
@@ -362,11 +362,10 @@ void FlowSolver<ExecutionSpace>::set_guess() const {
 /// Solves for the pressure of the present velocity in `unknown`: that which keeps the velocity of an explicit
 /// step free of divergence, in the limit of a short step, with the kinematic viscosity `nu`, m^2/s. Leaves
 /// the state as it is. Accelerations of sides are differences over a `fraction` of dt, by whose inverse the
-/// round-off of the divergence grows.
+/// round-off of the divergence grows. Returns the control block of the solve, with its failures.
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fraction) {
+Control FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fraction) {
   const Control kept = read_control();
-  Control control = kept;
   const double dt =
       motion_bound(kept.now, std::min(admissible_dt(kept.now, _constants), _constants.implicit_dt), 1.0).dt;
   // Without a bound, only a force acts, of which the pressure is a multiple.
@@ -378,7 +377,9 @@ void FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fracti
   enqueue_pressure(space(), projection_setup(1.0));
   _last_solution_is_pressure = false;
   if (_boundary.changes()) _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  const Control solved = read_control();
   write_control(kept);
+  return solved;
 }
 
 template <class ExecutionSpace>
@@ -423,9 +424,9 @@ void FlowSolver<ExecutionSpace>::start() {
   control = read_control();
   control.trial.dt = 0.0;
   control.now.velocity_rate = control.next_rate;
-  control.now.rate = control.has_failed()
-                         ? Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN())
-                         : limiting_rate(control, _constants);
+  // No first step is admissible after a failure.
+  const auto no_rate = Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
+  control.now.rate = control.has_failed() ? no_rate : limiting_rate(control, _constants);
   if (const double longest = longest_first_dt(); std::isfinite(longest)) control.now.longest_dt = longest;
   control.forget_step();
   control.trial.stop = Stop::pause;
@@ -433,8 +434,15 @@ void FlowSolver<ExecutionSpace>::start() {
   if (_diffusion && !control.has_failed()) {
     // The first step of implicit diffusion begins with a pressure, too. That of viscosity decays with the
     // thinnest layers, within a long step.
-    solve_present_pressure(_constants.fixed_dt > _constants.implicit_dt ? 0.0 : kinematic_viscosity(), 5e-3);
+    const Control solved = solve_present_pressure(
+        _constants.fixed_dt > _constants.implicit_dt ? 0.0 : kinematic_viscosity(), 5e-3);
     device::copy(space(), _pressure, unknown());
+    if (solved.pressure_failed != 0) {
+      control.pressure_failed = 1;
+      control.pressure_residual = solved.pressure_residual;
+      control.now.rate = no_rate;
+      write_control(control);
+    }
   }
   _last_solution_is_pressure = false;
   _loop.status_view()().step = 0;
