@@ -105,14 +105,19 @@ class FlowSolver {
   [[nodiscard]] double largest_dt(const Progress& now, double steps = 1.0) const;
   /// Time after `time`, s, at which prescribed motion jumps next; infinite if it does not. Does not throw.
   [[nodiscard]] double next_jump(double time) const;
-  /// True if a step has failed. Blocks. Throws std::runtime_error after a failed kernel.
-  [[nodiscard]] bool has_failed() const { return read_control().trial.stop == Stop::failed; }
-  /// True if the velocity outgrew its stability limit in the last step, whose result is not to be trusted.
-  /// Blocks. Throws std::runtime_error after a failed kernel.
-  [[nodiscard]] bool last_step_violates_cfl() const {
+  /// Progress after the last step, and how that ended.
+  struct Condition {
+    Progress now;
+    bool has_failed;
+    /// The velocity outgrew its stability limit in the last step, whose result is not to be trusted.
+    bool last_step_violates_cfl;
+  };
+  /// Condition after the steps enqueued so far. Blocks. Throws std::runtime_error after a failed kernel.
+  [[nodiscard]] Condition condition() const {
     const Control control = read_control();
-    return control.trial.stop == Stop::failed && !control.has_failed() &&
-           control.now.last_dt > largest_excess * control.trial.dt;
+    const bool has_failed = control.trial.stop == Stop::failed;
+    return {control.now, has_failed,
+            has_failed && !control.has_failed() && control.now.last_dt > largest_excess * control.trial.dt};
   }
   /// Status as last published. Does not throw.
   [[nodiscard]] Status status() const { return _loop.status(); }

@@ -355,8 +355,9 @@ template <class ExecutionSpace>
 flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64_t pause_step,
                                                   const flow::Poll& poll) {
   while (true) {
-    const flow::Progress now = _flow.progress();
-    if (_flow.last_step_violates_cfl()) {
+    const typename Flow::Condition condition = _flow.condition();
+    const flow::Progress& now = condition.now;
+    if (condition.last_step_violates_cfl) {
       return_to_last_step(now);
       return flow::Stop::failed;
     }
@@ -371,7 +372,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
       _block.end = now.step;
     }
     const double target = std::min({last_target, _cuts.next(), next_jump(now)});
-    if (_flow.has_failed()) {
+    if (condition.has_failed) {
       return_to_last_step(now);
       // Returns its sides to the time before the failed step.
       if (!needs_shorter_steps(now)) return _flow.advance(target, pause_step, {});
