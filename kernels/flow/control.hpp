@@ -120,11 +120,18 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
   return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
 }
 
+/// Bound of dt, s, with which implicit diffusion resolves the layers beside what begins to move.
+KOKKOS_INLINE_FUNCTION double first_implicit_dt(const StepConstants& k) {
+  return 2.0 * largest_viscous_change * k.implicit_dt;
+}
+
 /// `steps` equal steps from the present, each of at most `dt`, s, that resolve prescribed motion.
 KOKKOS_INLINE_FUNCTION stepping::MotionBound resolved_motion(const Progress& now, double dt, double steps,
                                                              const StepConstants& k) {
   if (k.motions == 0 || !(dt > 0.0)) return {dt, Kokkos::Experimental::infinity_v<double>};
-  return stepping::bound_by_motion(k.motion, k.motions, now.time, dt, k.cfl, steps);
+  stepping::MotionBound bound = stepping::bound_by_motion(k.motion, k.motions, now.time, dt, k.cfl, steps);
+  if (bound.follows_jump && first_implicit_dt(k) < bound.dt) bound.dt = first_implicit_dt(k);
+  return bound;
 }
 
 /// Rate that limits the next dt, as `Progress::rate`: that of advection, and that of an eddy viscosity. If
@@ -157,6 +164,10 @@ KOKKOS_INLINE_FUNCTION double longest_next_dt(const Control& c, const StepConsta
   const double dt = c.trial.dt;
   double longest = k.fixed_dt > 0.0 ? infinite : largest_growth * admissible_dt(c.now, k);
   if (k.implicit_dt < infinite) {
+    // The viscous term was that before the jump.
+    const bool follows_jump = resolved_motion(c.now, dt, 1.0, k).follows_jump;
+    if (follows_jump && largest_growth * first_implicit_dt(k) < longest)
+      longest = largest_growth * first_implicit_dt(k);
     double range = 0.0;
     for (int component = 0; component < 3; ++component) {
       if (c.highest[component] == 0) continue;

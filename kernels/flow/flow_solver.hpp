@@ -461,8 +461,7 @@ double FlowSolver<ExecutionSpace>::longest_first_dt() const {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (_grid.n[axis] > 1) acceleration += std::abs(_acceleration[axis]) * _grid.inverse_h[axis];
   return std::min({_constants.cfl / rate_of_constant_sides(_parameters),
-                   std::sqrt(_constants.cfl / acceleration),
-                   2.0 * largest_viscous_change * _constants.implicit_dt});
+                   std::sqrt(_constants.cfl / acceleration), first_implicit_dt(_constants)});
 }
 
 template <class ExecutionSpace>
