@@ -14,21 +14,25 @@ namespace drogue::flow {
 
 using stepping::no_failure;
 
-/// Device-resident control block of a step. Only kernels write it during a run.
-struct Control {
-  Progress now;
-  stepping::StepTrial trial;
-  std::uint64_t next_rate;       ///< reduction of the state after the step, as `Progress::rate`
+/// Maxima of a step over the cells, of integers alone. Ranks agree on the largest of each.
+struct StepMaxima {
+  std::uint64_t next_rate;       ///< of the state after the step, as `Progress::rate`
   std::uint64_t eddy_viscosity;  ///< bits of the largest one since the last step, m^2/s; 0 without a model
   /// Bits of the largest acceleration of each prescribed velocity component in the last step, in cells,
   /// 1/s^2.
   std::uint64_t side_acceleration[3];
-  // Reductions of a step of implicit diffusion:
+  // In a step of implicit diffusion:
   std::uint64_t viscous_acceleration;  ///< bits of the largest one at its beginning, m/s^2
   std::uint64_t change;                ///< bits of the largest change of the predicted velocity, m/s
   /// Range of each velocity component at its beginning, sides included: `ordered_bits` of the largest value,
   /// and of minus the least one; 0: no value.
   std::uint64_t highest[3], lowest[3];
+};
+
+/// Device-resident control block of a step. Only kernels write it during a run.
+struct Control : StepMaxima {
+  Progress now;
+  stepping::StepTrial trial;
   std::uint64_t first_failure;  ///< least cell whose predicted velocity is not finite, or `no_failure`
   int pressure_failed;          ///< 1 after an iterative pressure solver did not converge
   int failed_side;              ///< 1 + a side whose prescribed velocity is not finite; 0: none
@@ -37,11 +41,8 @@ struct Control {
   double net_inflow;            ///< m^3/s, of velocities that change in time where no side is an outflow
   double inflow_magnitude;      ///< m^3/s, sum of the magnitudes of the parts of `net_inflow`
 
-  /// Resets the reductions of a step. Does not throw.
-  KOKKOS_FUNCTION void forget_step() {
-    next_rate = eddy_viscosity = viscous_acceleration = change = 0;
-    for (int c = 0; c < 3; ++c) side_acceleration[c] = highest[c] = lowest[c] = 0;
-  }
+  /// Resets the maxima of a step. Does not throw.
+  KOKKOS_FUNCTION void forget_step() { static_cast<StepMaxima&>(*this) = {}; }
 
   /// True if the step must leave the state as it is. Does not throw.
   [[nodiscard]] KOKKOS_FUNCTION bool has_failed() const {
@@ -60,7 +61,8 @@ KOKKOS_INLINE_FUNCTION double ordered_value(std::uint64_t bits) {
   return Kokkos::bit_cast<double>(bits >> 63U != 0 ? bits ^ std::uint64_t{1} << 63U : ~bits);
 }
 
-/// Raises a maximum that other threads may raise at the same time. Does not throw.
+/// Raises a maximum that other threads may raise at the same time. The load spares most values, which do not
+/// exceed it, an atomic operation. Does not throw.
 KOKKOS_INLINE_FUNCTION void raise(std::uint64_t& largest, std::uint64_t value) {
   if (value > device::relaxed_load(&largest)) Kokkos::atomic_max(&largest, value);
 }
@@ -118,11 +120,18 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
   return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
 }
 
+/// Bound of dt, s, with which implicit diffusion resolves the layers beside what begins to move.
+KOKKOS_INLINE_FUNCTION double first_implicit_dt(const StepConstants& k) {
+  return 2.0 * largest_viscous_change * k.implicit_dt;
+}
+
 /// `steps` equal steps from the present, each of at most `dt`, s, that resolve prescribed motion.
 KOKKOS_INLINE_FUNCTION stepping::MotionBound resolved_motion(const Progress& now, double dt, double steps,
                                                              const StepConstants& k) {
   if (k.motions == 0 || !(dt > 0.0)) return {dt, Kokkos::Experimental::infinity_v<double>};
-  return stepping::bound_by_motion(k.motion, k.motions, now.time, dt, k.cfl, steps);
+  stepping::MotionBound bound = stepping::bound_by_motion(k.motion, k.motions, now.time, dt, k.cfl, steps);
+  if (bound.follows_jump && first_implicit_dt(k) < bound.dt) bound.dt = first_implicit_dt(k);
+  return bound;
 }
 
 /// Rate that limits the next dt, as `Progress::rate`: that of advection, and that of an eddy viscosity. If
@@ -155,6 +164,10 @@ KOKKOS_INLINE_FUNCTION double longest_next_dt(const Control& c, const StepConsta
   const double dt = c.trial.dt;
   double longest = k.fixed_dt > 0.0 ? infinite : largest_growth * admissible_dt(c.now, k);
   if (k.implicit_dt < infinite) {
+    // The viscous term was that before the jump.
+    const bool follows_jump = resolved_motion(c.now, dt, 1.0, k).follows_jump;
+    if (follows_jump && largest_growth * first_implicit_dt(k) < longest)
+      longest = largest_growth * first_implicit_dt(k);
     double range = 0.0;
     for (int component = 0; component < 3; ++component) {
       if (c.highest[component] == 0) continue;

@@ -105,14 +105,19 @@ class FlowSolver {
   [[nodiscard]] double largest_dt(const Progress& now, double steps = 1.0) const;
   /// Time after `time`, s, at which prescribed motion jumps next; infinite if it does not. Does not throw.
   [[nodiscard]] double next_jump(double time) const;
-  /// True if a step has failed. Blocks. Throws std::runtime_error after a failed kernel.
-  [[nodiscard]] bool has_failed() const { return read_control().trial.stop == Stop::failed; }
-  /// True if the velocity outgrew its stability limit in the last step, whose result is not to be trusted.
-  /// Blocks. Throws std::runtime_error after a failed kernel.
-  [[nodiscard]] bool last_step_violates_cfl() const {
+  /// Progress after the last step, and how that ended.
+  struct Condition {
+    Progress now;
+    bool has_failed;
+    /// The velocity outgrew its stability limit in the last step, whose result is not to be trusted.
+    bool last_step_violates_cfl;
+  };
+  /// Condition after the steps enqueued so far. Blocks. Throws std::runtime_error after a failed kernel.
+  [[nodiscard]] Condition condition() const {
     const Control control = read_control();
-    return control.trial.stop == Stop::failed && !control.has_failed() &&
-           control.now.last_dt > largest_excess * control.trial.dt;
+    const bool has_failed = control.trial.stop == Stop::failed;
+    return {control.now, has_failed,
+            has_failed && !control.has_failed() && control.now.last_dt > largest_excess * control.trial.dt};
   }
   /// Status as last published. Does not throw.
   [[nodiscard]] Status status() const { return _loop.status(); }
@@ -145,11 +150,13 @@ class FlowSolver {
   [[nodiscard]] const ExecutionSpace& space() const { return _instance->space(); }
   [[nodiscard]] Control read_control() const;
   void write_control(Control control);
+  void begin_trial(Control control, double dt);
+  void add_rates(double weight);
   void use_motion();
   [[nodiscard]] double longest_first_dt() const;
   void set_guess() const;
   [[nodiscard]] stepping::MotionBound motion_bound(const Progress& now, double dt, double steps) const;
-  void solve_present_pressure(double nu, double fraction = 1e-4);
+  Control solve_present_pressure(double nu, double fraction = 1e-4);
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
@@ -360,19 +367,14 @@ void FlowSolver<ExecutionSpace>::set_guess() const {
 /// Solves for the pressure of the present velocity in `unknown`: that which keeps the velocity of an explicit
 /// step free of divergence, in the limit of a short step, with the kinematic viscosity `nu`, m^2/s. Leaves
 /// the state as it is. Accelerations of sides are differences over a `fraction` of dt, by whose inverse the
-/// round-off of the divergence grows.
+/// round-off of the divergence grows. Returns the control block of the solve, with its failures.
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fraction) {
+Control FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fraction) {
   const Control kept = read_control();
-  Control control = kept;
   const double dt =
       motion_bound(kept.now, std::min(admissible_dt(kept.now, _constants), _constants.implicit_dt), 1.0).dt;
   // Without a bound, only a force acts, of which the pressure is a multiple.
-  control.trial.dt = fraction * (dt > 0.0 && std::isfinite(dt) ? dt : 1.0);
-  control.trial.stop = Stop::running;
-  control.first_failure = no_failure;
-  control.pressure_failed = control.failed_side = control.is_unbalanced = 0;
-  write_control(control);
+  begin_trial(kept, fraction * (dt > 0.0 && std::isfinite(dt) ? dt : 1.0));
   MomentumSetup<ExecutionSpace> setup = momentum_setup(nu);
   setup.weights = {0.0, 1.0, false};
   enqueue_rates(space(), setup, 1.0);
@@ -380,7 +382,9 @@ void FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fracti
   enqueue_pressure(space(), projection_setup(1.0));
   _last_solution_is_pressure = false;
   if (_boundary.changes()) _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  const Control solved = read_control();
   write_control(kept);
+  return solved;
 }
 
 template <class ExecutionSpace>
@@ -425,9 +429,9 @@ void FlowSolver<ExecutionSpace>::start() {
   control = read_control();
   control.trial.dt = 0.0;
   control.now.velocity_rate = control.next_rate;
-  control.now.rate = control.has_failed()
-                         ? Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN())
-                         : limiting_rate(control, _constants);
+  // No first step is admissible after a failure.
+  const auto no_rate = Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
+  control.now.rate = control.has_failed() ? no_rate : limiting_rate(control, _constants);
   if (const double longest = longest_first_dt(); std::isfinite(longest)) control.now.longest_dt = longest;
   control.forget_step();
   control.trial.stop = Stop::pause;
@@ -435,8 +439,15 @@ void FlowSolver<ExecutionSpace>::start() {
   if (_diffusion && !control.has_failed()) {
     // The first step of implicit diffusion begins with a pressure, too. That of viscosity decays with the
     // thinnest layers, within a long step.
-    solve_present_pressure(_constants.fixed_dt > _constants.implicit_dt ? 0.0 : kinematic_viscosity(), 5e-3);
+    const Control solved = solve_present_pressure(
+        _constants.fixed_dt > _constants.implicit_dt ? 0.0 : kinematic_viscosity(), 5e-3);
     device::copy(space(), _pressure, unknown());
+    if (solved.pressure_failed != 0) {
+      control.pressure_failed = 1;
+      control.pressure_residual = solved.pressure_residual;
+      control.now.rate = no_rate;
+      write_control(control);
+    }
   }
   _last_solution_is_pressure = false;
   _loop.status_view()().step = 0;
@@ -450,8 +461,7 @@ double FlowSolver<ExecutionSpace>::longest_first_dt() const {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (_grid.n[axis] > 1) acceleration += std::abs(_acceleration[axis]) * _grid.inverse_h[axis];
   return std::min({_constants.cfl / rate_of_constant_sides(_parameters),
-                   std::sqrt(_constants.cfl / acceleration),
-                   2.0 * largest_viscous_change * _constants.implicit_dt});
+                   std::sqrt(_constants.cfl / acceleration), first_implicit_dt(_constants)});
 }
 
 template <class ExecutionSpace>
@@ -590,13 +600,45 @@ void FlowSolver<ExecutionSpace>::change_frame(const std::array<double, 3>& veloc
     shift[c] = velocity[c] - _frame_velocity[c];
     rate += std::abs(shift[c]) * _grid.inverse_h[c];
   }
-  const bool has_rates = _parameters.time_scheme == TimeScheme::ab2;
-  launch_frame_shift(space(), _grid, _boundary.conditions(), _velocity, has_rates ? _rate : Values(), shift);
-  // An upper bound until the next step.
   Control control = read_control();
+  const double dt = control.now.last_dt;
+  // The rates of the previous step change as those of the present velocity do.
+  const bool has_rates = _parameters.time_scheme == TimeScheme::ab2 && dt > 0.0;
+  if (has_rates) {
+    begin_trial(control, dt);
+    add_rates(-1.0 / dt);
+  }
+  device::launch_each(
+      space(), "drogue::flow::shift_velocity", static_cast<int>(_grid.component),
+      ShiftVelocityFunctor<ExecutionSpace>{_velocity, _grid.component, {shift[0], shift[1], shift[2]}});
+  set_frame(velocity);
+  if (has_rates) add_rates(1.0 / dt);
+  // An upper bound until the next step.
   control.now.rate = Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(control.now.rate) + rate);
   write_control(control);
-  set_frame(velocity);
+}
+
+/// Lets kernels of a step of `dt`, s, run between steps, until another control block is written.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::begin_trial(Control control, double dt) {
+  control.trial.dt = dt;
+  control.trial.stop = Stop::running;
+  control.first_failure = no_failure;
+  control.pressure_failed = control.failed_side = control.is_unbalanced = 0;
+  write_control(control);
+}
+
+/// Adds `weight`, 1/s, times the change of the present velocity in the step that `begin_trial` began, without
+/// forces of other kernels, to the rates of the previous step.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::add_rates(double weight) {
+  MomentumSetup<ExecutionSpace> setup = momentum_setup(_diffusion ? 0.0 : kinematic_viscosity());
+  setup.weights = {0.0, 1.0, false};
+  setup.force = Values();
+  enqueue_rates(space(), setup, 1.0);
+  launch_cells(
+      space(), "drogue::flow::add_rates", _grid.n,
+      AddRatesFunctor<ExecutionSpace>{_grid, _boundary.conditions(), _velocity, _predicted, _rate, weight});
 }
 
 template <class ExecutionSpace>

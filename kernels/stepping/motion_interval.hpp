@@ -8,7 +8,7 @@ struct MotionInterval {
   double begin;     ///< s
   double longest;   ///< s, dt that resolves the motion
   double rate;      ///< 1/s, largest speed over cell widths
-  int begins_with;  ///< 1 if the motion jumps at the beginning: a step should end there
+  int begins_with;  ///< 1 if the motion jumps at the beginning, or begins after rest: a step should end there
 };
 
 }  // namespace drogue::stepping

@@ -157,8 +157,10 @@ class Division {
 
   /// Joins a straight part to the interval that is open, or begins the next one.
   void append(const Sample& a, const Sample& b, std::initializer_list<const Sample*> between) {
-    const bool stays_straight = is_straight_until(b);
-    if (!stays_straight) {
+    // Motion that begins after rest has an interval of its own, however slow it is at first.
+    constexpr double round_off = 1e-9;
+    const bool begins = _last.time > _begin.time && change(_begin, _last) <= 0.0 && change(a, b) > round_off;
+    if (begins || !is_straight_until(b)) {
       close();
       open(a);
     }
@@ -201,7 +203,9 @@ class Division {
     // A motion that rests needs no resolution of its own.
     const bool rests = change(_begin, _last) <= 0.0;
     const double width = _last.time - _begin.time;
-    _intervals.push_back({_begin.time, rests || !(width > 0.0) ? infinite : width, _rate, 0});
+    const bool begins = !rests && !_intervals.empty() && _intervals.back().begins_with == 0 &&
+                        !(_intervals.back().longest < infinite);
+    _intervals.push_back({_begin.time, rests || !(width > 0.0) ? infinite : width, _rate, begins ? 1 : 0});
     if (!_is_complete) {
       MotionInterval rest{_last.time, infinite, 0.0, 0};
       for (const MotionInterval& interval : _intervals) {

@@ -40,8 +40,9 @@ struct PrescribedMotion {
 
 /// Bound of a step from prescribed motion.
 struct MotionBound {
-  double dt;    ///< s
-  double jump;  ///< s, time of a jump within it, at which a step ends; infinite: none
+  double dt;                  ///< s
+  double jump;                ///< s, time of a jump within it, at which a step ends; infinite: none
+  bool follows_jump = false;  ///< the step begins with a jump
 };
 
 /// Shortens `steps` equal steps of `dt` from `time`, s, so that they resolve the motion, and dt times the
@@ -58,9 +59,13 @@ KOKKOS_INLINE_FUNCTION MotionBound bound_by_motion(const MotionInterval* interva
     const MotionInterval interval = intervals[i];
     const double left = (interval.begin - time) / steps;
     if (left >= bound.dt) break;
-    if (i > at && interval.begins_with != 0 && left > 1e-12 * interval.begin) {
-      bound.jump = interval.begin;
-      break;
+    if (interval.begins_with != 0) {
+      const double round_off = 1e-12 * interval.begin;
+      if (i > at && left > round_off) {
+        bound.jump = interval.begin;
+        break;
+      }
+      if (time - interval.begin <= round_off) bound.follows_jump = true;
     }
     double longest = interval.longest;
     if (longest * interval.rate > cfl) longest = cfl / interval.rate;

@@ -178,6 +178,15 @@ class Failures(parachute_program.FlowTest):
             self.assertRegex(message, r"did not converge at the initial projection, t = 0 s; its relative residual is [0-9.]+e-1[0-9]: .*flow.pressure_tolerance above 1e-300\n$")
             self.assertNotIn("nan", message)
 
+    def test_pressure_that_does_not_converge_is_no_output(self):
+        if "hypre" not in self.expect(0, "--version").stdout:
+            self.skipTest("this build lacks hypre")
+        for diffusion in ("explicit", "crank-nicolson"):
+            said = self.expect(4, "cavity", *QUIET, "--overwrite", sets=[
+                "flow.pressure='hypre-pfmg'", "flow.pressure_tolerance=1e-300", f"flow.diffusion='{diffusion}'",
+                "flow.body_force=[0,-1,0]", "output={fields=['pressure'],times=[0]}", "verify={}"]).stderr
+            self.assertRegex(said, r"did not converge (for the pressure at step 0|at the initial projection), t = 0 s; its relative residual is \S+: ")
+
     def test_net_inflow_between_the_checked_times_is_a_failure(self):
         sets = ['fluid.velocity=["abs(t-0.0325)<0.0025 ? 1 : 0", 0, 0]', 'grid.boundary.x=["inflow", "wall"]',
                 "run.end_time=0.1", "run.max_dt=0.001", "output={}"]

@@ -27,6 +27,16 @@ end_time = 0.7
 history_every = 1
 """
 
+CYLINDER = """
+[[body]]
+kind = "cylinder"
+axis = "z"
+centre = [0.5, 0.3, 0.5]
+radius = 0.1
+length = 1
+edge_length = 0.02
+"""
+
 SCHEMES = ("diffusion='crank-nicolson'", "time='ab2'", "time='rk3'")
 
 
@@ -40,14 +50,14 @@ PISTON = """app = "parachute"
 density = 1.2
 viscosity = 0
 [grid]
-cells = [16, 4, 4]
-domain = [[0, 1.6], [0, 0.4], [0, 0.4]]
+cells = [16, 8, 8]
+domain = [[0, 1.6], [0, 0.8], [0, 0.8]]
 boundary = { x = "periodic", y = "periodic", z = "periodic" }
 [[body]]
 kind = "plate"
 normal = "x"
-centre = [0.83, 0.2, 0.2]
-lengths = [0.4, 0.4]
+centre = [0.83, 0.4, 0.4]
+lengths = [0.8, 0.8]
 edge_length = 0.05
 motion = { x = "0.002*(1-cos(20*pi*t))" }
 [run]
@@ -110,11 +120,39 @@ class Drives(parachute_program.FlowTest):
 
     def test_plate_that_moves_all_fluid(self):
         rows = self.check(PISTON)
-        mass = 1.2 * 1.6 * 0.16
+        mass = 1.2 * 1.6 * 0.64
         exact = mass * 0.002 * (20 * math.pi) ** 2
+        self.assertAlmostEqual(9.70, exact, delta=0.005)
         # After the start, whose acceleration jumps.
         late = [abs(f) for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.1]
         self.assertAlmostEqual(exact, max(late), delta=0.08 * exact)
+
+    def test_plate_that_moves_at_once(self):
+        # All fluid has the velocity of the plate in the end, whenever that starts to move.
+        for motion, end in (("0.2*t", 1), ("t<0.1037 ? 0 : 0.2*(t-0.1037)", 1.1037)):
+            with self.subTest(motion):
+                rows = self.check(PISTON, f"body[0].motion={{x='{motion}'}}", f"run.end_time={end}")
+                self.assertAlmostEqual(1, rows["momentum_x"][-1] / (0.2 * 1.2 * 1.6 * 0.64), delta=0.02)
+
+    def test_implicit_diffusion_begins_anew_with_late_motion(self):
+        # Nothing moves before t = 0.3 s, when a wall, or a cylinder, does at once.
+        wall, body = "grid.wall_velocity={y_high=['t<0.3 ? 0 : 1',0,0]}", "body[0].motion={x='t<0.3 ? 0 : 0.2*(t-0.3)'}"
+        for text, late in ((CHANNEL, wall), (CHANNEL + CYLINDER, wall), (CHANNEL + CYLINDER, body)):
+            with self.subTest(late, bodies=text.count("body")):
+                scene = (flow(SCHEMES[0]), "grid.cells=[8,32,1]", late)
+                rows, fine = self.check(text, *scene), self.check(text, *scene, "run.max_dt=0.001")
+                self.assertIn(0.3, [round(t, 9) for t in rows["time"]])
+                self.assertLess(len(rows["time"]), 0.7 * len(fine["time"]))
+                for column in ("momentum_x", *(["body_0_force_x"] if "body" in text else [])):
+                    delta = 0.015 if column == "momentum_x" else 0.1
+                    self.assertAlmostEqual(1, rows[column][-1] / fine[column][-1], delta=delta, msg=column)
+
+    def test_steps_beside_bodies_grow_by_degrees(self):
+        rows = self.check(CHANNEL + CYLINDER, flow(SCHEMES[0], "body_force=[0.8,0,0]"), "grid.cells=[8,32,1]")
+        steps = [b - a for a, b in zip(rows["time"], rows["time"][1:])]
+        self.assertGreater(max(steps), 8 * steps[0])
+        for one, next in zip(steps, steps[1:]):
+            self.assertLess(next, (2 + 1e-6) * one)
 
     def test_closed_box_under_gravity_stays_at_rest(self):
         for viscosity in (1, 100):

@@ -120,6 +120,8 @@ class CoupledSolver {
   using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
 
   static constexpr std::int64_t block_steps = 16;
+  /// Largest ratio of the steps of successive blocks.
+  static constexpr double largest_growth = 2.0;
 
   /// Fluid at rest and cloth at rest in its mesh; set other states by `flow` and `fabric`, then call `start`.
   /// `instance` must outlive the solver. Each rank gives the same parameters. Blocks. Throws
@@ -224,6 +226,7 @@ class CoupledSolver {
     return _parameters.flow.fixed_dt > 0.0 ? std::numeric_limits<double>::infinity()
                                            : _flow.next_jump(now.time);
   }
+  [[nodiscard]] double longest_block_dt(const flow::Progress& now) const;
   [[nodiscard]] bool plan_block(const flow::Progress& now, double target);
   void set_cloth_time();
   /// Counts the time of the cloth from now on, s, which a change of dt makes necessary. Does not throw.
@@ -291,10 +294,8 @@ void CoupledSolver<ExecutionSpace>::set_frame(const FrameMotion& frame) {
 /// divergence nor relative velocities nor forces do.
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::move_frame(const flow::Progress& now) {
-  const double longest = _flow.largest_dt(now, block_steps);
-  const double dt = _parameters.flow.fixed_dt > 0.0 ? _parameters.flow.fixed_dt : longest;
-  _flow.change_frame(
-      _frame.begin_block(_space, _fabric.state(), now.time, dt * static_cast<double>(block_steps)).velocity);
+  const double duration = longest_block_dt(now) * static_cast<double>(block_steps);
+  _flow.change_frame(_frame.begin_block(_space, _fabric.state(), now.time, duration).velocity);
 }
 
 template <class ExecutionSpace>
@@ -307,6 +308,16 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
   set_cloth_time();
 }
 
+/// Largest dt of the block that begins with the present step, s: a fixed one, or that of the flow, which
+/// grows by degrees. The last block may have had half of it, to end at a target, and less in a single step.
+template <class ExecutionSpace>
+double CoupledSolver<ExecutionSpace>::longest_block_dt(const flow::Progress& now) const {
+  if (_parameters.flow.fixed_dt > 0.0) return _parameters.flow.fixed_dt;
+  const double longest = _flow.largest_dt(now, block_steps);
+  const bool has_predecessor = _block.dt > 0.0 && _block.cloth_step - _block.since > _block.substeps;
+  return has_predecessor ? std::min(longest, largest_growth * _block.dt) : longest;
+}
+
 /// Chooses dt and the number of substeps of the block that begins with the present step. Unless dt is fixed,
 /// a whole number of steps reaches a target within two blocks: a step of the flow changes the velocity at the
 /// sheet by itself, and the impulse that follows would be a large mean force in a far shorter last step.
@@ -314,7 +325,7 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
 template <class ExecutionSpace>
 bool CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double target) {
   const flow::Parameters& p = _parameters.flow;
-  double dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now, block_steps);
+  double dt = longest_block_dt(now);
   const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / dt);
   if (!(p.fixed_dt > 0.0) && needed <= 2.0 * block_steps) dt = left / std::max(1.0, needed);
   std::int64_t substeps = _parameters.substeps;
@@ -358,8 +369,9 @@ template <class ExecutionSpace>
 flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64_t pause_step,
                                                   const flow::Poll& poll) {
   while (true) {
-    const flow::Progress now = _flow.progress();
-    if (_flow.last_step_violates_cfl()) {
+    const typename Flow::Condition condition = _flow.condition();
+    const flow::Progress& now = condition.now;
+    if (condition.last_step_violates_cfl) {
       return_to_last_step(now);
       return flow::Stop::failed;
     }
@@ -374,7 +386,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
       _block.end = now.step;
     }
     const double target = std::min({last_target, _cuts.next(), next_jump(now)});
-    if (_flow.has_failed()) {
+    if (condition.has_failed) {
       return_to_last_step(now);
       // Returns its sides to the time before the failed step.
       if (!needs_shorter_steps(now)) return _flow.advance(target, pause_step, {});

@@ -16,6 +16,27 @@ namespace {
 /// and by 80 percent with 20.
 constexpr double share_of_interval = 0.2;
 
+/// Steps in which the fluid follows a body that moves at once: some 50.
+constexpr double settling_steps = 64.0;
+
+/// Adds short steps where motion begins: until the fluid follows, the body moves by at most `cfl` cells.
+std::vector<stepping::MotionInterval> with_short_first_steps(
+    const std::vector<stepping::MotionInterval>& intervals, double cfl) {
+  std::vector<stepping::MotionInterval> result;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    stepping::MotionInterval part = intervals[i];
+    const double time = cfl / part.rate;  // infinite at rest
+    if ((i == 0 || part.begins_with != 0) && time < settling_steps * part.longest) {
+      result.push_back({part.begin, time / settling_steps, part.rate, part.begins_with});
+      if (i + 1 < intervals.size() && part.begin + time >= intervals[i + 1].begin) continue;
+      part.begin += time;
+      part.begins_with = 0;
+    }
+    result.push_back(part);
+  }
+  return result;
+}
+
 std::vector<stepping::MotionInterval> motion_of(const Parameters& p, const fabric::Motion& moved) {
   constexpr std::size_t most = 9;
   const std::size_t count = moved.vertices.size(), samples = std::min(count, most);
@@ -40,7 +61,7 @@ std::vector<stepping::MotionInterval> motion_of(const Parameters& p, const fabri
   motion.times = stepping::constants_of({&moved.displacement, 1});
   std::vector<stepping::MotionInterval> intervals = stepping::motion_intervals(motion, p.flow.horizon);
   for (stepping::MotionInterval& interval : intervals) interval.longest *= share_of_interval;
-  return intervals;
+  return with_short_first_steps(intervals, p.flow.cfl);
 }
 
 }  // namespace

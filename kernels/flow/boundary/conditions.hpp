@@ -9,7 +9,6 @@
 #include "kernels/device/expression.hpp"
 #include "kernels/device/launch.hpp"
 #include "kernels/device/memory.hpp"
-#include "kernels/device/relaxed_access.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {
@@ -140,9 +139,8 @@ struct BoundaryTableFunctor {
     stored = value;
     if (!Kokkos::isfinite(value)) Kokkos::atomic_max(&c.failed_side, side + 1);
     if (stage.initial || stage.fraction < 1.0 || g.n[component] == 1 || !at.is_beside_cell(g)) return;
-    const auto bits = Kokkos::bit_cast<std::uint64_t>(change * g.inverse_h[component] / c.trial.dt);
-    std::uint64_t& largest = c.side_acceleration[component];
-    if (bits > device::relaxed_load(&largest)) Kokkos::atomic_max(&largest, bits);
+    raise(c.side_acceleration[component],
+          Kokkos::bit_cast<std::uint64_t>(change * g.inverse_h[component] / c.trial.dt));
   }
 
  private:

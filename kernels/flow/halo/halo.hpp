@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -77,38 +78,25 @@ class Halo {
   /// null where there is no other rank.
   [[nodiscard]] const double* pressure_below(std::size_t axis) const { return _below[axis]; }
 
-  /// Gives all ranks the least failed cell, the largest rate, and the failures of a pressure solver and a
-  /// side. `checks_inflow`: whether to fail for the net inflow of all ranks.
+  /// Gives all ranks the least failed cell, the largest `StepMaxima`, and the failures of a pressure solver
+  /// and a side. `checks_inflow`: whether to fail for the net inflow of all ranks.
   void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view, bool checks_inflow) const {
     Control control;
     device::copy_out(space, &control, view, 1);
     space.fence("drogue::flow::halo: read control");
     // The maximum of a complement is that of the least value.
-    std::array<std::uint64_t, 16> values = {~control.first_failure,
-                                            control.next_rate,
-                                            static_cast<std::uint64_t>(control.pressure_failed),
-                                            static_cast<std::uint64_t>(control.failed_side),
-                                            control.eddy_viscosity,
-                                            control.side_acceleration[0],
-                                            control.side_acceleration[1],
-                                            control.side_acceleration[2],
-                                            control.viscous_acceleration,
-                                            control.change};
-    for (std::size_t c = 0; c < 3; ++c)
-      values[10 + c] = control.highest[c], values[13 + c] = control.lowest[c];
+    constexpr std::size_t maxima = sizeof(StepMaxima) / sizeof(std::uint64_t);
+    std::array<std::uint64_t, maxima + 3> values = {};
+    StepMaxima& largest = control;
+    std::memcpy(values.data(), &largest, sizeof(StepMaxima));
+    values[maxima] = ~control.first_failure;
+    values[maxima + 1] = static_cast<std::uint64_t>(control.pressure_failed);
+    values[maxima + 2] = static_cast<std::uint64_t>(control.failed_side);
     _group.maximize(values);
-    control.first_failure = ~values[0];
-    control.next_rate = values[1];
-    control.pressure_failed = static_cast<int>(values[2]);
-    control.failed_side = static_cast<int>(values[3]);
-    control.eddy_viscosity = values[4];
-    control.viscous_acceleration = values[8];
-    control.change = values[9];
-    for (std::size_t c = 0; c < 3; ++c) {
-      control.side_acceleration[c] = values[5 + c];
-      control.highest[c] = values[10 + c];
-      control.lowest[c] = values[13 + c];
-    }
+    std::memcpy(&largest, values.data(), sizeof(StepMaxima));
+    control.first_failure = ~values[maxima];
+    control.pressure_failed = static_cast<int>(values[maxima + 1]);
+    control.failed_side = static_cast<int>(values[maxima + 2]);
     if (checks_inflow && control.is_unbalanced == 0) {
       std::array<double, 2> inflow = {control.net_inflow, control.inflow_magnitude};
       _group.sum(inflow);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "kernels/device/relaxed_access.hpp"
 #include "kernels/flow/launch.hpp"
 #include "kernels/flow/observables/gradient.hpp"
 #include "kernels/flow/views.hpp"
@@ -111,9 +110,7 @@ struct EddyViscosityFunctor {
     centred_gradient(grid, velocity.data() + grid.offset(cell[0], cell[1], cell[2]), gradient);
     const double value = eddy_viscosity(model, gradient);
     viscosity(cells.nearest(cell)) = value;
-    // Few cells exceed the maximum so far: the load spares the others an atomic operation.
-    const auto bits = Kokkos::bit_cast<std::uint64_t>(value);
-    if (bits > device::relaxed_load(&c.eddy_viscosity)) Kokkos::atomic_max(&c.eddy_viscosity, bits);
+    raise(c.eddy_viscosity, Kokkos::bit_cast<std::uint64_t>(value));
   }
 };
 

@@ -219,9 +219,15 @@ void Simulation::sample_fields(Snapshot& snapshot) {
     if (is_canopy_field(name))
       sample_canopy_field(name, *values++);
     else
-      _solver->sample(cell_field(name), *values++);
+      sample_flow_field(cell_field(name), *values++);
   for (const SheetGrid& grid : _grids)
     if (grid.moves) sample_positions(grid, *values++);
+}
+
+/// As `flow::Solver::sample`. Throws `Failure` (numerical_failure) for a pressure that did not converge.
+void Simulation::sample_flow_field(CellField field, std::span<double> values) {
+  _solver->sample(field, values);
+  require_converged_pressure(field);
 }
 
 framework::FieldsTask Simulation::snapshot() {
@@ -235,6 +241,7 @@ framework::FieldsTask Simulation::snapshot() {
         } else {
           const run::FieldPlace place = fields.place(name);
           _shared->write(cell_field(name), place.offset, std::filesystem::absolute(place.file).string());
+          require_converged_pressure(cell_field(name));
         }
       for (const SheetGrid& grid : _grids) {
         if (!grid.moves) continue;

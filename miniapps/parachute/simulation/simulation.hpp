@@ -76,6 +76,9 @@ class Simulation final : public framework::Simulation {
   void append_flag_values(framework::HistoryRow& row);
   void append_canopy_columns(std::vector<run::Column>& columns) const;
   void append_canopy_values(framework::HistoryRow& row);
+  void sample_flow_field(flow::CellField field, std::span<double> values);
+  void require_converged_pressure(flow::CellField field);
+  [[nodiscard]] std::string residual_text(double residual) const;
   void sample_canopy_field(const std::string& name, std::vector<double>& values);
   void sample_positions(const SheetGrid& grid, std::vector<double>& values);
   [[nodiscard]] std::string failure_cause();

@@ -59,16 +59,32 @@ std::string Simulation::flow_failure_text() {
   if (!is_initial && !is_unstable && !outgrows) text << ", dt = " << failure.dt << " s";
   if (failure.reason == flow::FailureReason::net_inflow)
     text << ": " << failure.net_inflow << " m^3/s; grid.boundary needs an \"outflow\" side";
-  if (failure.reason == flow::FailureReason::pressure_solver) {
-    text.precision(3);
-    text << "; its relative residual is " << failure.pressure_residual
-         << ": it may with a flow.pressure_tolerance above "
-         << scene::real_text(_scene.parameters.pressure_tolerance);
-  }
+  if (failure.reason == flow::FailureReason::pressure_solver)
+    text << residual_text(failure.pressure_residual);
   if (failure.reason == flow::FailureReason::not_finite && !is_initial)
     text << "; a smaller " << step_key() << " may save the run";
   if (outgrows) text << "; a smaller run.max_dt may save the run";
   return text.str();
+}
+
+/// End of the message of a solve that did not converge, with its relative residual.
+std::string Simulation::residual_text(double residual) const {
+  std::ostringstream text;
+  text.precision(3);
+  text << "; its relative residual is " << residual << ": it may with a flow.pressure_tolerance above "
+       << scene::real_text(_scene.parameters.pressure_tolerance);
+  return text.str();
+}
+
+/// Throws `Failure` (numerical_failure) if `field` is the pressure, whose solve, the last one, did not
+/// converge.
+void Simulation::require_converged_pressure(flow::CellField field) {
+  const auto solve = _solver->last_pressure_solve();
+  if (field != flow::CellField::pressure || !solve || solve->residual <= _scene.parameters.pressure_tolerance)
+    return;
+  throw Failure(ExitCode::numerical_failure, flow::failure_text(flow::FailureReason::pressure_solver) +
+                                                 (" for the pressure at " + now_text()) +
+                                                 residual_text(solve->residual));
 }
 
 /// Last step that was taken, and its time.

@@ -253,6 +253,33 @@ TEST(FlowControl, ReportsAPressureSolverThatDoesNotConverge) {
   EXPECT_EQ(solver->advance(endless, 3, {}), Stop::failed);
   EXPECT_EQ(solver->failure().reason, FailureReason::pressure_solver);
 }
+
+TEST(FlowControl, FirstPressureOfImplicitDiffusionThatDoesNotConvergeFailsTheStart) {
+  testing::start_hypre();
+  // Only a force at right angles to two walls sets the fluid in motion, whose initial projection is exact.
+  Parameters p = periodic_box({12, 10, 9});
+  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::wall;
+  p.body_force = {0.0, -9.81, 0.0};
+  p.viscosity = 0.1;
+  time_integrations[2].set(p);
+  p.pressure_solver = PressureSolver::hypre_pfmg;
+  for (const double tolerance : {1e-10, 1e-300}) {
+    p.pressure_tolerance = tolerance;
+    const auto solver = started(backend, p, FlowDomain(p).zero_field());
+    const double residual = solver->last_pressure_solve()->residual;
+    if (tolerance == 1e-10) {
+      EXPECT_LT(residual, tolerance);
+      EXPECT_EQ(solver->advance(endless, 3, {}), Stop::pause);
+      continue;
+    }
+    ASSERT_GT(residual, tolerance);
+    EXPECT_EQ(solver->advance(endless, 3, {}), Stop::failed);
+    EXPECT_EQ(solver->failure().reason, FailureReason::pressure_solver);
+    EXPECT_EQ(solver->failure().step, 1);
+    EXPECT_EQ(solver->failure().pressure_residual, residual);
+    EXPECT_TRUE(std::isnan(solver->failure().dt));  // before any step
+  }
+}
 #endif
 
 TEST(FlowControl, ReportsTheFirstCellOfAnInitialVelocityThatIsNotFinite) {

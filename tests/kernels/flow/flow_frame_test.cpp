@@ -1,5 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "kernels/reference/flow/momentum.hpp"
 #include "tests/support/typed_flow.hpp"
 
 // Changes of the frame of reference.
@@ -14,39 +19,118 @@ namespace {
 using namespace drogue::testing;  // NOLINT: helpers of these tests
 using reference::GridIndex;
 
-TEST(FlowFrame, RatesOnOutflowsChangeByUpwindDifferences) {
-  Parameters p = periodic_box({9, 8, 7});
-  p.boundary[0].kind = p.boundary[1].kind = BoundaryKind::outflow;
-  p.time_scheme = TimeScheme::ab2;
-  TypedFlow<DROGUE_TEST_SPACE> grid(p, 21);
-  ASSERT_EQ(grid.solver.advance(endless, 1, {}), Stop::pause);
-  const FlowDomain& domain = grid.domain;
-  const StaggeredField u = grid.arrays(StateField::velocity_x), old = grid.arrays(StateField::rate_x);
-  constexpr double shift = 0.3;
-  grid.solver.change_frame({shift, 0.0, 0.0});
-  const StaggeredField moved = grid.arrays(StateField::velocity_x), rate = grid.arrays(StateField::rate_x);
-  const double h = domain.spacing(0);
-  int outgoing = 0, incoming = 0;
-  const auto at = [&](const StaggeredField& field, int i, const GridIndex& face) {
-    return field[0][domain.at(0, {i, face[1], face[2]})];
-  };
-  domain.for_each_face([&](std::size_t c, const GridIndex& face) {
-    const std::size_t here = domain.at(c, face);
-    EXPECT_NEAR(moved[c][here], u[c][here] - (c == 0 ? shift : 0.0), 1e-15);
-    if (c != 0) return;
-    const int i = face[0], n = p.cells[0];
-    double slope = 0.0;
-    if (i > 0 && i < n) {
-      slope = (at(u, i + 1, face) - at(u, i - 1, face)) / (2.0 * h);
-    } else {
-      const bool leaves = i == 0 ? u[0][here] < 0.0 : u[0][here] > 0.0;
-      ++(leaves ? outgoing : incoming);
-      if (leaves) slope = (i == 0 ? at(u, 1, face) - u[0][here] : u[0][here] - at(u, n - 1, face)) / h;
+TEST(FlowFrame, RatesOfThePreviousStepBecomeThoseOfTheNewFrame) {
+  constexpr std::array<double, 3> frame = {0.3, -0.4, 0.0};
+  for (const TimeIntegration& integration : time_integrations)
+    for (const Advection advection : {Advection::central, Advection::weno_z}) {
+      if (integration.time != TimeScheme::ab2) continue;
+      Parameters p = periodic_box({9, 8, 7});
+      for (const std::size_t side : {0U, 1U, 2U}) p.boundary[side].kind = BoundaryKind::outflow;
+      p.boundary[3].kind = BoundaryKind::inflow;
+      p.boundary[3].velocity = {0.2, -0.1, 0.3};
+      p.boundary[1].velocity = {-0.5, 0.1, -0.2};
+      p.viscosity = 0.02;
+      p.advection = advection;
+      integration.set(p);
+      TypedFlow<DROGUE_TEST_SPACE> flow(p, 21);
+      ASSERT_EQ(flow.solver.advance(endless, 1, {}), Stop::pause);
+      const StaggeredField u = flow.velocity(), old = flow.arrays(StateField::rate_x);
+      flow.solver.change_frame(frame);
+      const StaggeredField moved = flow.velocity(), rate = flow.arrays(StateField::rate_x);
+      Parameters moving = p;
+      if (integration.diffusion == Diffusion::crank_nicolson) p.viscosity = moving.viscosity = 0.0;
+      for (Boundary& side : moving.boundary)
+        for (std::size_t c = 0; c < 3; ++c) side.velocity[c] -= frame[c];
+      const StaggeredField before = reference::momentum_rate(FlowDomain(p), u, 0.0),
+                           after = reference::momentum_rate(FlowDomain(moving), moved, 0.0);
+      int entering = 0;
+      flow.domain.for_each_face([&](std::size_t c, const GridIndex& face) {
+        const std::size_t here = flow.domain.at(c, face);
+        EXPECT_NEAR(moved[c][here], u[c][here] - frame[c], 1e-15);
+        const int side = flow.domain.side_of(c, face);
+        if (side == 3) return;
+        EXPECT_NEAR(rate[c][here] - old[c][here], after[c][here] - before[c][here], 1e-11) << side;
+        if (side >= 0 && (side % 2 == 0) == (moved[c][here] > 0.0)) ++entering;
+      });
+      EXPECT_GT(entering, 30);
     }
-    EXPECT_NEAR(rate[0][here] - old[0][here], shift * slope, 1e-13) << i;
+}
+
+/// Frames that the tests below pass through, m/s, for a quarter of a second each.
+constexpr double frames[] = {-0.5, -1.5, -0.3, -0.9};
+
+/// Velocity after all frames of a flow that starts from `initial`, m/s.
+StaggeredField after_all_frames(const Parameters& p,
+                                const std::function<double(std::size_t, double)>& initial) {
+  TypedFlow<DROGUE_TEST_SPACE> flow(p, 23);
+  const StaggeredField u = sampled_field(flow.domain, [&](std::size_t c, const reference::Point& at) {
+    return initial(c, at[0] + 2.0 * at[1]);
   });
-  EXPECT_GT(outgoing, 10);
-  EXPECT_GT(incoming, 10);
+  for (std::size_t c = 0; c < 3; ++c) flow.solver.upload(static_cast<StateField>(c), u[c]);
+  flow.solver.start();
+  double end = 0.0;
+  for (const double speed : frames) {
+    flow.solver.change_frame({speed, 0.5 * speed, 0.0});
+    EXPECT_EQ(flow.solver.advance(end += 0.25, -1, {}), Stop::target);
+  }
+  return flow.velocity();
+}
+
+/// Orders of the errors of three steps, each half of the one before.
+void expect_order(const Parameters& p, const std::vector<double>& errors) {
+  for (std::size_t i = 1; i < errors.size(); ++i)
+    EXPECT_GT(std::log2(errors[i - 1] / errors[i]), p.time_scheme == TimeScheme::rk3 ? 2.8 : 1.8)
+        << errors[i - 1] << " " << errors[i] << " diffusion " << static_cast<int>(p.diffusion);
+}
+
+TEST(FlowFrame, EnteringFluidIsOfTheOrderOfTheSchemeWhereFramesChange) {
+  // A body force f drives fluid that enters with the velocity V: du/dt = f - (u^2 - V^2) / (2 L).
+  constexpr double f = 0.5, length = 2.0;
+  double exact = 0.0, last = 0.0;
+  for (const double speed : frames) {
+    exact -= speed - last;
+    last = speed;
+    const double limit = std::sqrt(2.0 * f * length + speed * speed),
+                 growth = std::tanh(0.25 * limit / (2.0 * length));
+    exact = limit * (exact + limit * growth) / (limit + exact * growth);
+  }
+  for (const TimeIntegration& integration : time_integrations) {
+    Parameters p = periodic_box({16, 4, 1});
+    p.high[0] = length;
+    p.body_force[0] = f;
+    p.viscosity = 0.02;
+    integration.set(p);
+    for (const std::size_t side : {0U, 1U}) p.boundary[side].kind = BoundaryKind::outflow;
+    std::vector<double> errors;
+    for (const double dt : {0.25 / 16.0, 0.25 / 32.0, 0.25 / 64.0}) {
+      p.fixed_dt = dt;
+      std::vector<double> u = after_all_frames(p, [](std::size_t, double) { return 0.0; })[0];
+      for (double& value : u) value -= exact;
+      errors.push_back(largest(u));
+    }
+    expect_order(p, errors);
+  }
+}
+
+TEST(FlowFrame, DisturbedStreamsAreOfTheOrderOfTheSchemeWhereFramesChange) {
+  for (const TimeIntegration& integration : time_integrations) {
+    Parameters p = periodic_box({12, 10, 1});
+    p.viscosity = 0.01;
+    p.advection = Advection::central;
+    integration.set(p);
+    for (const std::size_t side : {0U, 1U, 2U, 3U}) p.boundary[side].kind = BoundaryKind::outflow;
+    const auto velocity = [&](double dt) {
+      p.fixed_dt = dt;
+      return after_all_frames(p, [](std::size_t c, double place) {
+        return c == 2 ? 0.0 : 0.1 * std::sin(3.0 * place + static_cast<double>(c));
+      });
+    };
+    const StaggeredField exact = velocity(0.25 / 512.0);
+    std::vector<double> errors;
+    for (const double dt : {0.25 / 32.0, 0.25 / 64.0, 0.25 / 128.0})
+      errors.push_back(rms_difference(velocity(dt), exact));
+    expect_order(p, errors);
+  }
 }
 
 TEST(FlowFrame, FluidAtRestBetweenOutflowsStaysAtRest) {

@@ -78,6 +78,25 @@ TEST(FlowMotion, StepsEndJustBeforeAJumpAndAreBoundByTheSpeedAfterIt) {
     }
 }
 
+TEST(FlowMotion, StepsEndWhereMotionBeginsAfterRest) {
+  const auto intervals = divided([](double t) { return t < 0.3 ? 0.0 : 0.2 * (t - 0.3); }, 1.0, {0.3});
+  const auto count = static_cast<int>(intervals.size());
+  std::vector<double> begins;
+  for (const MotionInterval& interval : intervals)
+    if (interval.begins_with != 0) begins.push_back(interval.begin);
+  ASSERT_EQ(begins, std::vector<double>{0.3});
+  const auto bound = [&](double time, double dt) {
+    return stepping::bound_by_motion(intervals.data(), count, time, dt, 1e3);
+  };
+  EXPECT_EQ(bound(0.1, 0.5).jump, 0.3);
+  EXPECT_FALSE(bound(0.1, 0.5).follows_jump);
+  for (const double time : {0.3 * (1.0 - 1e-15), 0.3, 0.3 * (1.0 + 1e-15)}) {
+    EXPECT_TRUE(bound(time, 0.5).follows_jump) << time;
+    EXPECT_GT(bound(time, 0.5).jump, 1.0) << time;
+  }
+  EXPECT_FALSE(bound(0.31, 0.5).follows_jump);
+}
+
 TEST(FlowMotion, FindsAShortPulseByTheConstantsOfItsExpression) {
   // A ten-thousandth of the run.
   const auto pulse = [](double t) { return t > 1.23 && t < 1.2304 ? 9.0 : 0.0; };
