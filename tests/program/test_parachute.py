@@ -1149,15 +1149,22 @@ class Restart(parachute_program.FlowTest):
 
     def test_finished_run_continues_to_a_later_end_time(self):
         """It equals a run with an output at the former end bit for bit, which ends its steps there too."""
-        for name, text, half, end, more in (
-                ("flow", GUST, 0.3, 0.7, ()), ("implicit", GUST, 0.3, 0.7, ("flow.diffusion=crank-nicolson", "flow.time=ab2")),
-                ("canopy", CANOPY, 0.1, 0.2, ("coupling.contact=true",)), ("cloth", CLOTH, 0.1, 0.2, ())):
+        interval = "from=0,to=0.2"
+        area, target = f"projected_area=[{{{interval},value=1,tolerance=9}}]", f"{interval},value=1,tolerance=1e9"
+        means = f"{area},drag=[{{{target}}}],terminal_speed=[{{{target}}}],leak=[{{{interval},tolerance=9}}],force_balance=1e-14"
+        for name, text, half, end, more, checks in (
+                ("flow", GUST, 0.3, 0.7, (), ""),
+                ("implicit", GUST, 0.3, 0.7, ("flow.diffusion=crank-nicolson", "flow.time=ab2"), ""),
+                ("canopy", CANOPY, 0.1, 0.2, ("coupling.contact=true",), means),
+                ("cloth", CLOTH, 0.1, 0.2, (), f"{area},energy_drift=1,peak_force=[{{force=[0,1e9]}}]")):
             with self.subTest(name):
                 fields = "position" if name in ("canopy", "cloth") else "velocity"
-                scene, sets = self.write(text), [*more, "verify={}", f"output={{history_every=7,fields=['{fields}'],times=[{half}]}}"]
-                later = [*sets, f"output.times=[{half}, {end}]", f"run.end_time={end}"]
+                scene, sets = self.write(text), [*more, f"output={{history_every=7,fields=['{fields}'],times=[{half}]}}"]
+                # The interval ends after the first end.
+                first = checks.replace("to=0.2", f"to={half}")
+                later = [*sets, f"output.times=[{half}, {end}]", f"run.end_time={end}", f"verify={{{checks}}}"]
                 words = ["--quiet", "--backend", "serial", "--out"]
-                self.expect(0, scene, *words, "part", "--overwrite", sets=[*sets, f"run.end_time={half}"])
+                self.expect(0, scene, *words, "part", "--overwrite", sets=[*sets, f"run.end_time={half}", f"verify={{{first}}}"])
                 self.expect(0, scene, *words, "part", "--restart", "auto", sets=later)
                 self.expect(0, scene, *words, "whole", "--overwrite", sets=later)
                 self.assert_same_runs()

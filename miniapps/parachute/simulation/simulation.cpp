@@ -65,7 +65,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
                               scene.parameters.viscosity, scene.flags)),
       _grids(grids_beside_canopies(scene, _sheets)),
-      _record(scene) {
+      _record(scene, scene.has_sheets()) {
   if (settings.communicator != nullptr) {
     if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
       throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
@@ -82,7 +82,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     _solver = flow::create_solver(settings.backend, scene.parameters);
   }
   for (const Body& body : scene.bodies) _inside.emplace_back(body, scene.parameters);
-  if (_coupled != nullptr) _coupled->watch_pulls(pulls_on_payloads(_sheets));
+  if (_coupled != nullptr) _record.watch(*_coupled, _sheets);
   if (_shared != nullptr) return;
   for (Snapshot& snapshot : _snapshots)
     for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));

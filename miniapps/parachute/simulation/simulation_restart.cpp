@@ -46,8 +46,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
     writer.array("face_acceleration", faces.size());
     writer.write("face_acceleration", 0, faces);
   }
-  _record.set_peaks(_coupled->peak_pulls());
-  _record.write(writer);
+  _record.write(writer, *_coupled);
   const coupling::BlockProgress& block = state.block;
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
@@ -75,8 +74,8 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   if (!state.defect.empty()) read("defect", state.defect);
   if (_scene.is_explicit()) read("sheet_force", state.forces);
   if (!state.face_acceleration.empty()) reader.read("face_acceleration", 0, state.face_acceleration);
-  _record.read(reader);
-  _coupled->set_peak_pulls(_record.peaks());
+  const auto [step, time] = now();
+  _record.read(reader, step, time, *_coupled);
   state.block = {reader.number("block_dt"),     reader.integer("block_substeps"),
                  reader.integer("block_end"),   reader.integer("block_cloth_step"),
                  reader.integer("block_since"), reader.number("block_start")};

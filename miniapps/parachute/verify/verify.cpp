@@ -215,7 +215,7 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
                             !wanted.flow_rates.empty();
   if (needs_totals) check_totals(result);
   check_forces(result);
-  if (_coupled != nullptr) _record.set_peaks(_coupled->peak_pulls());
+  if (_coupled != nullptr) _record.update_peaks(*_coupled);
   check_canopies(wanted, _record, result);
   check_curves(directory, result);
   check_force_history(directory, result);
