@@ -65,6 +65,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
                               scene.parameters.viscosity, scene.flags)),
       _grids(grids_beside_canopies(scene, _sheets)),
+      _statistics(scene.parameters.watches_extremes),
       _record(scene, scene.has_sheets()) {
   if (settings.communicator != nullptr) {
     if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
@@ -163,7 +164,6 @@ std::vector<run::Column> Simulation::history_columns() const {
 
 framework::HistoryRow Simulation::row() {
   const flow::Totals now = _solver->totals();
-  _statistics.add(now);
   framework::HistoryRow row = {now.time,
                                {static_cast<double>(now.step), now.dt, now.kinetic_energy, now.enstrophy,
                                 now.dissipation, now.momentum[0], now.momentum[1], now.momentum[2],

@@ -94,7 +94,7 @@ void Simulation::write_restart(run::RestartWriter& writer) {
   visit(
       progress, [&](const std::string& name, double value) { writer.number(name, value); },
       [&](const std::string& name, auto value) { writer.integer(name, std::bit_cast<std::int64_t>(value)); });
-  _statistics.write(writer);
+  _statistics.write(writer, *_solver);
   if (_coupled != nullptr) write_coupling(writer);
   std::vector<double> values;
   for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
@@ -113,7 +113,6 @@ void Simulation::restore(const run::RestartReader& reader) {
       [&](const std::string& name, auto& value) {
         value = std::bit_cast<std::remove_reference_t<decltype(value)>>(reader.integer(name));
       });
-  _statistics.read(reader);
   std::vector<double> values;
   for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
     values.resize(flow::state_size(_scene.parameters, field));
@@ -121,6 +120,7 @@ void Simulation::restore(const run::RestartReader& reader) {
     _solver->upload(field, values);
   }
   _solver->restore(progress);
+  _statistics.read(reader, *_solver);
   if (_coupled != nullptr) read_coupling(reader);
   static_cast<void>(_solver->totals());
   sample_fields(_snapshots[0]);

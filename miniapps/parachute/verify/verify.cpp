@@ -102,7 +102,7 @@ std::map<std::string, double> Simulation::error_norms() {
 void Simulation::check_totals(run::ResultDocument& result) {
   const Verify& wanted = _scene.verify;
   const flow::Totals totals = _solver->totals();
-  _statistics.add(totals);
+  _statistics.update(_solver->extremes());
   result.metrics.set("pressure", "divergence_rms", totals.divergence_rms);
   if (wanted.divergence) result.add_check("divergence", totals.divergence_rms, *wanted.divergence);
   if (wanted.momentum) {
