@@ -128,8 +128,7 @@ void declare_peak_force(Table& table, CanopyPeak& peak) {
 void declare_canopy_checks(Table& table, Verify& verify) {
   table.tables(
       "drag", verify.drags, [](Table& drag, CanopyMean& value) { declare_canopy_mean(drag, value, "1"); },
-      "Mean drag coefficients 2 F / (rho U^2 S0) of canopies over rows of the history, with the area S0 of "
-      "the flat cloth");
+      "Mean drag coefficients 2 F / (rho U^2 S0) of canopies over rows, S0 the area of the flat cloth");
   table.tables(
       "terminal_speed", verify.terminal_speeds,
       [](Table& speed, CanopyMean& value) { declare_canopy_mean(speed, value, "m/s"); },
@@ -151,8 +150,7 @@ void declare_canopy_checks(Table& table, Verify& verify) {
                    "Largest ratio of the root mean square that passes")
             .at_least(0.0);
       },
-      "Mean flow through canopies over the mean speed far upstream and the mean projected area, all over "
-      "rows of the history");
+      "Mean flow through canopies over mean speed far upstream and mean projected area, means over rows");
   table.tables("peak_force", verify.peak_forces, declare_peak_force,
                "Largest forces of the lines on payloads after any step");
   table

@@ -46,6 +46,12 @@ void CanopyRecord::add(std::int64_t step, double time, const std::vector<CanopyM
   }
 }
 
+std::size_t CanopyRecord::rows(double from, double to) const {
+  std::size_t count = 0;
+  for (std::size_t row = 0; row < rows(); ++row) count += at(row, 0) >= from && at(row, 0) <= to ? 1 : 0;
+  return count;
+}
+
 template <class Value>
 double CanopyRecord::mean_of(const Value& value, double from, double to) const {
   double integral = 0.0, first = std::numeric_limits<double>::quiet_NaN(), last = first;

@@ -58,6 +58,10 @@ class CanopyRecord {
   /// Root mean square of the leak, likewise: in and out add up.
   [[nodiscard]] double relative_leak_rms(std::size_t canopy, double from, double to) const;
 
+  /// Number of rows, also of those in [from, to], s. Does not throw.
+  [[nodiscard]] std::size_t rows() const { return _values.size() / _columns; }
+  [[nodiscard]] std::size_t rows(double from, double to) const;
+
   /// Largest force of the lines on each payload in all steps up to the last update. Does not throw.
   [[nodiscard]] const std::vector<fabric::PeakPull>& peaks() const { return _peaks; }
 
@@ -99,7 +103,6 @@ class CanopyRecord {
     const int every = _scene.output.history_every;
     return (every > 0 && step % every == 0) || time >= _scene.end_time;
   }
-  [[nodiscard]] std::size_t rows() const { return _values.size() / _columns; }
   [[nodiscard]] double at(std::size_t row, std::size_t column) const {
     return _values[row * _columns + column];
   }

@@ -151,6 +151,9 @@ void Simulation::check_force_history(const run::RunDirectory* directory, run::Re
       const double value = measure(history.at(force_column(window.body, window.axis)), window);
       result.metrics.set("forces", name + "_" + std::to_string(i), value);
       check_target(result, name + "_" + std::to_string(i), value, window.target);
+      const double period =
+          name == "frequency" ? rows_in_period(time, window.from, value / window.reference) : 0.0;
+      result.state_rows(rows_from(time, window.from), period);
     }
   };
   check("mean_force", wanted.mean_forces, [&](const std::vector<double>& force, const ForceWindow& window) {
@@ -172,6 +175,7 @@ void Simulation::check_curves(const run::RunDirectory* directory, run::ResultDoc
       for (const auto& [at, value] : curves[i].points)
         largest = run::maximum_or_nan(largest, std::abs(measure(interpolate_rows(time, energy, at)) - value));
       result.add_check(name + "_" + std::to_string(i), largest / curves[i].scale(), curves[i].tolerance);
+      result.state_rows(time.size());
     }
   };
   check("kinetic_energy_curve", wanted.kinetic_energy_curves,

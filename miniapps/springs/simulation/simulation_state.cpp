@@ -192,6 +192,7 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
     if (const std::optional<EnergyLoss> loss = energy_loss(history)) {
       set("lost", loss->energy);
       set("lost_share", loss->share);
+      result.metrics.set("energy", "lost_rows", static_cast<std::int64_t>(history.at("time").size()));
     }
   set("potential", now.potential);
   springs_app::verify(_scene, final_state(), history, result);

@@ -200,6 +200,8 @@ TEST(CanopyRecord, HasTheRowsOfARunWithoutInterruption) {
   record.add(5, 2.0, {measures_of(1e6, -2.0, 0.0)}, 0.0, 0.0);  // the state that a run continues from
   record.add(7, 3.0, {measures_of(50.0, -2.0, 0.0)}, 0.0, 0.0);
   EXPECT_NEAR(record.mean_drag(0, 0.0, 3.0), 1.5, 1e-14);
+  EXPECT_EQ(record.rows(), 2U);
+  EXPECT_EQ(record.rows(1.5, 3.0), 1U);
 }
 
 TEST(CanopyRecord, LeakIsThatOfAnIntervalRelativeToTheStream) {
