@@ -31,6 +31,7 @@ Json checks_json(const std::vector<Check>& checks) {
                     {"value", number(check.value)},
                     {"tolerance", number(check.tolerance)},
                     {"passed", check.passed}});
+    if (check.rows) json.back()["rows"] = *check.rows;
   }
   return json;
 }
@@ -144,6 +145,23 @@ bool ResultDocument::add_check(const std::string& name, double value, double tol
   return passed;
 }
 
+void ResultDocument::state_rows(std::size_t rows, double period) {
+  constexpr std::size_t least_rows = 10;
+  constexpr double least_in_period = 8.0;
+  checks.back().rows = static_cast<std::int64_t>(rows);
+  const bool is_coarse = period > 0.0 && period < least_in_period;
+  if (rows >= least_rows && !is_coarse) return;
+  char text[256];
+  if (is_coarse)
+    std::snprintf(text, sizeof text, "%s is computed from %.2g rows of history.csv in a period",
+                  checks.back().name.c_str(), period);
+  else
+    std::snprintf(text, sizeof text, "%s is computed from %zu rows of history.csv",
+                  checks.back().name.c_str(), rows);
+  warnings.push_back(std::string(text) +
+                     ", which may miss what lies between them; a smaller output.history_every has more");
+}
+
 std::string ResultDocument::failed_check() const {
   const auto failed =
       std::find_if(checks.begin(), checks.end(), [](const Check& check) { return !check.passed; });
@@ -201,6 +219,7 @@ std::string to_json(const ResultDocument& result) {
   json["dt_max"] = number(result.dt_max);
   json["errors"] = numbers_json(result.errors);
   json["checks"] = checks_json(result.checks);
+  if (!result.warnings.empty()) json["warnings"] = result.warnings;
   for (const Metrics::Group& group : result.metrics.groups())
     if (!group.values.empty()) json[group.name] = group_json(group);
   json["timing"] = timing_json(result.timing);

@@ -28,6 +28,7 @@ struct Check {
   bool passed = false;
   /// Quantity whose deviation from a target is `value`. The summary of a run has it, result.json has not.
   std::optional<Measurement> measurement = {};
+  std::optional<std::int64_t> rows = {};  ///< of history.csv from which it is computed, if from some
 
   /// Measurement as text: "3327.1 in [2670, 3560]", "1551.2 not in [2670, 3560]" or "not measured", if it is
   /// not a number; empty without one.
@@ -78,7 +79,8 @@ struct ResultDocument {
   double dt_min = 0.0, dt_max = 0.0;  ///< s
   std::map<std::string, double> errors;
   std::vector<Check> checks;
-  Metrics metrics;  ///< limiter counts, energies and the like, after `checks`
+  std::vector<std::string> warnings;  ///< sentences on numbers that are not to be trusted
+  Metrics metrics;                    ///< limiter counts, energies and the like, after `checks`
   /// Parts of the wall time, s, which do not overlap: `wall_s` is their sum.
   struct WallTimes {
     double wall_s = 0;
@@ -114,6 +116,10 @@ struct ResultDocument {
   /// Adds a check. Returns true if it passed; NaN fails.
   bool add_check(const std::string& name, double value, double tolerance,
                  const std::optional<Measurement>& measurement = {});
+
+  /// States from how many rows of history.csv the last check is computed, and warns of few. `period`: rows in
+  /// a period of an oscillation, or 0.
+  void state_rows(std::size_t rows, double period = 0.0);
 
   /// One sentence on the first failed check; empty if all passed.
   [[nodiscard]] std::string failed_check() const;

@@ -17,6 +17,7 @@
 #include "kernels/flow/boundary/side_motion.hpp"
 #include "kernels/flow/diffusion/implicit_diffusion.hpp"
 #include "kernels/flow/halo/halo.hpp"
+#include "kernels/flow/observables/extremes.hpp"
 #include "kernels/flow/observables/sample.hpp"
 #include "kernels/flow/observables/totals.hpp"
 #include "kernels/flow/projection/net_inflow.hpp"
@@ -134,6 +135,11 @@ class FlowSolver {
   [[nodiscard]] Progress progress() { return read_control().now; }
   [[nodiscard]] StepFailure failure();
   [[nodiscard]] Totals totals();
+  [[nodiscard]] Extremes extremes() const { return _extremes ? _extremes->read(space()) : Extremes{}; }
+  void set_extremes(const Extremes& extremes) const {
+    if (!_extremes) throw std::invalid_argument("flow solver: no extremes are watched");
+    _extremes->write(space(), extremes);
+  }
   void sample(CellField field, std::span<double> values);
   [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
   [[nodiscard]] const char* pressure_solver() const { return _pressure_equation->name(); }
@@ -168,6 +174,14 @@ class FlowSolver {
                      double time_fraction) const;
   [[nodiscard]] MomentumSetup<ExecutionSpace> momentum_setup(double nu) const;
   void enqueue_step(const ExecutionSpace& space) const;
+  /// Compares the state with the extremes of the steps so far, if they are watched.
+  void enqueue_extremes(const ExecutionSpace& space) const {
+    if (!_extremes) return;
+    finish_ghosts(space, _velocity);
+    _extremes->enqueue(space, _velocity, _control, [&](const EnergyView<ExecutionSpace>& whole) {
+      if (_halo) _halo->combine(space, whole);
+    });
+  }
   void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                      const Values& result, double fraction, double time_fraction) const;
   [[nodiscard]] ProjectionSetup<ExecutionSpace> projection_setup(double fraction) const;
@@ -204,6 +218,7 @@ class FlowSolver {
   Values _pressure_increment;                  ///< empty with explicit diffusion, which needs no increments
   Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
   std::optional<TotalsSum<ExecutionSpace>> _totals_sum;
+  std::optional<StepExtremes<ExecutionSpace>> _extremes;  ///< if they are watched
   ControlView<ExecutionSpace> _control;
   mutable std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
   mutable std::optional<PressureEquation<ExecutionSpace>> _pressure_equation;
@@ -245,6 +260,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
     _diffusion.emplace(space(), parameters, group, _ranks);
   }
   _totals_sum.emplace(_grid, _predicted);
+  if (parameters.watches_extremes) _extremes.emplace(_grid, parameters.density);
   if (parameters.turbulence != Turbulence::none) {
     _eddy_model = make_eddy_model(parameters, _grid);
     _eddy_cells = make_eddy_cells(_grid, _boundary.conditions().kind);
@@ -451,6 +467,9 @@ void FlowSolver<ExecutionSpace>::start() {
   }
   _last_solution_is_pressure = false;
   _loop.status_view()().step = 0;
+  if (!_extremes) return;
+  set_extremes({});
+  enqueue_extremes(space());
 }
 
 /// Bound of the first dt, s, where the velocity of the start sets none: by what sides of constant velocity
@@ -757,6 +776,7 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
   if (_halo) _halo->agree(space, _control, _checks_inflow);
   Kokkos::parallel_for("drogue::flow::finish_step", one_thread(space),
                        FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
+  enqueue_extremes(space);
 }
 
 /// Eddy viscosity of a velocity field, if there is a model. That of the state is evaluated at the end of a

@@ -116,6 +116,7 @@ struct Parameters {
   /// this time that follows their expressions. Needed with such sides unless `fixed_dt` or `max_dt` is given.
   double horizon = 0.0;
   std::vector<stepping::MotionInterval> motion;  ///< other prescribed motion that limits dt, or empty
+  bool watches_extremes = false;  ///< every step takes part in `Extremes`, which costs some kernels
   Driver driver = Driver::automatic;
   /// Threads of a team of momentum stage and pressure correction on a device, a multiple of 32 up to 512; 0:
   /// 128.

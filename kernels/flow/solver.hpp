@@ -53,6 +53,13 @@ class Solver {
   /// Sums over the present state. The order of summation does not depend on the backend.
   [[nodiscard]] virtual Totals totals() = 0;
 
+  /// Extremes over all steps since `start`, with `Parameters::watches_extremes`; none without.
+  [[nodiscard]] virtual Extremes extremes() = 0;
+
+  /// Restores the extremes, after `restore`; on a group of several ranks those of this one. Throws
+  /// std::invalid_argument if they are not watched.
+  virtual void set_extremes(const Extremes& extremes) = 0;
+
   /// Field at the cell centres, in the SI unit that `CellField` states, in the order of an array of shape
   /// (nx, ny, nz) or (nx, ny, nz, 3) whose last index varies fastest. Throws std::invalid_argument for a span
   /// of the wrong length.

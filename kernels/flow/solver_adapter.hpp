@@ -22,6 +22,8 @@ class SolverAdapter final : public Solver {
   Progress progress() override { return _solver.progress(); }
   StepFailure failure() override { return _solver.failure(); }
   Totals totals() override { return _solver.totals(); }
+  Extremes extremes() override { return _solver.extremes(); }
+  void set_extremes(const Extremes& extremes) override { _solver.set_extremes(extremes); }
   void sample(CellField field, std::span<double> values) override { _solver.sample(field, values); }
   [[nodiscard]] const char* driver() const override { return _solver.driver(); }
   [[nodiscard]] const char* pressure_solver() const override { return _solver.pressure_solver(); }

@@ -83,4 +83,16 @@ struct Totals {
   double outflow[6] = {};
 };
 
+/// Extremes of kinetic energy and speed over all steps since the start.
+struct Extremes {
+  std::int64_t step = -1;         ///< last one that counts; -1: none
+  double time = 0.0;              ///< s, of it
+  double energy = 0.0;            ///< J, of it
+  double least_energy = 0.0;      ///< J
+  double largest_rise = 0.0;      ///< J, of the energy above its least value before
+  double largest_speed = 0.0;     ///< m/s, at cell centres
+  double peak_dissipation = 0.0;  ///< W, largest rate at which the energy fell in a step
+  double peak_time = 0.0;         ///< s, in the middle of that step
+};
+
 }  // namespace drogue::flow

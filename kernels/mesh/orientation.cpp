@@ -118,11 +118,18 @@ Orientation orientation_of(const Mesh& mesh) {
     // From a vertex of the part: far from the origin, the differences of large volumes would be lost.
     const Vector& origin =
         mesh.rest[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(part.first)][0])];
-    const auto& [a, b, c] = mesh.triangles[t];
-    const double six = triple(from_to(mesh, origin, a), from_to(mesh, origin, b), from_to(mesh, origin, c));
-    part.volume += (result.turned[t] != 0 ? -six : six) / 6.0;
+    const double volume = volume_between({&mesh.triangles[t], 1}, mesh.rest, origin);
+    part.volume += result.turned[t] != 0 ? -volume : volume;
   }
   return result;
+}
+
+double volume_between(std::span<const std::array<int, 3>> triangles, std::span<const Vector> x,
+                      const Vector& point) {
+  const auto from_point = [&](int vertex) { return difference(x[static_cast<std::size_t>(vertex)], point); };
+  double sum = 0.0;
+  for (const auto& [a, b, c] : triangles) sum += triple(from_point(a), from_point(b), from_point(c));
+  return sum / 6.0;
 }
 
 void turn(Mesh& mesh, const Orientation& orientation) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "kernels/mesh/mesh.hpp"
@@ -35,6 +36,11 @@ struct Orientation {
 /// Parts and sides of the triangles of a mesh, each edge of at most two of them. `volume` is that after the
 /// turns. Throws only std::bad_alloc.
 [[nodiscard]] Orientation orientation_of(const Mesh& mesh);
+
+/// Volume between triangles at the positions `x` of all vertices, m, and a point, m^3: positive where normals
+/// point away from it, and for a closed surface the enclosed one, whatever the point. Does not throw.
+[[nodiscard]] double volume_between(std::span<const std::array<int, 3>> triangles, std::span<const Vector> x,
+                                    const Vector& point);
 
 /// Exchanges two corners of each triangle that `orientation` turns. Does not throw.
 void turn(Mesh& mesh, const Orientation& orientation);

@@ -92,6 +92,8 @@ class SceneRun {
       const ScopedStopwatch stopwatch(_result.timing.verify_s);
       _result.exit_code = simulation->verify(&_directory, _result);
     }
+    if (!_options.quiet)
+      for (const std::string& warning : _result.warnings) print_notice(_app.program(), warning);
     if (_result.exit_code == ExitCode::interrupted)
       write_restart_file(_directory.file("restart.h5"), files.fingerprint, *simulation);
     if (const std::string failed = _result.failed_check(); !failed.empty())

@@ -1158,18 +1158,41 @@ class Restart(parachute_program.FlowTest):
 
     def test_finished_run_continues_to_a_later_end_time(self):
         """It equals a run with an output at the former end bit for bit, which ends its steps there too."""
-        for name, text, half, end, more in (
-                ("flow", GUST, 0.3, 0.7, ()), ("implicit", GUST, 0.3, 0.7, ("flow.diffusion=crank-nicolson", "flow.time=ab2")),
-                ("canopy", CANOPY, 0.1, 0.2, ("coupling.contact=true",)), ("cloth", CLOTH, 0.1, 0.2, ())):
+        growth, interval = "energy_growth=1e9,speed_growth=1e9,dissipation_peak={value=1,tolerance=1e9}", "from=0,to=0.2"
+        area, target = f"projected_area=[{{{interval},value=1,tolerance=9}}]", f"{interval},value=1,tolerance=1e9"
+        means = f"{area},drag=[{{{target}}}],terminal_speed=[{{{target}}}],leak=[{{{interval},tolerance=9}}],force_balance=1e-14"
+        for name, text, half, end, more, checks in (
+                ("flow", GUST, 0.3, 0.7, (), growth),
+                ("implicit", GUST, 0.3, 0.7, ("flow.diffusion=crank-nicolson", "flow.time=ab2"), growth),
+                ("canopy", CANOPY, 0.1, 0.2, ("coupling.contact=true",), f"{means},{growth}"),
+                ("cloth", CLOTH, 0.1, 0.2, (), f"{area},energy_drift=1,peak_force=[{{force=[0,1e9]}}]")):
             with self.subTest(name):
                 fields = "position" if name in ("canopy", "cloth") else "velocity"
-                scene, sets = self.write(text), [*more, "verify={}", f"output={{history_every=7,fields=['{fields}'],times=[{half}]}}"]
-                later = [*sets, f"output.times=[{half}, {end}]", f"run.end_time={end}"]
+                scene, sets = self.write(text), [*more, f"output={{history_every=7,fields=['{fields}'],times=[{half}]}}"]
+                # The interval ends after the first end.
+                first = checks.replace("to=0.2", f"to={half}")
+                later = [*sets, f"output.times=[{half}, {end}]", f"run.end_time={end}", f"verify={{{checks}}}"]
                 words = ["--quiet", "--backend", "serial", "--out"]
-                self.expect(0, scene, *words, "part", "--overwrite", sets=[*sets, f"run.end_time={half}"])
+                self.expect(0, scene, *words, "part", "--overwrite", sets=[*sets, f"run.end_time={half}", f"verify={{{first}}}"])
                 self.expect(0, scene, *words, "part", "--restart", "auto", sets=later)
                 self.expect(0, scene, *words, "whole", "--overwrite", sets=later)
                 self.assert_same_runs()
+
+    def test_extremes_are_those_of_all_steps_whatever_the_rows(self):
+        scene, found = self.write(GUST), {}
+        checks = "verify={energy_growth=1e9,speed_growth=1e9,dissipation_peak={value=1,tolerance=1e9,time=1,time_tolerance=1e9}}"
+        for every in (0, 1, 7):
+            self.expect(0, scene, *QUIET, "--overwrite", sets=[f"output={{history_every={every}}}", checks])
+            found[every] = {check["name"]: check["value"] for check in self.result("out")["checks"]}
+        self.assertEqual([found[1]] * 2, [found[0], found[7]])
+        self.expect(0, scene, *QUIET, "--overwrite", sets=["output={history_every=1}"])
+        rows = self.history("out")
+        self.assertAlmostEqual(max(rows["max_speed"]) / rows["max_speed"][0] - 1, found[0]["speed_growth"], delta=1e-12)
+        rises = [late - early for k, late in enumerate(rows["kinetic_energy"]) for early in rows["kinetic_energy"][:k]]
+        self.assertAlmostEqual(max(0, *rises) / rows["kinetic_energy"][0], found[0]["energy_growth"], delta=1e-12)
+        # A run that kept none has none for a part of it.
+        said = self.expect(6, scene, *QUIET, "--restart", "auto", sets=["run.end_time=0.9", checks]).stderr
+        self.assertIn("kept no extremes of its steps", said)
 
     def test_killed_run_equals_uninterrupted_run(self):
         self.compare(gas_program.threaded(), [], lambda process: process.kill(), -signal.SIGKILL)

@@ -505,6 +505,20 @@ class Failures(springs_program.SpringsTest):
                 self.assertLess(max(abs(a - b) for a, b in zip(rest, now)), 5e-6)
                 self.assertLess(abs(self.result("out")["energy"]["friction_work"]), 1e-7)
 
+    def test_checks_over_rows_state_how_many_and_warn_of_few(self):
+        words = ["--backend", "serial", "--out", "out", "--overwrite"]
+        for every, is_few in ((1, False), (100, True)):
+            sets = [f"output.history_every={every}", "verify={energy_drift=1}", "time.end_time=0.05", "output.times=[0.05]"]
+            process = gas_program.run(self.write(DRUM), *words, sets=sets, cwd=self.folder, program=self.program)
+            said = process.stderr
+            self.assertEqual(0, process.returncode, said)
+            result, rows = self.result("out"), len(self.history("out")["time"])
+            self.assertEqual([rows], [check["rows"] for check in result["checks"]])
+            self.assertEqual(is_few, rows < 10)
+            warning = f"energy_drift is computed from {rows} rows of history.csv, which may miss"
+            self.assertEqual(is_few, warning in said)
+            self.assertEqual(is_few, any(warning in sentence for sentence in result.get("warnings", [])))
+
     def test_states_the_energy_that_steps_lose(self):
         """A slack membrane that a constant pressure blows up: the default steps keep its energy, long Runge-Kutta steps do not."""
         blown = DRUM.replace("gravity = [0, 0, -9.81]", "follower_pressure = 200").replace("prestretch = 0.05\n", "") + "[material]\ntension_only = true\n"
@@ -516,6 +530,7 @@ class Failures(springs_program.SpringsTest):
         self.assertRegex(printed.splitlines()[0], r" of energy (lost|gained) \(\S+ %\)$")
         self.assertLess(abs(energy["lost_share"]), 0.01)
         self.assertEqual(energy["lost"], rows["energy"][0] - rows["energy"][-1])
+        self.assertEqual(len(rows["time"]), energy["lost_rows"])
         self.assertLess(abs(energy["lost_share"]), 1.0001 * self.result("out")["errors"]["energy_drift"])
         self.assertLess(min(rows["potential"]), -0.5)
         self.expect(0, scene, *words, sets=[*sets, "time.integrator=rk4", "time.safety=0.8"])

@@ -26,6 +26,8 @@ class SolverAdapter final : public Solver {
   flow::Progress progress() override { return _solver.flow().progress(); }
   flow::StepFailure failure() override { return _solver.flow().failure(); }
   flow::Totals totals() override { return _solver.flow().totals(); }
+  flow::Extremes extremes() override { return _solver.flow().extremes(); }
+  void set_extremes(const flow::Extremes& extremes) override { _solver.flow().set_extremes(extremes); }
   void sample(flow::CellField field, std::span<double> values) override {
     _solver.flow().sample(field, values);
   }

@@ -10,7 +10,7 @@
 #include "kernels/device/copy.hpp"
 #include "kernels/flow/halo/decomposition.hpp"
 #include "kernels/flow/halo/exchange.hpp"
-#include "kernels/flow/observables/totals.hpp"
+#include "kernels/flow/observables/extremes.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {
@@ -105,6 +105,21 @@ class Halo {
     }
     device::copy_in(space, view, &control, 1);
     space.fence("drogue::flow::halo: write control");
+  }
+
+  /// Gives all ranks the energies of all, in the order of the ranks. Blocks.
+  void combine(const ExecutionSpace& space, const EnergyView<ExecutionSpace>& whole) const {
+    std::array<double, 2> mine{};
+    device::copy_out(space, mine.data(), whole, 2);
+    space.fence("drogue::flow::halo: read energies");
+    const std::vector<double> all = _group.gather(mine);
+    mine = {};
+    for (std::size_t at = 0; at < all.size(); at += 2) {
+      mine[0] += all[at];
+      mine[1] = larger_or_nan(mine[1], all[at + 1]);
+    }
+    device::copy_in(space, whole, mine.data(), 2);
+    space.fence("drogue::flow::halo: write energies");
   }
 
   /// Combines the contributions of all ranks to the totals, in the order of the ranks, and adds those to the

@@ -32,10 +32,21 @@ template <class ExecutionSpace>
 using TotalsView =
     Kokkos::View<double* [total_count], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
 
+/// The larger of two values; a NaN stays. Does not throw.
+KOKKOS_INLINE_FUNCTION double larger_or_nan(double a, double b) { return (b <= a || a != a) ? a : b; }
+
 /// Combines contributions: adds the sums, keeps the larger maxima. A NaN stays.
 KOKKOS_INLINE_FUNCTION void combine_totals(double into[total_count], const double from[total_count]) {
   for (int q = 0; q < total_sums; ++q) into[q] += from[q];
-  for (int q = total_sums; q < total_count; ++q) into[q] = from[q] <= into[q] ? into[q] : from[q];
+  for (int q = total_sums; q < total_count; ++q) into[q] = larger_or_nan(into[q], from[q]);
+}
+
+/// Adds the parts that a component with these values at the faces of a cell, m/s, has in the kinetic energy
+/// per mass and the squared speed at the centre, m^2/s^2.
+KOKKOS_INLINE_FUNCTION void add_energy(double low, double high, double& energy, double& squared_speed) {
+  const double mean = 0.5 * (low + high);
+  energy += 0.25 * (low * low + high * high);
+  squared_speed += mean * mean;
 }
 
 /// Contributions of the cells of a column along z, in order, per unit density and cell volume.
@@ -64,8 +75,7 @@ struct ColumnTotalsFunctor {
     for (int c = 0; c < 3; ++c) {
       const double low = u[c * g.component], high = u[c * g.component + edge_step(g, c)],
                    mean = 0.5 * (low + high);
-      energy += 0.25 * (low * low + high * high);
-      squared_speed += mean * mean;
+      add_energy(low, high, energy, squared_speed);
       own[total_momentum_x + c] = mean;
       const double diagonal = staggered_derivative(g, u, c, c);
       divergence += diagonal;

@@ -24,11 +24,11 @@ auto members(IsMaybeConst<flow::Boundary> auto& side) {
 auto members(IsMaybeConst<flow::Parameters> auto& parameters) {
   auto& [cells, low, high, density, viscosity, boundary, body_force, pressure_drop, advection, time_scheme,
          diffusion, turbulence, turbulence_constant, pressure_solver, pressure_tolerance, external_force, cfl,
-         fixed_dt, max_dt, max_steps, horizon, motion, driver, block] = parameters;
+         fixed_dt, max_dt, max_steps, horizon, motion, watches_extremes, driver, block] = parameters;
   return std::tie(cells, low, high, density, viscosity, boundary, body_force, pressure_drop, advection,
                   time_scheme, diffusion, turbulence, turbulence_constant, pressure_solver,
                   pressure_tolerance, external_force, cfl, fixed_dt, max_dt, max_steps, horizon, motion,
-                  driver, block);
+                  watches_extremes, driver, block);
 }
 
 auto members(IsMaybeConst<mesh::Mesh> auto& mesh) {

@@ -117,6 +117,9 @@ class SharedSolver final : public coupling::Solver {
   [[nodiscard]] flow::Progress progress() override { return _own->solver().progress(); }
   [[nodiscard]] flow::StepFailure failure() override { return _own->solver().failure(); }
   [[nodiscard]] flow::Totals totals() override;
+  // All ranks have the same.
+  [[nodiscard]] flow::Extremes extremes() override { return _own->solver().extremes(); }
+  void set_extremes(const flow::Extremes& extremes) override { _own->solver().set_extremes(extremes); }
   void sample(flow::CellField field, std::span<double> values) override;
   [[nodiscard]] const char* driver() const override { return _own->solver().driver(); }
   [[nodiscard]] const char* pressure_solver() const override { return _own->solver().pressure_solver(); }

@@ -166,6 +166,9 @@ struct Verify {
   std::vector<ForceWindow> frequencies;  ///< of the force, times the reference, s
   std::vector<Profile> profiles;
   std::vector<Oscillation> oscillations;
+
+  /// True if a check needs `flow::Extremes`. Does not throw.
+  [[nodiscard]] bool needs_extremes() const { return energy_growth || speed_growth || dissipation_peak; }
 };
 
 /// Solver parameters for air at 15 degrees Celsius: 1.225 kg/m^3, 1.8e-5 Pa s. Does not throw.

@@ -367,6 +367,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   check_gravity(root, scene);
   complete_fields(root, scene);
   check_verify(root, scene);
+  p.watches_extremes = scene.verify.needs_extremes();
   check_initial(root, scene);
 }
 

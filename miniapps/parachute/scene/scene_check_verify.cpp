@@ -288,14 +288,9 @@ void check_verify(const Table& root, const FlowScene& scene) {
   const Verify& verify = scene.verify;
   if (verify.exact) check_exact(root, scene);
   if (verify.momentum) check_momentum(root, scene);
-  if (verify.energy_growth) require_rows(root, scene, "verify.energy_growth");
-  if (verify.speed_growth) require_rows(root, scene, "verify.speed_growth");
-  if (verify.dissipation_peak) {
-    require_rows(root, scene, "verify.dissipation_peak");
-    if (verify.dissipation_peak->target.value == 0.0)
-      contradict(root, "verify.dissipation_peak.value",
-                 "verify.dissipation_peak.value must not be 0: the tolerance is relative");
-  }
+  if (verify.dissipation_peak && verify.dissipation_peak->target.value == 0.0)
+    contradict(root, "verify.dissipation_peak.value",
+               "verify.dissipation_peak.value must not be 0: the tolerance is relative");
   if (verify.kinetic_energy && verify.kinetic_energy->value == 0.0)
     contradict(root, "verify.kinetic_energy.value",
                "verify.kinetic_energy.value must not be 0: the tolerance is relative");

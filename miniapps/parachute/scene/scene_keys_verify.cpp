@@ -128,15 +128,15 @@ void declare_peak_force(Table& table, CanopyPeak& peak) {
 void declare_canopy_checks(Table& table, Verify& verify) {
   table.tables(
       "drag", verify.drags, [](Table& drag, CanopyMean& value) { declare_canopy_mean(drag, value, "1"); },
-      "Mean drag coefficients 2 F / (rho U^2 S0) of canopies, with the area S0 of the flat cloth");
+      "Mean drag coefficients 2 F / (rho U^2 S0) of canopies over rows, S0 the area of the flat cloth");
   table.tables(
       "terminal_speed", verify.terminal_speeds,
       [](Table& speed, CanopyMean& value) { declare_canopy_mean(speed, value, "m/s"); },
-      "Mean speeds of the fluid far upstream relative to payloads");
+      "Mean speeds of the fluid far upstream relative to payloads over rows of the history");
   table.tables(
       "projected_area", verify.projected_areas,
       [](Table& area, CanopyMean& value) { declare_canopy_mean(area, value, "m^2"); },
-      "Mean areas of the shadows of canopies along z");
+      "Mean areas of the shadows of canopies along z over rows of the history");
   table.tables(
       "leak", verify.leaks,
       [](Table& leak, CanopyLeak& value) {
@@ -150,13 +150,13 @@ void declare_canopy_checks(Table& table, Verify& verify) {
                    "Largest ratio of the root mean square that passes")
             .at_least(0.0);
       },
-      "Mean flow through canopies over the mean speed far upstream and the mean projected area");
+      "Mean flow through canopies over mean speed far upstream and mean projected area, means over rows");
   table.tables("peak_force", verify.peak_forces, declare_peak_force,
-               "Largest forces of the lines on payloads in the rows of the history");
+               "Largest forces of the lines on payloads after any step");
   table
       .value("force_balance", scene::real_codec(verify.force_balance),
              "Largest difference of the total force on the grid from that of the sheets on the fluid that "
-             "passes, relative to the sum of the magnitudes")
+             "passes, relative to the sum of the magnitudes, at rows of the history")
       .at_least(0.0);
   table
       .value("intersections", scene::real_codec(verify.intersections),
@@ -203,7 +203,7 @@ void declare_oscillation(Table& table, Oscillation& oscillation) {
   table.optional_table(
       "amplitude", oscillation.amplitude,
       [deviation](Table& target, Target& value) { declare_target(target, value, "m", deviation); },
-      "Half of the difference of the largest and the least value");
+      "Half of the difference of the largest and the least value, each by a parabola through three rows");
 }
 
 }  // namespace
@@ -224,13 +224,12 @@ void declare_verify(Table& table, FlowScene& scene) {
       .at_least(0.0);
   table
       .value("energy_growth", scene::real_codec(verify.energy_growth),
-             "Largest rise of the kinetic energy between two rows of the history that passes, relative to "
-             "the initial "
-             "energy")
+             "Largest rise of the kinetic energy above its least value in the steps before that passes, "
+             "relative to the initial energy")
       .at_least(0.0);
   table
       .value("speed_growth", scene::real_codec(verify.speed_growth),
-             "Largest speed in any row of the history over the initial one, less 1, that passes")
+             "Largest speed after any step over the initial one, less 1, that passes")
       .at_least(0.0);
   const std::string deviation = "Largest relative deviation that passes";
   table.optional_table(
@@ -249,7 +248,7 @@ void declare_verify(Table& table, FlowScene& scene) {
             .when([&value] { return value.time.has_value(); }, "with time", "time")
             .required();
       },
-      "The largest rate at which the kinetic energy falls between two rows of the history");
+      "The largest rate at which the kinetic energy falls in a step");
   table.tables(
       "kinetic_energy_curve", verify.kinetic_energy_curves,
       [](Table& curve, Curve& value) { declare_curve(curve, value, "J", "kinetic energies"); },
@@ -290,9 +289,9 @@ void declare_verify(Table& table, FlowScene& scene) {
                        "Time that the frequency is multiplied by: width over speed for the Strouhal number",
                        "s");
       },
-      "Frequencies at which forces of the fluid on bodies cross their mean upwards");
+      "Frequencies at which forces of the fluid on bodies cross their mean upwards in rows of the history");
   table.tables("oscillation", verify.oscillations, declare_oscillation,
-               "Frequencies and amplitudes of places of sheets");
+               "Frequencies and amplitudes of places of sheets in rows of the history");
   declare_canopy_checks(table, verify);
   table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
   for (const char* of_fluid :

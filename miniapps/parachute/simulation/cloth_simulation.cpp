@@ -44,7 +44,11 @@ Sheets cloth_sheets(const FlowScene& scene) {
 }
 
 ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::SimulationSettings& settings)
-    : _scene(scene), _sheets(cloth_sheets(scene)), _cuts(_sheets.cuts, _sheets.fabric), _record(scene) {
+    : _scene(scene),
+      _sheets(cloth_sheets(scene)),
+      _cuts(_sheets.cuts, _sheets.fabric),
+      // It takes a kernel of each step.
+      _record(scene, !scene.verify.peak_forces.empty()) {
   if (settings.communicator != nullptr)
     throw Failure(ExitCode::usage, "scenes without [fluid] run on one rank");
   _solver = fabric::create_solver(settings.backend, fabric_parameters(scene, _sheets));
@@ -53,7 +57,7 @@ ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::Simula
 void ClothSimulation::start() {
   const ScopedStopwatch stopwatch(_h2d_s);
   _solver->upload(_sheets.positions, std::vector<Vector>(_sheets.positions.size()));
-  if (watches_pulls()) _solver->watch_pulls(pulls_on_payloads(_sheets));
+  _record.watch(*_solver, _sheets);
   allocate_buffers();
 }
 
@@ -187,7 +191,7 @@ framework::HistoryRow ClothSimulation::row() {
     intersections = count_intersections(_scene, _sheets, state.positions, time);
     row.values.push_back(intersections);
   }
-  _record.add(time, canopies, 0.0, intersections);
+  _record.add(step, time, canopies, 0.0, intersections);
   return row;
 }
 
@@ -244,7 +248,7 @@ run::ResultDocument::WallTimes ClothSimulation::phases() const {
 }
 
 ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
-  if (watches_pulls()) _record.set_peaks(_solver->peak_pulls());
+  _record.update_peaks(*_solver);
   check_canopies(_scene.verify, _record, result);
   check_oscillations(_scene.verify, directory, result);
   check_energy_drift(_scene, directory, result);
@@ -276,9 +280,7 @@ void ClothSimulation::write_restart(run::RestartWriter& writer) {
     writer.array(name, 3 * vectors->size());
     writer.write(name, 0, {vectors->front().data(), 3 * vectors->size()});
   }
-  writer.integer("watches_pulls", watches_pulls() ? 1 : 0);
-  if (watches_pulls()) _record.set_peaks(_solver->peak_pulls());
-  _record.write(writer);
+  _record.write(writer, *_solver);
 }
 
 void ClothSimulation::restore(const run::RestartReader& reader) {
@@ -292,17 +294,10 @@ void ClothSimulation::restore(const run::RestartReader& reader) {
   reader.read("velocity", 0, {velocities.front().data(), 3 * velocities.size()});
   _solver->set_time_state(clock);
   _solver->upload(positions, velocities);
-  _record.read(reader);
-  if (watches_pulls()) {
-    if (reader.integer("watches_pulls") == 0)
-      throw Failure(
-          ExitCode::io_error,
-          "verify.peak_force: the run that wrote the restart file kept no largest forces, since its scene "
-          "lacked the key; start anew, or leave the key out");
-    _solver->watch_pulls(pulls_on_payloads(_sheets));
-    _solver->set_peak_pulls(_record.peaks());
-  }
-  if (_cuts.restart_at(now().time)) _solver->set_line_stiffness(_cuts.stiffness());
+  _record.watch(*_solver, _sheets);
+  const auto [step, time] = now();
+  _record.read(reader, step, time, *_solver);
+  if (_cuts.restart_at(time)) _solver->set_line_stiffness(_cuts.stiffness());
   allocate_buffers();
 }
 

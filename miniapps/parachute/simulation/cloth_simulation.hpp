@@ -53,8 +53,6 @@ class ClothSimulation final : public framework::Simulation {
   template <class Plan, class Number, class Integer>
   static void visit(Plan& clock, Block& block, const Number& number, const Integer& integer);
 
-  /// True if the solver records the largest forces on payloads, which takes a kernel of each step.
-  [[nodiscard]] bool watches_pulls() const { return !_scene.verify.peak_forces.empty(); }
   void allocate_buffers();
   [[nodiscard]] bool plan(double target);
   [[nodiscard]] std::int64_t steps_to_event(const framework::AdvanceLimits& limits) const;

@@ -66,7 +66,8 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
                               scene.parameters.viscosity, scene.flags)),
       _images(scene, _sheets),
       _grids(grids_beside_canopies(scene, _sheets)),
-      _record(scene) {
+      _statistics(scene.parameters.watches_extremes),
+      _record(scene, scene.has_sheets()) {
   if (settings.communicator != nullptr) {
     if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
       throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
@@ -83,7 +84,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     _solver = flow::create_solver(settings.backend, scene.parameters);
   }
   for (const Body& body : scene.bodies) _inside.emplace_back(body, scene.parameters);
-  if (_coupled != nullptr) _coupled->watch_pulls(pulls_on_payloads(_sheets));
+  if (_coupled != nullptr) _record.watch(*_coupled, _sheets);
   if (_shared != nullptr) return;
   for (Snapshot& snapshot : _snapshots)
     for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));
@@ -172,7 +173,6 @@ std::vector<run::Column> Simulation::history_columns() const {
 
 framework::HistoryRow Simulation::row() {
   const flow::Totals now = _solver->totals();
-  _statistics.add(now);
   framework::HistoryRow row = {now.time,
                                {static_cast<double>(now.step), now.dt, now.kinetic_energy, now.enstrophy,
                                 now.dissipation, now.momentum[0], now.momentum[1], now.momentum[2],

@@ -46,8 +46,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
     writer.array("face_acceleration", faces.size());
     writer.write("face_acceleration", 0, faces);
   }
-  _record.set_peaks(_coupled->peak_pulls());
-  _record.write(writer);
+  _record.write(writer, *_coupled);
   const coupling::BlockProgress& block = state.block;
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
@@ -75,8 +74,8 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   if (!state.defect.empty()) read("defect", state.defect);
   if (_scene.is_explicit()) read("sheet_force", state.forces);
   if (!state.face_acceleration.empty()) reader.read("face_acceleration", 0, state.face_acceleration);
-  _record.read(reader);
-  _coupled->set_peak_pulls(_record.peaks());
+  const auto [step, time] = now();
+  _record.read(reader, step, time, *_coupled);
   state.block = {reader.number("block_dt"),     reader.integer("block_substeps"),
                  reader.integer("block_end"),   reader.integer("block_cloth_step"),
                  reader.integer("block_since"), reader.number("block_start")};
@@ -95,7 +94,7 @@ void Simulation::write_restart(run::RestartWriter& writer) {
   visit(
       progress, [&](const std::string& name, double value) { writer.number(name, value); },
       [&](const std::string& name, auto value) { writer.integer(name, std::bit_cast<std::int64_t>(value)); });
-  _statistics.write(writer);
+  _statistics.write(writer, *_solver);
   if (_coupled != nullptr) write_coupling(writer);
   std::vector<double> values;
   for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
@@ -114,7 +113,6 @@ void Simulation::restore(const run::RestartReader& reader) {
       [&](const std::string& name, auto& value) {
         value = std::bit_cast<std::remove_reference_t<decltype(value)>>(reader.integer(name));
       });
-  _statistics.read(reader);
   std::vector<double> values;
   for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
     values.resize(flow::state_size(_scene.parameters, field));
@@ -122,6 +120,7 @@ void Simulation::restore(const run::RestartReader& reader) {
     _solver->upload(field, values);
   }
   _solver->restore(progress);
+  _statistics.read(reader, *_solver);
   if (_coupled != nullptr) read_coupling(reader);
   static_cast<void>(_solver->totals());
   sample_fields(_snapshots[0]);

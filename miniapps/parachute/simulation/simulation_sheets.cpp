@@ -128,7 +128,7 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
   if (_scene.frame == Frame::follow)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (_scene.open_axes()[axis]) row.values.insert(row.values.end(), {frame.velocity[axis], origin[axis]});
-  _record.add(row.time, canopies, balance, intersections);
+  _record.add(_solver->progress().step, row.time, canopies, balance, intersections);
 }
 
 void Simulation::append_flag_columns(std::vector<run::Column>& columns) const {

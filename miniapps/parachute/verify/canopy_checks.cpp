@@ -11,24 +11,25 @@
 namespace drogue::parachute_app {
 
 void check_canopies(const Verify& wanted, const CanopyRecord& record, run::ResultDocument& result) {
-  const auto check_mean = [&](const std::string& name, double value, const Target& target) {
+  const auto check_mean = [&](const std::string& name, double value, const CanopyMean& mean) {
     result.metrics.set("canopies", name, value);
-    check_target(result, name, value, target);
+    check_target(result, name, value, mean.target);
+    result.state_rows(record.rows(mean.from, mean.to));
   };
   for (std::size_t i = 0; i < wanted.drags.size(); ++i) {
     const CanopyMean& drag = wanted.drags[i];
     check_mean("drag_" + std::to_string(i),
-               record.mean_drag(static_cast<std::size_t>(drag.canopy), drag.from, drag.to), drag.target);
+               record.mean_drag(static_cast<std::size_t>(drag.canopy), drag.from, drag.to), drag);
   }
   for (std::size_t i = 0; i < wanted.terminal_speeds.size(); ++i) {
     const CanopyMean& speed = wanted.terminal_speeds[i];
     check_mean("terminal_speed_" + std::to_string(i),
-               record.mean_speed(static_cast<std::size_t>(speed.canopy), speed.from, speed.to), speed.target);
+               record.mean_speed(static_cast<std::size_t>(speed.canopy), speed.from, speed.to), speed);
   }
   for (std::size_t i = 0; i < wanted.projected_areas.size(); ++i) {
     const CanopyMean& area = wanted.projected_areas[i];
     check_mean("projected_area_" + std::to_string(i),
-               record.mean_area(static_cast<std::size_t>(area.canopy), area.from, area.to), area.target);
+               record.mean_area(static_cast<std::size_t>(area.canopy), area.from, area.to), area);
   }
   for (std::size_t i = 0; i < wanted.leaks.size(); ++i) {
     const CanopyLeak& leak = wanted.leaks[i];
@@ -38,9 +39,12 @@ void check_canopies(const Verify& wanted, const CanopyRecord& record, run::Resul
                  rms = record.relative_leak_rms(canopy, leak.from, leak.to);
     result.metrics.set("canopies", name, value);
     result.add_check(name, value, leak.tolerance);
+    result.state_rows(record.rows(leak.from, leak.to));
     const std::string name_of_rms = "leak_rms_" + std::to_string(i);
     result.metrics.set("canopies", name_of_rms, rms);
-    if (leak.rms_tolerance) result.add_check(name_of_rms, rms, *leak.rms_tolerance);
+    if (!leak.rms_tolerance) continue;
+    result.add_check(name_of_rms, rms, *leak.rms_tolerance);
+    result.state_rows(record.rows(leak.from, leak.to));
   }
   // A value passes between two bounds if its distance from their mean is at most half of theirs.
   const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {
@@ -55,8 +59,13 @@ void check_canopies(const Verify& wanted, const CanopyRecord& record, run::Resul
     check_bounds(name, force, peak.force);
     if (peak.time) check_bounds(name + "_time", time, *peak.time);
   }
-  if (wanted.force_balance) result.add_check("force_balance", record.balance(), *wanted.force_balance);
-  if (wanted.intersections) result.add_check("intersections", record.intersections(), *wanted.intersections);
+  const auto check_largest = [&](const std::string& name, double value, std::optional<double> tolerance) {
+    if (!tolerance) return;
+    result.add_check(name, value, *tolerance);
+    result.state_rows(record.rows());
+  };
+  check_largest("force_balance", record.balance(), wanted.force_balance);
+  check_largest("intersections", record.intersections(), wanted.intersections);
 }
 
 void check_oscillations(const Verify& checks, const run::RunDirectory* directory,
@@ -67,11 +76,16 @@ void check_oscillations(const Verify& checks, const run::RunDirectory* directory
   for (std::size_t i = 0; i < checks.oscillations.size(); ++i) {
     const Oscillation& wanted = checks.oscillations[i];
     const std::vector<double>& place = history.at(wanted.column);
+    const std::size_t rows = rows_from(time, wanted.from);
+    const double frequency = frequency_from(time, place, wanted.from),
+                 period = rows_in_period(time, wanted.from, frequency);
     const auto check = [&](const std::string& name, double value, const std::optional<Target>& target) {
       result.metrics.set("oscillations", name + "_" + std::to_string(i), value);
-      if (target) check_target(result, name + "_of_oscillation_" + std::to_string(i), value, *target);
+      if (!target) return;
+      check_target(result, name + "_of_oscillation_" + std::to_string(i), value, *target);
+      result.state_rows(rows, period);
     };
-    check("frequency", frequency_from(time, place, wanted.from), wanted.frequency);
+    check("frequency", frequency, wanted.frequency);
     check("amplitude", amplitude_from(time, place, wanted.from), wanted.amplitude);
   }
 }
@@ -90,6 +104,7 @@ void check_energy_drift(const FlowScene& scene, const run::RunDirectory* directo
     scale = std::max(scale, kinetic[k] + elastic[k]);
   }
   result.add_check("energy_drift", change / scale, *scene.verify.energy_drift);
+  result.state_rows(energy.size());
 }
 
 }  // namespace drogue::parachute_app

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "common/program/failure.hpp"
 #include "common/run/statistics.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
@@ -16,8 +17,9 @@ double length_of(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
 
 }  // namespace
 
-CanopyRecord::CanopyRecord(const FlowScene& scene)
+CanopyRecord::CanopyRecord(const FlowScene& scene, bool watches_pulls)
     : _scene(scene),
+      _watches_pulls(watches_pulls),
       _columns(first_column + per_canopy * scene.canopies.size()),
       _peaks(scene.canopies.size()) {
   if (scene.canopies.empty()) return;
@@ -25,8 +27,9 @@ CanopyRecord::CanopyRecord(const FlowScene& scene)
     _stream[axis] = SpaceTimeFunction(scene.velocity[axis]).constant().value_or(0.0);
 }
 
-void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies, double balance,
-                       double intersections) {
+void CanopyRecord::add(std::int64_t step, double time, const std::vector<CanopyMeasures>& canopies,
+                       double balance, double intersections) {
+  if (!has_row(step, time)) return;
   if (!_values.empty() && time <= at(rows() - 1, 0)) return;
   _values.insert(_values.end(), {time, balance, intersections});
   for (std::size_t i = 0; i < canopies.size(); ++i) {
@@ -39,10 +42,14 @@ void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies,
     }
     const double speed = length_of(u), pressure = 0.5 * _scene.parameters.density * speed * speed;
     const double drag = along == 0.0 ? 0.0 : along / (speed * pressure * _scene.canopies[i].nominal_area());
-    const double pull = length_of(canopy.line_force);
-    if (pull > _peaks[i].force) _peaks[i] = {pull, time};
-    _values.insert(_values.end(), {drag, speed, pull, canopy.projected_area, canopy.leak});
+    _values.insert(_values.end(), {drag, speed, canopy.projected_area, canopy.leak});
   }
+}
+
+std::size_t CanopyRecord::rows(double from, double to) const {
+  std::size_t count = 0;
+  for (std::size_t row = 0; row < rows(); ++row) count += at(row, 0) >= from && at(row, 0) <= to ? 1 : 0;
+  return count;
 }
 
 template <class Value>
@@ -90,6 +97,7 @@ double CanopyRecord::balance() const { return largest(1); }
 double CanopyRecord::intersections() const { return largest(2); }
 
 void CanopyRecord::write(run::RestartWriter& writer) const {
+  writer.integer("watches_pulls", _watches_pulls ? 1 : 0);
   for (std::size_t i = 0; i < _peaks.size(); ++i) {
     writer.number("peak_force_" + std::to_string(i), _peaks[i].force);
     writer.number("peak_force_time_" + std::to_string(i), _peaks[i].time);
@@ -100,12 +108,19 @@ void CanopyRecord::write(run::RestartWriter& writer) const {
   writer.write("canopy_record", 0, _values);
 }
 
-void CanopyRecord::read(const run::RestartReader& reader) {
+void CanopyRecord::read(const run::RestartReader& reader, std::int64_t step, double time) {
+  if (_watches_pulls && reader.integer("watches_pulls") == 0)
+    throw Failure(ExitCode::io_error,
+                  "verify.peak_force: the run that wrote the restart file kept no largest forces, since its "
+                  "scene lacked the key; start anew, or leave the key out");
   for (std::size_t i = 0; i < _peaks.size(); ++i)
     _peaks[i] = {reader.number("peak_force_" + std::to_string(i)),
                  reader.number("peak_force_time_" + std::to_string(i))};
   _values.resize(static_cast<std::size_t>(reader.number("canopy_rows")) * _columns);
-  if (!_values.empty()) reader.read("canopy_record", 0, _values);
+  if (_values.empty()) return;
+  reader.read("canopy_record", 0, _values);
+  // The row at the former end of the run.
+  if (at(rows() - 1, 0) == time && !has_row(step, time)) _values.resize(_values.size() - _columns);
 }
 
 }  // namespace drogue::parachute_app

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <utility>
+#include <cstdint>
 #include <vector>
 
 #include "common/run/restart/restart_file.hpp"
@@ -13,12 +13,26 @@ namespace drogue::parachute_app {
 /// them from its restart file, also for other intervals of time in [verify].
 class CanopyRecord {
  public:
-  /// Keeps a reference to `scene`.
-  explicit CanopyRecord(const FlowScene& scene);
+  /// Keeps a reference to `scene`. `watches_pulls`: whether the solver records the largest forces.
+  CanopyRecord(const FlowScene& scene, bool watches_pulls);
 
-  /// Adds a row at a time, s, unless there is one of the same or a later time. `balance`: `force_balance`;
-  /// `intersections`: their number, or 0.
-  void add(double time, const std::vector<CanopyMeasures>& canopies, double balance, double intersections);
+  /// Lets a solver of cloth record the largest forces of lines on payloads, before its start. Throws as its
+  /// `watch_pulls`.
+  template <class Solver>
+  void watch(Solver& solver, const Sheets& sheets) const {
+    if (_watches_pulls) solver.watch_pulls(pulls_on_payloads(sheets));
+  }
+
+  /// Takes over the largest forces from the solver. Throws as its `peak_pulls`.
+  template <class Solver>
+  void update_peaks(Solver& solver) {
+    if (_watches_pulls) _peaks = solver.peak_pulls();
+  }
+
+  /// Adds a row of a step and its time, s, unless there is one of the same or a later time, or the run of the
+  /// whole has no row there. `balance`: `force_balance`; `intersections`: their number, or 0.
+  void add(std::int64_t step, double time, const std::vector<CanopyMeasures>& canopies, double balance,
+           double intersections);
 
   /// Mean drag coefficient 2 F / (rho U^2 S0) of the rows in [from, to], s: trapezoidal rule. F is the force
   /// along U, the velocity of the fluid far upstream relative to the payload; S0 the nominal area. NaN with
@@ -44,10 +58,11 @@ class CanopyRecord {
   /// Root mean square of the leak, likewise: in and out add up.
   [[nodiscard]] double relative_leak_rms(std::size_t canopy, double from, double to) const;
 
-  /// Replaces the largest force of the lines on each payload in the rows by that in all steps so far.
-  void set_peaks(std::vector<fabric::PeakPull> peaks) { _peaks = std::move(peaks); }
+  /// Number of rows, also of those in [from, to], s. Does not throw.
+  [[nodiscard]] std::size_t rows() const { return _values.size() / _columns; }
+  [[nodiscard]] std::size_t rows(double from, double to) const;
 
-  /// These largest forces. Does not throw.
+  /// Largest force of the lines on each payload in all steps up to the last update. Does not throw.
   [[nodiscard]] const std::vector<fabric::PeakPull>& peaks() const { return _peaks; }
 
   /// Largest `force_balance`. Does not throw.
@@ -56,22 +71,38 @@ class CanopyRecord {
   /// Largest number of intersections. Does not throw.
   [[nodiscard]] double intersections() const;
 
-  /// Writes all rows and the peaks. Throws `Failure` (io_error).
-  void write(run::RestartWriter& writer) const;
+  /// Writes all rows, and the largest forces of the solver. Throws `Failure` (io_error).
+  template <class Solver>
+  void write(run::RestartWriter& writer, Solver& solver) {
+    update_peaks(solver);
+    write(writer);
+  }
 
-  /// Reads all rows and the peaks. Throws `Failure` (io_error).
-  void read(const run::RestartReader& reader);
+  /// Reads all rows up to a step and its time, s, and gives the solver the largest forces. Throws `Failure`
+  /// (io_error), also if the file lacks forces that the scene verifies.
+  template <class Solver>
+  void read(const run::RestartReader& reader, std::int64_t step, double time, Solver& solver) {
+    read(reader, step, time);
+    if (_watches_pulls) solver.set_peak_pulls(_peaks);
+  }
 
  private:
   /// Columns of a canopy, in this order.
-  enum class Measure : std::size_t { drag, speed, line_force, projected_area, leak, count };
+  enum class Measure : std::size_t { drag, speed, projected_area, leak, count };
   static constexpr std::size_t first_column = 3, per_canopy = static_cast<std::size_t>(Measure::count);
 
   static constexpr std::size_t column(Measure measure, std::size_t canopy) {
     return first_column + per_canopy * canopy + static_cast<std::size_t>(measure);
   }
   [[nodiscard]] double largest(std::size_t column) const;
-  [[nodiscard]] std::size_t rows() const { return _values.size() / _columns; }
+  void write(run::RestartWriter& writer) const;
+  void read(const run::RestartReader& reader, std::int64_t step, double time);
+  /// True if a run without interruption has a row after a step, at a time, s: every `history_every` steps and
+  /// at its end.
+  [[nodiscard]] bool has_row(std::int64_t step, double time) const {
+    const int every = _scene.output.history_every;
+    return (every > 0 && step % every == 0) || time >= _scene.end_time;
+  }
   [[nodiscard]] double at(std::size_t row, std::size_t column) const {
     return _values[row * _columns + column];
   }
@@ -83,6 +114,7 @@ class CanopyRecord {
   [[nodiscard]] double reference_flow(std::size_t canopy, double from, double to) const;
 
   const FlowScene& _scene;
+  const bool _watches_pulls;
   fabric::Vector _stream{};  ///< velocity of the fluid far upstream, m/s
   std::size_t _columns;
   /// Row by row: time, balance, intersections; then the measures of each canopy.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/run/restart/restart_file.hpp"
-#include "kernels/flow/state.hpp"
+#include "kernels/flow/solver.hpp"
 
 namespace drogue::parachute_app {
 
@@ -10,48 +10,47 @@ namespace drogue::parachute_app {
   return change == 0.0 ? 0.0 : change / initial;
 }
 
-/// Extremes over the rows of a run, from its first start on. They continue after a restart.
+/// State at the first start of a run, and extremes over all its steps since. They continue after a restart.
 class RunStatistics {
  public:
+  /// `watches_extremes`: as `flow::Parameters` of the solver.
+  explicit RunStatistics(bool watches_extremes) : _watches_extremes(watches_extremes) {}
+
   /// Totals of the initial state.
   void begin(const flow::Totals& initial);
 
-  /// Takes the totals of a row into account, unless a row of the same or a later step was.
-  void add(const flow::Totals& totals);
+  /// Takes over the extremes of the solver.
+  void update(const flow::Extremes& extremes) { _extremes = extremes; }
 
-  /// Largest rise of the kinetic energy between rows, relative to the initial energy.
-  [[nodiscard]] double energy_growth() const { return relative(_largest_rise, _initial_energy); }
+  /// Largest rise of the kinetic energy above its least value before, relative to the initial energy.
+  [[nodiscard]] double energy_growth() const { return relative(_extremes.largest_rise, _initial_energy); }
 
-  /// Largest speed in any row over the initial one, less 1.
+  /// Largest speed after any step over the initial one, less 1.
   [[nodiscard]] double speed_growth() const {
-    return relative(_largest_speed - _initial_speed, _initial_speed);
+    return relative(_extremes.largest_speed - _initial_speed, _initial_speed);
   }
 
   /// Change of the momentum relative to sqrt(2 mass energy), which bounds it; `mass` in kg.
   [[nodiscard]] double momentum_change(const flow::Totals& totals, double mass) const;
 
-  /// Largest rate at which the kinetic energy fell between two rows, W.
-  [[nodiscard]] double peak_dissipation() const { return _peak_dissipation; }
+  /// Largest rate at which the kinetic energy fell in a step, W, and the time in its middle, s.
+  [[nodiscard]] double peak_dissipation() const { return _extremes.peak_dissipation; }
+  [[nodiscard]] double peak_time() const { return _extremes.peak_time; }
 
-  /// Time in the middle of these rows, s.
-  [[nodiscard]] double peak_time() const { return _peak_time; }
+  /// Writes all members, with the extremes of the solver. Throws `Failure` (io_error).
+  void write(run::RestartWriter& writer, flow::Solver& solver);
 
-  /// Root-mean-square divergence of the last row, 1/s.
-  [[nodiscard]] double divergence() const { return _divergence; }
-
-  /// Writes all members. Throws `Failure` (io_error).
-  void write(run::RestartWriter& writer) const;
-
-  /// Reads all members. Throws `Failure` (io_error).
-  void read(const run::RestartReader& reader);
+  /// Reads all members, and gives the solver the extremes. Throws `Failure` (io_error), also if the file
+  /// lacks those that the scene verifies.
+  void read(const run::RestartReader& reader, flow::Solver& solver);
 
  private:
-  template <class Self, class Number>
-  static void visit(Self& self, const Number& number);
+  template <class Self, class Number, class Integer>
+  static void visit(Self& self, const Number& number, const Integer& integer);
 
+  bool _watches_extremes;
   double _initial_energy = 0.0, _initial_speed = 0.0, _initial_momentum[3] = {};
-  double _step = 0.0, _time = 0.0, _energy = 0.0, _divergence = 0.0;  ///< of the last row
-  double _largest_rise = 0.0, _largest_speed = 0.0, _peak_dissipation = 0.0, _peak_time = 0.0;
+  flow::Extremes _extremes;
 };
 
 }  // namespace drogue::parachute_app

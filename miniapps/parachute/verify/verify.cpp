@@ -102,7 +102,7 @@ std::map<std::string, double> Simulation::error_norms() {
 void Simulation::check_totals(run::ResultDocument& result) {
   const Verify& wanted = _scene.verify;
   const flow::Totals totals = _solver->totals();
-  _statistics.add(totals);
+  _statistics.update(_solver->extremes());
   result.metrics.set("pressure", "divergence_rms", totals.divergence_rms);
   if (wanted.divergence) result.add_check("divergence", totals.divergence_rms, *wanted.divergence);
   if (wanted.momentum) {
@@ -151,6 +151,9 @@ void Simulation::check_force_history(const run::RunDirectory* directory, run::Re
       const double value = measure(history.at(force_column(window.body, window.axis)), window);
       result.metrics.set("forces", name + "_" + std::to_string(i), value);
       check_target(result, name + "_" + std::to_string(i), value, window.target);
+      const double period =
+          name == "frequency" ? rows_in_period(time, window.from, value / window.reference) : 0.0;
+      result.state_rows(rows_from(time, window.from), period);
     }
   };
   check("mean_force", wanted.mean_forces, [&](const std::vector<double>& force, const ForceWindow& window) {
@@ -172,6 +175,7 @@ void Simulation::check_curves(const run::RunDirectory* directory, run::ResultDoc
       for (const auto& [at, value] : curves[i].points)
         largest = run::maximum_or_nan(largest, std::abs(measure(interpolate_rows(time, energy, at)) - value));
       result.add_check(name + "_" + std::to_string(i), largest / curves[i].scale(), curves[i].tolerance);
+      result.state_rows(time.size());
     }
   };
   check("kinetic_energy_curve", wanted.kinetic_energy_curves,
@@ -215,7 +219,7 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
                             !wanted.flow_rates.empty();
   if (needs_totals) check_totals(result);
   check_forces(result);
-  if (_coupled != nullptr) _record.set_peaks(_coupled->peak_pulls());
+  if (_coupled != nullptr) _record.update_peaks(*_coupled);
   check_canopies(wanted, _record, result);
   check_curves(directory, result);
   check_force_history(directory, result);

@@ -27,9 +27,10 @@ void declare_verify(Table& table, Verify& verify) {
                                   const std::string& help) {
     table.value(name, scene::real_codec(place), help).at_least(0.0);
   };
-  tolerance("energy_drift", verify.energy_drift,
-            "Largest change of the energy that passes, over the largest kinetic energy of a row or of all "
-            "released energy");
+  tolerance(
+      "energy_drift", verify.energy_drift,
+      "Largest change of the energy in rows of history.csv that passes, over the largest kinetic energy "
+      "of a row or of all released energy");
   tolerance("energy_balance", verify.energy_balance,
             "The same after the works of contact and of friction are subtracted; also the largest work that "
             "either returns");
@@ -40,12 +41,13 @@ void declare_verify(Table& table, Verify& verify) {
             "Largest violation of contact.thickness by a vertex and a body at the end that passes, as a "
             "share of it");
   tolerance("momentum", verify.momentum,
-            "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K kinetic "
+            "Largest change of the momentum in rows of history.csv over the largest sqrt(2 M K) that passes; "
+            "M mass, K kinetic "
             "energy as in energy_drift");
-  tolerance(
-      "angular_momentum", verify.angular_momentum,
-      "Largest change of the angular momentum over the largest R sqrt(2 M K) that passes; R extent of the "
-      "mesh");
+  tolerance("angular_momentum", verify.angular_momentum,
+            "Largest change of the angular momentum in rows of history.csv over the largest R sqrt(2 M K) "
+            "that passes; R extent of the "
+            "mesh");
   tolerance("equilibrium", verify.equilibrium,
             "Largest force along a free axis at the end that passes, over the largest reaction or dead load");
   tolerance(
@@ -93,7 +95,7 @@ void declare_verify(Table& table, Verify& verify) {
         t.value("probe", scene::integer_codec(value.probe), "Number of the probe, from 0").range(0, 1e6);
         t.value("axis", scene::choice_codec(value.axis, axis_choices), "Axis along which it oscillates");
       },
-      "The frequency at which a probe oscillates");
+      "The frequency at which a probe oscillates in rows of history.csv");
   table.optional_table(
       "front_speed", verify.front_speed,
       [](Table& t, FrontSpeed& value) {
@@ -104,7 +106,8 @@ void declare_verify(Table& table, Verify& verify) {
         t.value("axis", scene::choice_codec(value.axis, axis_choices),
                 "Axis along which the front displaces");
       },
-      "The speed of a front between the first two probes, timed at half of their largest displacements");
+      "The speed of a front between the first two probes, timed at half of their largest displacements in "
+      "rows of history.csv");
   table.tables(
       "values", verify.values,
       [](Table& t, FinalValue& value) {

@@ -1,7 +1,6 @@
 #include "miniapps/springs/simulation/energy_balance.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <utility>
 
@@ -9,8 +8,6 @@
 
 namespace drogue::springs_app {
 namespace {
-
-using fabric::Vector;
 
 bool moves(const Pin& pin) {
   return depends_on_time(pin.motion.x) || depends_on_time(pin.motion.y) || depends_on_time(pin.motion.z);
@@ -67,21 +64,6 @@ bool conserves_energy(const SpringsScene& scene) {
     return false;
   const bool is_closed = has_follower_pressure(scene) && is_closed_or_fixed(scene);
   return std::ranges::all_of(scene.loads, [&](const Load& load) { return has_potential(load, is_closed); });
-}
-
-double enclosed_volume(const fabric::Mesh& mesh, const std::vector<Vector>& x) {
-  double sum = 0.0;
-  for (const auto& triangle : mesh.triangles) {
-    std::array<Vector, 3> r{};
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        r[k][axis] = x[static_cast<std::size_t>(triangle[k])][axis] - mesh.rest.front()[axis];
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-      sum += r[0][a] * (r[1][b] * r[2][c] - r[1][c] * r[2][b]);
-    }
-  }
-  return sum / 6.0;
 }
 
 }  // namespace drogue::springs_app

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/orientation.hpp"
 #include "miniapps/springs/simulation/contact_state.hpp"
 #include "miniapps/springs/simulation/energy_balance.hpp"
 #include "miniapps/springs/simulation/history.hpp"
@@ -68,7 +69,9 @@ StateTotals Simulation::totals() {
   if (_scene.output.probes.empty() && !counts && _pressure == 0.0) return totals;
   std::vector<Vector> x(_problem.x.size()), v(x.size());
   _solver->download(x, v);
-  if (_pressure != 0.0) totals.potential -= _pressure * enclosed_volume(_problem.parameters.mesh, x);
+  const fabric::Mesh& mesh = _problem.parameters.mesh;
+  if (_pressure != 0.0)
+    totals.potential -= _pressure * mesh::volume_between(mesh.triangles, x, mesh.rest.front());
   if (counts) totals.intersections = contact_state(_scene, _problem.to_scene(x)).intersections;
   for (const int vertex : _problem.probes) totals.probes.push_back(x[static_cast<std::size_t>(vertex)]);
   return totals;
@@ -189,6 +192,7 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
     if (const std::optional<EnergyLoss> loss = energy_loss(history)) {
       set("lost", loss->energy);
       set("lost_share", loss->share);
+      result.metrics.set("energy", "lost_rows", static_cast<std::int64_t>(history.at("time").size()));
     }
   set("potential", now.potential);
   springs_app::verify(_scene, final_state(), history, result);

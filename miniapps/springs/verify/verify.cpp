@@ -262,12 +262,18 @@ void verify(const SpringsScene& scene, const FinalState& state, const History& h
     result.errors[name] = error;
     result.add_check(name, error, tolerance);
   };
+  // A check of the rows of the history.
+  const auto add_of_rows = [&](const std::string& name, double error, double tolerance, double period = 0.0) {
+    add(name, error, tolerance);
+    result.state_rows(history.at("time").size(), period);
+  };
   if (wanted.frequency) {
     const Frequency& f = *wanted.frequency;
-    const auto& column = history.at("probe_" + std::to_string(f.probe) + "_" + f.axis);
-    add("frequency",
-        relative_error(fitted_frequency(history.at("time"), column), expected_frequency(scene, state)),
-        f.tolerance);
+    const auto &time = history.at("time"),
+               &column = history.at("probe_" + std::to_string(f.probe) + "_" + f.axis);
+    const double frequency = fitted_frequency(time, column);
+    add_of_rows("frequency", relative_error(frequency, expected_frequency(scene, state)), f.tolerance,
+                static_cast<double>(time.size()) / (time.back() * frequency));
   }
   if (wanted.hencky) add("hencky", hencky_error(scene, state), *wanted.hencky);
   if (wanted.catenary) add("catenary", catenary_error(scene, state), *wanted.catenary);
@@ -282,30 +288,31 @@ void verify(const SpringsScene& scene, const FinalState& state, const History& h
     if (wanted.poisson) add("poisson", std::abs(response.poisson - m.poisson), *wanted.poisson);
   }
   if (wanted.front_speed)
-    add("front_speed", relative_error(front_speed(scene, history), wanted.front_speed->value),
-        wanted.front_speed->tolerance);
+    add_of_rows("front_speed", relative_error(front_speed(scene, history), wanted.front_speed->value),
+                wanted.front_speed->tolerance);
   for (std::size_t k = 0; k < wanted.values.size(); ++k) {
     const FinalValue& value = wanted.values[k];
     add("values_" + std::to_string(k) + "_" + name_of(value.quantity),
         relative_error(final_value(scene, state, value), value.value), value.tolerance);
   }
   if (wanted.equilibrium) add("equilibrium", imbalance(state), *wanted.equilibrium);
-  if (wanted.energy_drift) add("energy_drift", energy_drift(history), *wanted.energy_drift);
-  if (wanted.energy_balance) add("energy_balance", energy_imbalance(history), *wanted.energy_balance);
+  if (wanted.energy_drift) add_of_rows("energy_drift", energy_drift(history), *wanted.energy_drift);
+  if (wanted.energy_balance) add_of_rows("energy_balance", energy_imbalance(history), *wanted.energy_balance);
   if (wanted.intersections || wanted.penetration) {
     const ContactState now = contact_state(scene, state.x);
     if (wanted.intersections)
-      add("intersections", run::maximum_or_nan(largest(history.at("intersections")), now.intersections),
-          *wanted.intersections);
+      add_of_rows("intersections",
+                  run::maximum_or_nan(largest(history.at("intersections")), now.intersections),
+                  *wanted.intersections);
     if (wanted.penetration) add("penetration", now.penetration, *wanted.penetration);
   }
   const double impulse = std::sqrt(2.0 * state.mass * (history.empty() ? 0.0 : energy_scale(history)));
   if (wanted.momentum)
-    add("momentum", share_of(largest_change(history, "momentum"), impulse), *wanted.momentum);
+    add_of_rows("momentum", share_of(largest_change(history, "momentum"), impulse), *wanted.momentum);
   if (wanted.angular_momentum)
-    add("angular_momentum",
-        share_of(largest_change(history, "angular_momentum"), extent(scene.mesh) * impulse),
-        *wanted.angular_momentum);
+    add_of_rows("angular_momentum",
+                share_of(largest_change(history, "angular_momentum"), extent(scene.mesh) * impulse),
+                *wanted.angular_momentum);
 }
 
 }  // namespace drogue::springs_app

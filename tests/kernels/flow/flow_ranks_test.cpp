@@ -189,9 +189,21 @@ void expect_same_totals(const Totals& a, const Totals& b, const std::string& wha
   for (int side = 0; side < 6; ++side) near(a.outflow[side], b.outflow[side], "outflow");
 }
 
+void expect_same_extremes(const Extremes& a, const Extremes& b, const std::string& what) {
+  EXPECT_EQ(a.step, b.step) << what;
+  const auto near = [&](double expected, double found, const char* name) {
+    EXPECT_NEAR(expected, found, tolerance * std::max(1.0, a.energy)) << what << ": " << name;
+  };
+  near(a.energy, b.energy, "energy");
+  near(a.least_energy, b.least_energy, "least energy");
+  near(a.largest_rise, b.largest_rise, "rise");
+  near(a.largest_speed, b.largest_speed, "speed");
+}
+
 /// Runs a case from random data on `ranks` ranks and on this one only, and compares everything.
 void expect_steps_of_one_rank(const Case& each, int ranks) {
-  const Parameters& p = each.parameters;
+  Parameters p = each.parameters;
+  p.watches_extremes = true;
   const linear::RankGroup group = first_ranks(ranks);
   if (!belongs_to_first(ranks)) return;
   const std::string what = each.name + " on " + std::to_string(ranks) + " ranks";
@@ -209,6 +221,7 @@ void expect_steps_of_one_rank(const Case& each, int ranks) {
     for (std::size_t i = 0; i < expected.size(); ++i)
       if (i < 4 || step > 0) expect_near(expected[i], found[i], what + ", array " + std::to_string(i));
     expect_same_totals(single->totals(), shared->totals(), what);
+    expect_same_extremes(single->extremes(), shared->extremes(), what);
     for (const std::size_t c : {0U, 1U, 2U})
       expect_near(single.sample(CellField::vorticity, c, 3), shared.sample(CellField::vorticity, c, 3),
                   what + ", vorticity");

@@ -50,6 +50,16 @@ Mesh band(int n, bool twisted) {
   return mesh;
 }
 
+TEST(Orientation, VolumeIsBetweenMovedTrianglesAndAPoint) {
+  // A tetrahedron of volume 1/6 at rest, twice as wide along x.
+  const std::vector<std::array<int, 3>> all = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  const std::vector<Vector> x = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const Vector& point : {Vector{0, 0, 0}, Vector{3, -4, 5}})
+    EXPECT_NEAR(volume_between(all, x, point), 1.0 / 3.0, 1e-15);
+  EXPECT_NEAR(volume_between(std::span(all).subspan(2, 1), x, {0, 0, 0}), 1.0 / 3.0, 1e-15);
+  EXPECT_EQ(volume_between(std::span(all).first(2), x, {0, 0, 0}), 0.0);
+}
+
 TEST(Orientation, TurnsTheFewerTrianglesOfEachPart) {
   const Mesh one = sphere(1.0, 3);
   Mesh mesh = one;

@@ -158,6 +158,7 @@ FlowScene scene_with_canopy() {
   scene.parameters.density = 1.0;
   scene.velocity = {"0", "0", "3"};
   scene.canopies.resize(1);
+  scene.output.history_every = 1;
   scene.canopies[0].diameter = std::sqrt(8.0 / std::numbers::pi);
   return scene;
 }
@@ -173,36 +174,45 @@ CanopyMeasures measures_of(double force, double velocity, double line_force) {
 
 TEST(CanopyRecord, MeansAreThoseOfAnInterval) {
   const FlowScene scene = scene_with_canopy();
-  CanopyRecord record(scene);
-  record.add(0.0, {measures_of(1e6, -2.0, 0.0)}, 1e-16, 0.0);
-  record.add(1.0, {measures_of(25.0, -2.0, 70.0)}, 3e-16, 0.0);
-  record.add(1.0, {measures_of(1e6, 0.0, 1e6)}, 1.0, 0.0);  // a row of the same time
-  record.add(3.0, {measures_of(50.0, -2.0, 60.0)}, 2e-16, 3.0);
-  record.add(4.0, {measures_of(72.0, -3.0, 10.0)}, 0.0, 0.0);
+  CanopyRecord record(scene, false);
+  record.add(1, 0.0, {measures_of(1e6, -2.0, 0.0)}, 1e-16, 0.0);
+  record.add(1, 1.0, {measures_of(25.0, -2.0, 70.0)}, 3e-16, 0.0);
+  record.add(1, 1.0, {measures_of(1e6, 0.0, 1e6)}, 1.0, 0.0);  // a row of the same time
+  record.add(1, 3.0, {measures_of(50.0, -2.0, 60.0)}, 2e-16, 3.0);
+  record.add(1, 4.0, {measures_of(72.0, -3.0, 10.0)}, 0.0, 0.0);
   // 2 F / (rho U^2 S0) = F / 25 at U = 5, F / 36 at U = 6; trapezoids of 2 s and 1 s.
   EXPECT_NEAR(record.mean_drag(0, 0.5, 5.0), (2.0 * 1.5 + 1.0 * 2.0) / 3.0, 1e-14);
   EXPECT_NEAR(record.mean_speed(0, 0.5, 5.0), (2.0 * 5.0 + 1.0 * 5.5) / 3.0, 1e-14);
   EXPECT_NEAR(record.mean_drag(0, 1.0, 3.0), 1.5, 1e-14);
   EXPECT_TRUE(std::isnan(record.mean_drag(0, 3.5, 5.0))) << "one row is no interval";
-  EXPECT_EQ(record.peaks().at(0).force, 70.0);
-  EXPECT_EQ(record.peaks().at(0).time, 1.0);
-  record.set_peaks({{75.0, 0.5}});  // of a step between the rows
-  EXPECT_EQ(record.peaks().at(0).force, 75.0);
   EXPECT_EQ(record.balance(), 3e-16);
   EXPECT_EQ(record.intersections(), 3.0);
   // Areas of a tenth of the line force: 7, 6 and 1 m^2.
   EXPECT_NEAR(record.mean_area(0, 0.5, 5.0), (2.0 * 6.5 + 1.0 * 3.5) / 3.0, 1e-14);
 }
 
+TEST(CanopyRecord, HasTheRowsOfARunWithoutInterruption) {
+  FlowScene scene = scene_with_canopy();
+  scene.output.history_every = 4;
+  scene.end_time = 3.0;
+  CanopyRecord record(scene, false);
+  record.add(4, 1.0, {measures_of(25.0, -2.0, 0.0)}, 0.0, 0.0);
+  record.add(5, 2.0, {measures_of(1e6, -2.0, 0.0)}, 0.0, 0.0);  // the state that a run continues from
+  record.add(7, 3.0, {measures_of(50.0, -2.0, 0.0)}, 0.0, 0.0);
+  EXPECT_NEAR(record.mean_drag(0, 0.0, 3.0), 1.5, 1e-14);
+  EXPECT_EQ(record.rows(), 2U);
+  EXPECT_EQ(record.rows(1.5, 3.0), 1U);
+}
+
 TEST(CanopyRecord, LeakIsThatOfAnIntervalRelativeToTheStream) {
   const FlowScene scene = scene_with_canopy();
-  CanopyRecord record(scene);
+  CanopyRecord record(scene, false);
   // Air that leaks inwards and outwards, with U = 5 m/s and an area of 4 m^2.
   const double times[] = {0.0, 1.0, 3.0, 4.0}, leaks[] = {1e6, -3.0, 1.0, -1.0};
   for (std::size_t row = 0; row < 4; ++row) {
     CanopyMeasures measures = measures_of(0.0, -2.0, 40.0);
     measures.leak = leaks[row];
-    record.add(times[row], {measures}, 0.0, 0.0);
+    record.add(1, times[row], {measures}, 0.0, 0.0);
   }
   // Trapezoids: means of the leak of -1 for 2 s and 0 for 1 s, and of its square of 5 and 1.
   EXPECT_NEAR(record.relative_leak(0, 0.5, 5.0), 2.0 / 3.0 / (5.0 * 4.0), 1e-15);
@@ -216,11 +226,11 @@ TEST(CanopyRecord, LeakRelativeToStillAirIsNoNumber) {
   FlowScene scene = scene_with_canopy();
   scene.velocity = {"0", "0", "0"};
   for (const double leak : {0.0, 1.0}) {
-    CanopyRecord record(scene);
+    CanopyRecord record(scene, false);
     CanopyMeasures measures = measures_of(0.0, 0.0, 40.0);
     measures.leak = leak;
-    record.add(0.0, {measures}, 0.0, 0.0);
-    record.add(1.0, {measures}, 0.0, 0.0);
+    record.add(1, 0.0, {measures}, 0.0, 0.0);
+    record.add(1, 1.0, {measures}, 0.0, 0.0);
     EXPECT_TRUE(std::isnan(record.relative_leak(0, 0.0, 1.0))) << leak;
     EXPECT_TRUE(std::isnan(record.relative_leak_rms(0, 0.0, 1.0))) << leak;
   }
@@ -228,9 +238,9 @@ TEST(CanopyRecord, LeakRelativeToStillAirIsNoNumber) {
 
 TEST(CanopyRecord, NonFiniteBalanceIsNotHidden) {
   const FlowScene scene = scene_with_canopy();
-  CanopyRecord record(scene);
-  record.add(1.0, {measures_of(1.0, 0.0, 1.0)}, std::nan(""), 0.0);
-  record.add(2.0, {measures_of(1.0, 0.0, 1.0)}, 0.0, 0.0);
+  CanopyRecord record(scene, false);
+  record.add(1, 1.0, {measures_of(1.0, 0.0, 1.0)}, std::nan(""), 0.0);
+  record.add(1, 2.0, {measures_of(1.0, 0.0, 1.0)}, 0.0, 0.0);
   EXPECT_TRUE(std::isnan(record.balance()));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "common/run/files/atomic_file.hpp"
 #include "common/version.hpp"
@@ -50,6 +51,27 @@ TEST(ResultDocument, HoldsEveryFieldOfTheSchema) {
   EXPECT_EQ(keys(json["provenance"]),
             sorted({"compiler", "flags", "kokkos", "cpu", "gpu", "driver", "date"}));
   EXPECT_TRUE(json["errors"].is_object());
+}
+
+TEST(ResultDocument, StatesRowsOfChecksAndWarnsOfFew) {
+  ResultDocument result;
+  result.add_check("of_the_end", 0.0, 1.0);
+  for (const auto& [rows, period] :
+       {std::pair{200U, 0.0}, {200U, 8.5}, {200U, std::nan("")}, {9U, 0.0}, {200U, 7.5}}) {
+    result.add_check("of_rows", 0.0, 1.0);
+    result.state_rows(rows, period);
+  }
+  const Json json = Json::parse(to_json(result));
+  EXPECT_FALSE(json["checks"][0].contains("rows"));
+  EXPECT_EQ(json["checks"][1]["rows"], 200);
+  EXPECT_EQ(json["checks"][4]["rows"], 9);
+  ASSERT_EQ(json["warnings"].size(), 2U);
+  EXPECT_EQ(
+      json["warnings"][0].get<std::string>().find("of_rows is computed from 9 rows of history.csv, which"),
+      0U);
+  EXPECT_EQ(json["warnings"][1].get<std::string>().find(
+                "of_rows is computed from 7.5 rows of history.csv in a period"),
+            0U);
 }
 
 TEST(ResultDocument, WritesMetricGroupsInOrderBetweenChecksAndTiming) {
