@@ -189,7 +189,7 @@ class Restart(springs_program.SpringsTest):
         self.finish("serial", "part")
         sets = [*SETS, "time.end_time=3", "output.times=[0.6, 1.1, 1.3, 3]"]
         message = self.expect(6, self.scene, "--quiet", "--backend", "serial", "--out", "part", "--restart", "auto", sets=sets).stderr
-        self.assertIn("output.times 1.1: the run continues from t = 2.5 s", message)
+        self.assertIn("output.times 1.1: the run continues from t = 2.49", message)
 
 
 if __name__ == "__main__":
