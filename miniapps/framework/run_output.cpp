@@ -48,7 +48,7 @@ void require_output_times(Simulation& simulation, const RunFiles& files) {
   for (const double time : missing) times += (times.empty() ? "" : ", ") + scene::real_text(time);
   throw Failure(ExitCode::io_error,
                 "cannot write the fields at output.times " + times + ": the run continues from t = " +
-                    scene::real_text(now) + " s, and '" + (directory / "fields.h5").string() +
+                    scene::rounded_text(now) + " s, and '" + (directory / "fields.h5").string() +
                     "' does not hold them; leave these times out, or begin anew with --overwrite");
 }
 

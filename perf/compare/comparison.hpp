@@ -31,8 +31,8 @@ struct ComparedCase {
   bool untimed = false;  ///< the old records have no samples either: values that are computed
 };
 
-/// True if the old records tell something of the case that the new ones leave unknown: it vanished, or its
-/// times have another meaning or none. Does not throw.
+/// True if the new records leave a case of the old ones unknown: it vanished, or its times have another
+/// meaning, or there are none. Does not throw.
 bool is_lost(const ComparedCase& row);
 
 /// Verdicts of all cases: those of `after` in its order, then those of `before` alone. Several records of a

@@ -47,19 +47,20 @@ void reserve(const std::filesystem::path& file, std::uint64_t bytes) {
 
 /// Times of the outputs of a file, s, and that at which a continued run began it; before all time if none
 /// did.
-struct HeldTimes {
+struct WrittenTimes {
   std::set<double> times;
   double begins_after = -std::numeric_limits<double>::infinity();
 };
 
-HeldTimes held_times(const std::filesystem::path& file) {
+WrittenTimes written_times(const std::filesystem::path& file) {
   const h5::Handle handle = h5::open_file(file, false);
   const h5::Handle index = h5::open_group(handle, "steps");
-  HeldTimes held;
+  WrittenTimes written;
   for (const std::string& name : h5::children(index))
-    held.times.insert(h5::read_number(h5::open_group(index, name), "time"));
-  if (h5::has_attribute(handle, "begins_after")) held.begins_after = h5::read_number(handle, "begins_after");
-  return held;
+    written.times.insert(h5::read_number(h5::open_group(index, name), "time"));
+  if (h5::has_attribute(handle, "begins_after"))
+    written.begins_after = h5::read_number(handle, "begins_after");
+  return written;
 }
 
 h5::Handle create_described(const h5::Handle& parent, const std::string& name, const DatasetSpec& spec,
@@ -287,17 +288,17 @@ std::vector<double> FieldsWriter::missing_times(const std::filesystem::path& dir
   std::error_code absent;
   const bool is_here = std::filesystem::equivalent(directory, former, absent);
   const std::filesystem::path own = directory / "fields.h5", other = former / "fields.h5";
-  HeldTimes held;
+  WrittenTimes written;
   for (const std::filesystem::path& file : {own, other}) {
     if (!std::filesystem::exists(file)) continue;
-    const HeldTimes found = held_times(file);
-    held.times.insert(found.times.begin(), found.times.end());
-    held.begins_after = std::max(held.begins_after, found.begins_after);
+    const WrittenTimes found = written_times(file);
+    written.times.insert(found.times.begin(), found.times.end());
+    written.begins_after = std::max(written.begins_after, found.begins_after);
   }
   if (!is_here && !std::filesystem::exists(other)) return {};
   std::vector<double> missing;
   for (const double time : times)
-    if (time > held.begins_after && time <= resume_time && !held.times.contains(time))
+    if (time > written.begins_after && time <= resume_time && !written.times.contains(time))
       missing.push_back(time);
   return missing;
 }

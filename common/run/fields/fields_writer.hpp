@@ -43,10 +43,10 @@ class FieldsWriter : public FieldSink {
   static void require_same_fields(const std::filesystem::path& directory,
                                   const std::vector<DatasetSpec>& fields, double resume_time);
 
-  /// Those of `times`, s, ascending, up to `resume_time`, of which neither the file of `directory` nor that
-  /// of `former`, the directory of the restart file, has an output. Times up to the one at which a file was
-  /// begun by a continued run are not missing: a run elsewhere wrote them. `former` without a file tells
-  /// nothing, so that then none is missing, unless it is `directory`.
+  /// Times among `times`, s, ascending, up to `resume_time`, at which neither the file of `directory` nor
+  /// that of `former`, the directory of the restart file, has an output. Times up to the one at which a
+  /// continued run began a file are not missing: a run elsewhere wrote them. None is missing if `former` is
+  /// another directory without a file.
   [[nodiscard]] static std::vector<double> missing_times(const std::filesystem::path& directory,
                                                          const std::filesystem::path& former,
                                                          const std::vector<double>& times,
