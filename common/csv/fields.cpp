@@ -8,6 +8,8 @@
 namespace drogue::csv {
 namespace {
 
+constexpr std::string_view no_utf8 = "the line is not UTF-8; save the file as UTF-8";
+
 bool is_gap(char c) { return c == ' ' || c == '\t'; }
 
 inline std::string_view trimmed(std::string_view text) {
@@ -38,6 +40,26 @@ Word places_of(char c, Word word) {
   return ~(((zero_there & low) + low) | zero_there | low);
 }
 
+/// True if bytes from 0x80 on are well-formed UTF-8 (RFC 3629).
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = [&](std::size_t k) {
+      return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U;
+    };
+    const unsigned first = byte(i), second = byte(i + 1);
+    const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    if (length == 0 || first > 0xf4) return false;
+    for (std::size_t k = 1; k < length; ++k)
+      if ((byte(i + k) & 0xc0U) != 0x80) return false;
+    // Overlong forms, surrogates, and what lies beyond Unicode.
+    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
+        (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f))
+      return false;
+    i += length;
+  }
+  return true;
+}
+
 bool needs_quotes(char c) { return c == ',' || c == '"' || c == '\r' || c == '\n'; }
 
 }  // namespace
@@ -45,11 +67,14 @@ bool needs_quotes(char c) { return c == ',' || c == '"' || c == '\r' || c == '\n
 std::string_view Fields::split(std::string_view line) {
   _values.clear();
   std::size_t begin = 0;
+  constexpr Word high_bits = 0x8080808080808080;
+  Word high = 0;
   for (std::size_t at = 0; at < line.size(); at += sizeof(Word)) {
     const Word word = word_at(line, at);
+    high |= word & high_bits;
     if (places_of('"', word) != 0) {
       _values.clear();
-      return split_quoted(line);
+      return is_utf8(line) ? split_quoted(line) : no_utf8;
     }
     for (Word commas = places_of(',', word); commas != 0; commas &= commas - 1) {
       const std::size_t comma = at + static_cast<std::size_t>(std::countr_zero(commas)) / 8;
@@ -58,7 +83,9 @@ std::string_view Fields::split(std::string_view line) {
     }
   }
   _values.push_back(trimmed(line.substr(begin)));
-  return {};
+  if (high == 0 || is_utf8(line)) return {};
+  _values.clear();
+  return no_utf8;
 }
 
 std::string_view Fields::split_quoted(std::string_view line) {
@@ -106,7 +133,10 @@ bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x
 
 std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
-  std::string start(text.substr(0, most));
+  std::size_t cut = std::min(text.size(), most);
+  while (cut > 0 && cut < text.size() && (static_cast<unsigned char>(text[cut]) & 0xc0U) == 0x80)
+    --cut;  // whole UTF-8 characters
+  std::string start(text.substr(0, cut));
   std::replace_if(start.begin(), start.end(), is_control, '?');
   return '"' + start + (text.size() > most ? "..." : "") + '"';
 }

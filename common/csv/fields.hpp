@@ -11,7 +11,7 @@ namespace drogue::csv {
 class Fields {
  public:
   /// Splits `line`, which must outlive the fields. Returns the fault as a clause, or an empty text; after a
-  /// fault the fields before it are kept. Does not throw.
+  /// fault the fields before it are kept, none of a line that is not UTF-8. Does not throw.
   std::string_view split(std::string_view line);
 
   /// Removes empty fields at the end beyond `count`, which spreadsheets write. Does not throw.

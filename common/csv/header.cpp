@@ -23,6 +23,15 @@ const char* separator_in(std::string_view text) {
   return text.find('|') != std::string_view::npos ? "a vertical line" : nullptr;
 }
 
+/// True for the beginning of UTF-32, with a byte-order mark or with three bytes of 0 beside a character.
+bool is_utf32(std::string_view text) {
+  constexpr std::string_view zeros("\0\0\0", 3);
+  if (text.starts_with(std::string_view("\xFF\xFE\0\0", 4)) ||
+      text.starts_with(std::string_view("\0\0\xFE\xFF", 4)))
+    return true;
+  return text.size() > 3 && (text.starts_with(zeros) || text.substr(1).starts_with(zeros));
+}
+
 /// True for the beginning of UTF-16, with a byte-order mark or with every other byte 0.
 bool is_utf16(std::string_view text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
@@ -35,6 +44,7 @@ std::string fault_of(const Line& line) {
   if (line.too_long)
     return line.holds_cr ? std::string(cr_alone)
                          : "the header is longer than " + std::to_string(LineReader::longest) + " bytes";
+  if (is_utf32(line.text)) return "the encoding is UTF-32; save the file as UTF-8";
   if (is_utf16(line.text)) return "the encoding is UTF-16; save the file as UTF-8";
   return line.text.find('\r') != std::string_view::npos ? std::string(cr_alone) : std::string();
 }
@@ -49,6 +59,12 @@ std::string unknown_column(std::string_view name, const std::vector<std::string>
   return sentence + "; " + scene::suggestion(std::string(name), names);
 }
 
+/// The line without the quotes around all of it.
+std::string_view unquoted(std::string_view text) {
+  return text.size() > 1 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2)
+                                                                      : text;
+}
+
 /// True for the line by which spreadsheets name the separator.
 bool names_separator(std::string_view text) { return text.starts_with("sep=") || text.starts_with("SEP="); }
 
@@ -57,8 +73,8 @@ bool names_separator(std::string_view text) { return text.starts_with("sep=") ||
 Header read_header(LineReader& reader, const std::vector<std::string>& names) {
   Line line;
   bool is_present = reader.next(line);
-  if (is_present && names_separator(line.text)) {
-    const std::string_view separator = line.text.substr(4);
+  if (const std::string_view text = unquoted(line.text); is_present && names_separator(text)) {
+    const std::string_view separator = text.substr(4);
     if (const char* other = separator_in(separator))
       throw invalid_at(reader.file(), line.number,
                        std::string("the separator is ") + other + "; separate columns by commas");
@@ -78,7 +94,7 @@ Header read_header(LineReader& reader, const std::vector<std::string>& names) {
     if (place >= 0) throw invalid_at(reader.file(), line.number, "column \"" + *name + "\" is named twice");
     place = static_cast<int>(i);
   }
-  reader.skip_empty_rows(fields.size());
+  if (fields.size() > 1) reader.skip_empty_rows();
   return {line.number, std::move(places)};
 }
 

@@ -22,9 +22,10 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(" \t") == std::string_view::npos; }
 
-bool is_empty_row(std::string_view text, std::size_t columns) {
-  return columns > 1 && text.find_first_not_of(" \t,") == std::string_view::npos &&
-         static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) + 1 >= columns;
+/// True for fields that are empty or quoted blanks.
+bool is_empty_row(std::string_view text) {
+  return text.find_first_not_of(" \t,\"") == std::string_view::npos &&
+         text.find("\"\"\"") == std::string_view::npos && std::count(text.begin(), text.end(), '"') % 2 == 0;
 }
 
 }  // namespace
@@ -116,7 +117,8 @@ bool LineReader::next_line(Line& line) {
 
 bool LineReader::next(Line& line) {
   while (next_line(line))
-    if (line.too_long || !(is_blank(line.text) || is_empty_row(line.text, _columns))) return true;
+    if (line.too_long || !(is_blank(line.text) || (_skips_empty_rows && is_empty_row(line.text))))
+      return true;
   return false;
 }
 

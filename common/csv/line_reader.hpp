@@ -30,8 +30,8 @@ class LineReader {
   /// Reads the next line; false at the end. Throws `Failure` (io_error).
   bool next(Line& line);
 
-  /// Lines of at least so many empty fields are blank from now on: spreadsheets write rows of commas.
-  void skip_empty_rows(std::size_t columns) { _columns = columns; }
+  /// Lines of empty fields, quoted or not, are blank from now on: spreadsheets write rows of commas.
+  void skip_empty_rows() { _skips_empty_rows = true; }
 
   [[nodiscard]] const std::filesystem::path& file() const { return _file; }
 
@@ -47,7 +47,7 @@ class LineReader {
   int _descriptor = -1;
   std::vector<char> _buffer;
   std::size_t _begin = 0, _end = 0;  ///< unread part of `_buffer`
-  std::size_t _columns = 0;          ///< of an empty row; 0: none is skipped
+  bool _skips_empty_rows = false;
   std::int64_t _size = 0, _read = 0, _number = 0;
 };
 

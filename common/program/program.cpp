@@ -75,6 +75,7 @@ Failure current_failure() {
 }
 
 void print_notice(const std::string& program, const std::string& sentence) {
+  std::fflush(stdout);  // what was printed before stands before it, also where both go to one pipe
   std::fprintf(stderr, "%s: %s\n", program.c_str(), sentence.c_str());
 }
 
@@ -87,6 +88,7 @@ int run_program(const std::string& program, const std::function<ExitCode()>& bod
     const Failure failure = current_failure();
     code = failure.code();
     if (launched_rank().rank == 0) {
+      std::fflush(stdout);
       const bool located = code == ExitCode::invalid_scene;
       std::fprintf(stderr, "%s%s%s\n", located ? "" : program.c_str(), located ? "" : ": ", failure.what());
     } else {

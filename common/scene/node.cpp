@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace drogue::scene {
 
@@ -46,6 +48,12 @@ std::string real_text(double value) {
   std::string text(buffer.data(), end);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
+}
+
+std::string rounded_text(double value) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.12g", value);
+  return real_text(std::strtod(buffer.data(), nullptr));
 }
 
 std::string shortened(const std::string& text, std::size_t longest) {

@@ -56,4 +56,7 @@ std::string toml_string(std::string_view text);
 /// Shortest TOML float that reads back as the same double.
 std::string real_text(double value);
 
+/// `real_text` of the value rounded to 12 digits: a computed number without its round-off, for sentences.
+std::string rounded_text(double value);
+
 }  // namespace drogue::scene

@@ -56,7 +56,7 @@ struct Parameters {
   Precision precision = Precision::full;
   double cfl = 0.6;       ///< Courant number: dt = cfl dx / max(|u|+c)
   int ramp_steps = 20;    ///< step k < ramp_steps scales dt by 0.1 + 0.9 k / ramp_steps
-  double fixed_dt = 0.0;  ///< s; a positive value replaces the CFL condition
+  double fixed_dt = 0.0;  ///< s; a positive value replaces the CFL condition and is never halved
   std::int64_t max_steps = 1'000'000;
   int block = 0;  ///< threads per team on a device, cells per tile on a host; 0: the default of the backend
   /// `automatic` and `persistent` need a mesh that fits the shared memory, lf_stencil, and no limiter from

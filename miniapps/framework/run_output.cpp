@@ -7,6 +7,7 @@
 
 #include "common/run/fields/fields_writer.hpp"
 #include "common/run/files/io_error.hpp"
+#include "common/scene/node.hpp"
 
 namespace drogue::framework {
 namespace {
@@ -34,6 +35,23 @@ double last_row_to_keep(Simulation& simulation) {
   return is_end || has_row ? now.time : std::nextafter(now.time, -1.0);
 }
 
+/// Throws if the run has passed output times of the scene without an output: they would silently be left out.
+void require_output_times(Simulation& simulation, const RunFiles& files) {
+  const std::filesystem::path& directory = files.directory->path();
+  const std::filesystem::path former =
+      files.restart.has_parent_path() ? files.restart.parent_path() : std::filesystem::path(".");
+  const double now = simulation.now().time;
+  const std::vector<double> missing =
+      run::FieldsWriter::missing_times(directory, former, simulation.output().times, now);
+  if (missing.empty()) return;
+  std::string times;
+  for (const double time : missing) times += (times.empty() ? "" : ", ") + scene::real_text(time);
+  throw Failure(ExitCode::io_error,
+                "cannot write the fields at output.times " + times + ": the run continues from t = " +
+                    scene::rounded_text(now) + " s, and '" + (directory / "fields.h5").string() +
+                    "' does not hold them; leave these times out, or begin anew with --overwrite");
+}
+
 }  // namespace
 
 void write_restart_file(const std::filesystem::path& file, const std::string& fingerprint,
@@ -47,9 +65,10 @@ void require_continuable(Simulation& simulation, const RunFiles& files) {
   if (files.directory == nullptr) return;
   if (simulation.output().history_every > 0)
     run::require_same_columns(files.directory->file("history.csv"), simulation.history_columns());
-  if (!simulation.output().fields.empty())
-    run::FieldsWriter::require_same_fields(files.directory->path(), simulation.field_specs(),
-                                           simulation.now().time);
+  if (simulation.output().fields.empty()) return;
+  run::FieldsWriter::require_same_fields(files.directory->path(), simulation.field_specs(),
+                                         simulation.now().time);
+  require_output_times(simulation, files);
 }
 
 RunOutput::RunOutput(Simulation& simulation, const RunFiles& files)

@@ -24,7 +24,8 @@ void write_restart_file(const std::filesystem::path& file, const std::string& fi
                         Simulation& simulation);
 
 /// Throws `Failure` (io_error) if history.csv or fields.h5 of the run directory cannot be continued by
-/// `simulation`, which has the state of a restart file. Changes nothing.
+/// `simulation`, which has the state of a restart file, or if output times of the scene have passed without
+/// an output in fields.h5 or in the one beside the restart file. Changes nothing.
 void require_continuable(Simulation& simulation, const RunFiles& files);
 
 /// The files of a run that grow while it steps: history.csv, fields.h5, restart.h5, each only if the scene

@@ -104,7 +104,7 @@ void ChunkPricer::price_pending(WorkQueue& queue) {
     append_price(_results, _layout, row, contract, price, _sensitivities[priced++]);
     if (!_command.boundary.empty() && contract.style == options::Style::american &&
         price.status != options::PriceStatus::failed)
-      append_boundary(_results, row, boundary_of(contract, price));
+      append_boundary(_results, row, contract.maturity, boundary_of(contract, price));
     if (_results.prices.size() + _results.boundaries.size() >= max_result_bytes) submit(queue, false);
   }
   _pending.clear();

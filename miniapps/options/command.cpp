@@ -150,9 +150,10 @@ std::vector<double> parse_values(const std::string& option, const std::string& t
   constexpr double min = 1e-300, max = 1e300;
   constexpr int max_values = 10000;
   const char separator = text.find(':') == std::string::npos ? ',' : ':';
-  const std::vector<std::string> parts = trimmed_parts(text, separator);
+  std::vector<std::string> parts = trimmed_parts(text, separator);
   std::vector<double> values;
   if (separator == ',') {
+    if (parts.size() > 1 && parts.back().empty()) parts.pop_back();  // a comma at the end
     if (parts.size() > max_values)
       throw Failure(ExitCode::usage, option + " has more than " + std::to_string(max_values) + " values");
     for (const std::string& part : parts) values.push_back(parse_number(option, part, min, max));

@@ -23,10 +23,10 @@ struct CompareOptions {
   [[nodiscard]] bool named(const char* name) const {
     return std::ranges::find(fail_on, name) != fail_on.end();
   }
-  /// True if a gate does not pass this case. One that vanished, or whose samples could not have shown a
-  /// change, has not been looked at.
+  /// True if a gate does not pass this case. One that vanished or that cannot be compared, or whose samples
+  /// could not have shown a change, has not been looked at.
   [[nodiscard]] bool fails(const ComparedCase& row) const {
-    if (row.presence == Presence::old_alone) return !fail_on.empty() && !allow_missing;
+    if (is_lost(row)) return !fail_on.empty() && !allow_missing;
     if (row.speed && !has_interval(*row.speed)) return named("slower");
     return (row.verdict == Verdict::slower && named("slower")) ||
            (row.verdict == Verdict::error_changed && named("error"));
@@ -62,7 +62,7 @@ Failure failure(const std::vector<ComparedCase>& failed) {
     sentence += (sentence.empty() ? "" : "; ") + row.name + ": " + describe(row);
     if (row.verdict == Verdict::slower)
       sentence += ", where " + percent(row.speed->least) + " count as a change";
-    if (row.presence == Presence::old_alone) sentence += "; --allow-missing lets it pass";
+    if (is_lost(row)) sentence += "; --allow-missing lets it pass";
   }
   return {ExitCode::verification_failed, sentence};
 }
@@ -92,6 +92,8 @@ ExitCode compare_files(const CompareOptions& options, const std::regex& filter) 
   for (const std::string& sentence : baseline.broken) std::printf("left out: %s\n", sentence.c_str());
   std::printf("old: %s\nnew: %s%s\n", describe_origin(before).c_str(), describe_origin(after).c_str(),
               describe_age(before, after.back()).c_str());
+  if (is_of_one_commit(before, after))
+    std::printf("both are of one commit: what differs is the machine, its load or the flags\n");
   const std::vector<ComparedCase> rows = compare_records(before, after);
   print(rows);
   std::printf("%s\n", summary(rows).c_str());
@@ -122,12 +124,11 @@ Command compare_command(CLI::App& program) {
   app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
   app->add_option("--fail-on", options->fail_on,
                   "Verdicts that give exit code 5: slower, error, or missing, several by commas; any of them "
-                  "fails where "
-                  "a case of OLD is missing in NEW")
+                  "fails where a case of OLD is missing in NEW or cannot be compared")
       ->delimiter(',')
       ->check(CLI::IsMember({"slower", "error", "missing"}));
   app->add_flag("--allow-missing", options->allow_missing,
-                "With --fail-on, cases of OLD may be missing in NEW");
+                "With --fail-on, cases of OLD may be missing in NEW or not comparable");
   app->add_flag("--github", options->github, "Print annotations for GitHub workflows too");
   return {app, [options](const std::vector<std::string>&) {
             return compare_files(*options, filter_of(options->filter));

@@ -168,6 +168,13 @@ std::string describe_origin(const std::vector<MeasuredCase>& records) {
   return oldest == latest ? oldest : oldest + ", to " + latest;
 }
 
+bool is_of_one_commit(const std::vector<MeasuredCase>& before, const std::vector<MeasuredCase>& after) {
+  const std::string commit = before.front().origin("git");
+  const auto is_same = [&](const MeasuredCase& record) { return record.origin("git") == commit; };
+  const bool is_known = !commit.empty() && commit != "unknown" && !commit.ends_with("-dirty");
+  return is_known && std::ranges::all_of(before, is_same) && std::ranges::all_of(after, is_same);
+}
+
 std::string describe_age(const std::vector<MeasuredCase>& before, const MeasuredCase& after) {
   const auto old_date = seconds_of(oldest_of(before).origin("date")),
              new_date = seconds_of(after.origin("date"));

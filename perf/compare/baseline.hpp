@@ -36,6 +36,9 @@ BaselineFile file_for_baseline(const std::string& folder, const nlohmann::json& 
 /// empty. Does not throw.
 std::string describe_origin(const std::vector<MeasuredCase>& records);
 
+/// True if all records are of one commit, which is known and without changes. Does not throw.
+bool is_of_one_commit(const std::vector<MeasuredCase>& before, const std::vector<MeasuredCase>& after);
+
 /// Words on how much later `after` was measured than the oldest record of `before`, which is not empty,
 /// opening with a semicolon; empty if a date is unknown. Advises to measure the old commit again after
 /// `largest_age` days. Does not throw.

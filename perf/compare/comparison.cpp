@@ -76,8 +76,11 @@ ComparedCase compare_case(const CaseRuns& before, const CaseRuns& after) {
     return {after.name, Verdict::error_changed, *reason, {}};
   if (!after.last.passed)
     return {after.name, Verdict::not_comparable, "the check of both records failed", {}};
-  if (before.runs.empty() || after.runs.empty())
-    return {after.name, Verdict::not_comparable, "a record without samples", {}};
+  if (before.runs.empty() || after.runs.empty()) {
+    ComparedCase row{after.name, Verdict::not_comparable, "a record without samples", {}};
+    row.untimed = before.runs.empty();
+    return row;
+  }
   return {after.name,
           Verdict::ambiguous,
           "",
@@ -119,6 +122,10 @@ const char* word(Verdict verdict) {
       break;
   }
   return "ERROR-CHANGED";
+}
+
+bool is_lost(const ComparedCase& row) {
+  return row.verdict == Verdict::not_comparable && row.presence != Presence::new_alone && !row.untimed;
 }
 
 std::vector<ComparedCase> compare_records(const std::vector<MeasuredCase>& before,

@@ -28,7 +28,12 @@ struct ComparedCase {
   double new_time = 0.0;
   std::string unit = {};  ///< of the times
   Presence presence = Presence::both;
+  bool untimed = false;  ///< the old records have no samples either: values that are computed
 };
+
+/// True if the new records leave a case of the old ones unknown: it vanished, or its times have another
+/// meaning, or there are none. Does not throw.
+bool is_lost(const ComparedCase& row);
 
 /// Verdicts of all cases: those of `after` in its order, then those of `before` alone. Several records of a
 /// case in a file are runs of one build, whose differences are noise. Throws Failure(invalid_scene) if such

@@ -1,5 +1,6 @@
 """Checks of result.json in headings and tables: which one a picture names, and with what words."""
 
+import math
 import re
 
 # Met by every solution to round-off, by most solutions closely, and without a limit for a mesh.
@@ -9,9 +10,19 @@ INVARIANTS = _TRIVIAL + _USUAL  # do not converge with the mesh
 _IS_ERROR = re.compile(r"(l1|l2|linf)_|cauchy_|cos_difference")
 
 
+def _excess(check: dict) -> float:
+    """Value of a check over its tolerance; infinite without a finite value or a tolerance."""
+    value, tolerance = check.get("value"), check["tolerance"]
+    return value / tolerance if value is not None and math.isfinite(value) and tolerance > 0 else math.inf
+
+
 def main_check(result: dict) -> dict:
-    """The most telling check of a run: the first that is no invariant, else the first that not every solution meets; {} of none."""
+    """The check that failed by the largest factor, else the most telling one: the first that is no invariant, else the
+    first that not every solution meets; {} of none.
+    """
     checks = result.get("checks", [])
+    if failed := [check for check in checks if not check["passed"]]:
+        return max(failed, key=_excess)
     return min(checks, key=lambda check: 2 * (check["name"] in _TRIVIAL) + (check["name"] in _USUAL), default={})
 
 
@@ -23,9 +34,18 @@ def check_label(name: str) -> str:
 
 
 def check_caption(result: dict) -> str:
-    """Value and tolerance of the main check, as the end of a subtitle; empty without a value."""
+    """Value and tolerance of the main check, as the end of a subtitle, and whether it or the run failed; else empty."""
     check = main_check(result)
-    if check.get("value") is None:
+    if result.get("status") == "numerical-failure":
+        return ", FAILED: numerical failure"
+    if check.get("value") is None and check.get("passed", True):
         return ""
     words = check_label(re.sub(r"_0(?=_|$)", "", check["name"]))
-    return f", {words} {check['value']:.2g} (tolerance {check['tolerance']:.2g})"
+    value = "is not finite" if check["value"] is None else f"{check['value']:.2g}"
+    return f", {'' if check['passed'] else 'FAILED: '}{words} {value} (tolerance {check['tolerance']:.2g})"
+
+
+def failure_caption(result: dict) -> str:
+    """`check_caption` of a run that failed; of others empty."""
+    caption = check_caption(result)
+    return caption if caption.startswith(", FAILED") else ""

@@ -1,5 +1,6 @@
 """`matplotlib` as it was installed: without the user's backend, matplotlibrc and styles. Import it before its parts."""
 
+import logging
 import os
 from pathlib import Path
 
@@ -8,6 +9,7 @@ def _import():
     """matplotlib reads the first matplotlibrc of the working folder, MATPLOTLIBRC and the user's settings, and fails on a bad one."""
     os.environ.pop("MPLBACKEND", None)
     os.environ["MATPLOTLIBRC"] = os.devnull
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns of an MPLCONFIGDIR that it cannot make
     working_folder = os.open(".", os.O_PATH)
     try:
         os.chdir(Path(__file__).parent)

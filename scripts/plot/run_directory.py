@@ -122,7 +122,7 @@ def _read_history(file: Path) -> dict[str, Field]:
     with file.open(newline="") as stream:
         rows = [row for row in csv.reader(stream) if row]
     if not rows:
-        return {}
+        raise ValueError("it is empty, without a line of columns")
     columns = {}
     for index, header in enumerate(rows[0]):
         name, _, units = header.partition("[")

@@ -48,7 +48,7 @@ class Fault(gas_program.GasTest):
         for name in ("l1_density", "linf_pressure"):
             with self.subTest(name):
                 self.assert_fails("shu-osher", name, 1e-3, sets=[
-                    "mesh.cells=100", "verify.reference.cells=200", "verify.l1_density=10.0", f"verify.{name}=1e-3"])
+                    "mesh.cells=100", "verify.reference.cells=400", "verify.l1_density=10.0", f"verify.{name}=1e-3"])
 
     def test_detects_conservation_errors(self):
         self.assert_fails("sod", "conservation", 1e-18, sets=[*COARSE, "verify.conservation=1e-18"])

@@ -122,6 +122,19 @@ class Lessons(unittest.TestCase):
                         stated += 1
         self.assertGreater(stated, 8)
 
+    def test_factors_that_an_answer_states_are_those_of_the_records(self):
+        """`on PLACE `RUNG` is N times as fast as `RUNG`[, WORDS,] and M times as fast as `RUNG``, of any ladder that has these rungs."""
+        text = " ".join((ROOT / "docs/lessons/answers.md").read_text(encoding="utf-8").split())
+        stated = 0
+        for place, rung, rest in re.findall(r"on (an H100|one core|two threads) `([a-z-]+)` is ([^:.;]*(?:\.\d[^:.;]*)*)", text):
+            (backend,) = PLACES[place]
+            for number, other in re.findall(r"([0-9.]+) times as fast as `([a-z-]+)`", rest):
+                found = [recorded[other][0] / recorded[rung][0] for recorded in (times(ladder).get(backend, {}) for ladder in LADDERS)
+                         if {rung, other} <= recorded.keys()]
+                self.assertEqual([float(number)], [round(factor, len(number.partition(".")[2])) for factor in found], f"{place}: {rung}, {other}")
+                stated += 1
+        self.assertEqual(5, stated)
+
     def test_counts_that_a_header_states_are_those_of_its_arithmetic(self):
         """`N % fewer operations` and `N divisions of M` against the counted work of two fluxes, which tests count by running them."""
         counts = {}

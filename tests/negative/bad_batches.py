@@ -75,7 +75,7 @@ BAD_ROWS = [
 BAD_LINES = [
     ("only,three,fields", ["3 fields", "13"]),
     (GOOD + ",more", ["14 fields", "13"]),
-    (",", ["2 fields"]),
+    ("x,", ["2 fields"]),
     ('"open' + GOOD, ["quoted field does not end"]),
     ('"closed"x' + GOOD, ["text follows the quote"]),
     ('in"side' + GOOD, ["quote stands inside"]),
@@ -122,6 +122,7 @@ BAD_FILES = [
     (f"sep=;\n{HEADER}".encode(), 1, ["the separator is a semicolon"]),
     (f"{HEADER}\n{GOOD}\n".encode("utf-16"), 1, ["the encoding is UTF-16"]),
     (f"{HEADER}\n{GOOD}\n".encode("utf-16-be"), 1, ["the encoding is UTF-16"]),
+    (f"{HEADER}\n{GOOD}\n".encode("utf-32"), 1, ["the encoding is UTF-32"]),
     (f"{HEADER}\r{GOOD}\r".encode(), 1, ["the lines end in CR alone"]),
     (f"{HEADER},,\n{GOOD},,\n".encode(), 1, ["unknown column", "comma", "remove the empty columns"]),
     (b'"' + HEADER.encode(), 1, ["header", "does not end"]),

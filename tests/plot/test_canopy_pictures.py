@@ -17,6 +17,7 @@ from matplotlib.patches import Circle
 from matplotlib.text import Text
 from PIL import Image, ImageSequence
 from plot import cli, shading, style
+from plot.checks import check_caption, failure_caption
 from plot.flow.plane import plane_of
 from plot.flow.quantities import quantities
 from plot.parachute.canopies import Canopies, has_canopies, plane_through_canopy
@@ -283,7 +284,23 @@ class CanopyPictures(unittest.TestCase):
         check = {"value": 0.03, "tolerance": 0.1, "passed": True}
         run.result["checks"] = [check | {"name": name} for name in ("divergence", "drag_0", "force_balance")]
         (title,) = [text.get_text() for text in canopy_figure(self.view(run), run.snapshots[2]).texts if "t =" in text.get_text()]
-        self.assertIn("drag off by 0.03 (tolerance 0.1)", title)
+        self.assertIn(", drag off by 0.03 (tolerance 0.1)", title)
+
+    def test_says_in_every_heading_which_check_failed_most(self):
+        run = read_run(write_canopies(self.folder / "run", payload_speed=1.0))
+        failed = {"name": "divergence", "value": 2e-6, "tolerance": 1e-9, "passed": False}
+        run.result["checks"] = [{"name": "drag_0", "value": 0.03, "tolerance": 0.1, "passed": True}, failed,
+                                failed | {"name": "momentum", "value": 2e-9}]  # fmt: skip
+        words = ", FAILED: divergence 2e-06 (tolerance 1e-09)"
+        for figure in (canopy_figure(self.view(run), run.snapshots[2]), canopies_history_figure(run)):
+            self.assertTrue(any(text.get_text().endswith(words) for text in figure.texts))
+        run.result["checks"] = [failed | {"value": None}, failed]
+        self.assertEqual(", FAILED: divergence is not finite (tolerance 1e-09)", check_caption(run.result))
+        run.result["checks"] = [failed | {"value": 1e-3, "tolerance": 0.0}, failed]
+        self.assertEqual(", FAILED: divergence 0.001 (tolerance 0)", check_caption(run.result))
+        self.assertEqual(", FAILED: numerical failure", check_caption({"status": "numerical-failure", "checks": []}))
+        run.result["checks"] = [failed | {"passed": True}]
+        self.assertEqual("", failure_caption(run.result))
 
     def test_shades_are_equal_for_both_sides_and_limited(self):
         corners = np.random.default_rng(5).normal(size=(200, 3, 3))

@@ -1,6 +1,7 @@
 """Figures of synthetic runs of drogue-parachute."""
 
 import contextlib
+import dataclasses
 import io
 import shutil
 import tempfile
@@ -378,6 +379,8 @@ class FlowPictures(unittest.TestCase):
             for is_open in (False, True)
         )
         self.assertEqual((True, False), (keeps_energy(closed), keeps_energy(opened)))
+        for name in ("body", "canopy", "flag"):
+            self.assertFalse(keeps_energy(dataclasses.replace(closed, scene=closed.scene | {name: [{"mount": {"stiffness": 40.0}}]})))
         dissipation = flow_history_figure(closed).axes[1]
         np.testing.assert_allclose(dissipation.lines[0].get_ydata(), [1, 2, 3])
         np.testing.assert_allclose(dissipation.lines[1].get_xydata(), [[0.25, 2], [0.75, 6]])

@@ -111,6 +111,11 @@ class Isolation(unittest.TestCase):
                 self.assertEqual(plain, self.assert_draws({"MATPLOTLIBRC": str(settings), "MPLBACKEND": "absent"}))
                 (self.here / "matplotlibrc").unlink()
 
+    def test_folder_of_settings_that_cannot_be_made_prints_nothing(self):
+        """It is below a file, so that no user can make it."""
+        (self.folder / "file").touch()
+        self.assert_draws({"MPLCONFIGDIR": str(self.folder / "file" / "settings")})
+
     def test_finds_packages_of_a_path_where_the_interpreter_has_none(self):
         bare = self.folder / "bare"
         subprocess.run([sys.executable, "-m", "venv", "--without-pip", bare], check=True)

@@ -16,7 +16,7 @@ from plot.options.prices_figure import prices_figure
 assert packages.SOURCE
 
 SURFACE = "id,strike,maturity,price\na,1,0.5,0.1\na,2,0.5,1.1\na,1,1,0.2\na,2,1,1.2\nb,1,1,7\nbad,,,\n"
-BOUNDARY = "id,time,spot\na,0,0.8\na,0.5,0.9\n"
+BOUNDARY = "id,time,spot,maturity\na,0,0.8,1\na,0.5,0.9,1\n"
 
 
 class OptionsPictures(unittest.TestCase):
@@ -39,20 +39,21 @@ class OptionsPictures(unittest.TestCase):
 
     def test_label_counts_equal_curves(self):
         """Without the count, a curve drawn over an equal one would be invisible."""
-        self.write(boundary=BOUNDARY + "b,0,0.8\nb,0.5,0.9\nc,0,0.7\nc,0.5,0.9\n")
+        self.write(boundary=BOUNDARY + "b,0,0.8,1\nb,0.5,0.9,1\nc,0,0.7,1\nc,0.5,0.9,1\n")
         (panel,) = prices_figure(self.folder).axes
         self.assertEqual(2, len(panel.lines))
         self.assertEqual({"a (2 equal)", "c"}, {text.get_text() for text in panel.texts})
 
     def test_shows_a_week_and_ten_years_on_one_axis(self):
-        """Curves of times to expiry that differ by more than ten times lie over the share of their times."""
+        """Curves of times to expiry that differ by more than ten times lie over the share of their times, before whose ends they end."""
         week = 7 / 365
-        self.write(boundary=f"id,time,spot\nlong,0,70\nlong,5,80\nlong,10,100\nshort,0,95\nshort,{week / 2},97\nshort,{week},100\n")
+        self.write(boundary=f"id,time,spot,maturity\nlong,0,70,10\nlong,5,80,10\nlong,7.5,100,10\n"
+                            f"short,0,95,{week}\nshort,{week / 2},97,{week}\nshort,{0.75 * week},100,{week}\n")
         (panel,) = prices_figure(self.folder).axes
-        self.assertEqual([[0.0, 0.5, 1.0]] * 2, [list(line.get_xdata()) for line in panel.lines])
+        self.assertEqual([[0.0, 0.5, 0.75]] * 2, [list(line.get_xdata()) for line in panel.lines])
         self.assertEqual({"long, 10 a", "short, 7 d"}, {text.get_text() for text in panel.texts})
         self.assertIn("share", panel.get_xlabel())
-        self.write(boundary="id,time,spot\nlong,0,70\nlong,10,100\nshort,0,95\nshort,1,100\n")
+        self.write(boundary="id,time,spot,maturity\nlong,0,70,10\nlong,10,100,10\nshort,0,95,1\nshort,1,100,1\n")
         (panel,) = prices_figure(self.folder).axes
         self.assertEqual([[0.0, 10.0], [0.0, 1.0]], [list(line.get_xdata()) for line in panel.lines])
         self.assertEqual("time (years)", panel.get_xlabel())

@@ -20,11 +20,12 @@ from PIL import Image
 from plot import cli
 from plot.failure import Failure
 from plot.gas.exact_solution import exact_solution, pointwise_errors
-from plot.gas.fields_figure import View, fields_figure
+from plot.gas.fields_figure import View, fields_figure, set_range, space_time_figure
 from plot.gas.history_figure import conservation, history_figure
 from plot.picture_names import PICTURES, picture_name
 from plot.run_directory import Field, read_run
 from plot.study_figure import study_figure
+from plot.style import plt
 
 _COLOURS = {"run": (0, 0x72, 0xB2), "error": (0xD5, 0x5E, 0)}
 
@@ -94,6 +95,32 @@ class Pictures(unittest.TestCase):
         loaded.snapshots[1].fields["p"].values[7] += 0.25
         error = pointwise_errors(loaded, loaded.snapshots[1], exact_solution(loaded))["p"]
         self.assertEqual(error[7], 0.25)
+
+    def test_failed_check_stands_in_the_headings(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=8)
+        loaded = read_run(run)
+        loaded.result["errors"] = {"l1_density": 0.01}
+        check = {"name": "l1_density", "value": 0.01, "tolerance": 0.0065, "passed": False}
+        loaded.result["checks"] = [check | {"name": "conservation", "passed": True}, check]
+        view = View(loaded, ["rho"], exact_solution(loaded))
+        figures = fields_figure(view, loaded.snapshots[-1]), space_time_figure(view, "rho"), history_figure(loaded)
+        for figure in figures:
+            self.assertTrue(any(text.get_text().endswith(", FAILED: l1 density 0.01 (tolerance 0.0065)") for text in figure.texts))
+        self.assertIn("0.01 $>$ 6.5", figures[0].axes[1].get_title(loc="left"))
+
+    def test_exact_vacuum_does_not_set_the_axis(self):
+        figure, axes = plt.subplots()
+        set_range(axes, "p", [np.array([1e-3, 1.0])], [np.array([1e-80, 2.0])])
+        self.assertTrue(1e-7 < axes.get_ylim()[0] < 2e-6, axes.get_ylim())
+        set_range(axes, "p", [np.array([1e-9, 1.0])], [np.array([1e-80, 2.0])])
+        self.assertTrue(1e-10 < axes.get_ylim()[0] < 1e-9, axes.get_ylim())
+        plt.close(figure)
+
+    def test_empty_history_is_refused(self):
+        (self.folder / "history.csv").touch()
+        code, files, errors = _plot(self.folder)
+        self.assertEqual((6, []), (code, files))
+        self.assertIn("history.csv cannot be read: it is empty", errors)
 
     def test_advected_wave_has_error_of_roundoff(self):
         run = self.folder / "wave"

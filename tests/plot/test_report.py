@@ -108,7 +108,7 @@ class Report(Folder):
         self.assertIn("<code>drogue-perf table machine --out FILE.jsonl</code>", text)
         self.assertIn("<code>drogue-perf table occupancy [--architecture NAME] [--profile FILE] --out FILE.jsonl</code>", text)
         page = Page(text)
-        self.assertNotIn("of a kind that this page does not know", page.words)
+        self.assertNotIn("which this page does not know", page.words)
         self.assertNotIn("left out", page.words)
         self.assertNotIn("Samples of every case", page.words)
         self.assertEqual([], Outline(text).nameless)

@@ -175,6 +175,13 @@ class SpringsPictures(unittest.TestCase):
         change = springs_history_figure(read_run(run)).axes[1].lines[0].get_ydata()
         np.testing.assert_allclose(change, [0, 0, -10 / (1 + 2 + 7)], atol=1e-15)
 
+    def test_history_draws_no_sum_of_energies_where_pins_work(self):
+        run = read_run(write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE]))
+        for motion, count in ({}, 3), ({"x": "0", "y": 0.0}, 3), ({"x": "0", "z": "sin(t)"}, 2):
+            run.scene["pin"] = [{"where": "1"}, {"where": "x < 0", "motion": motion}]
+            titles = [axes.get_title(loc="left") for axes in springs_history_figure(run).axes]
+            self.assertEqual((count, count == 3), (len(titles), any("change of sum" in title for title in titles)))
+
     def test_draws_directions_of_larger_stress(self):
         """Directions appear on flat cloth where the stress is large enough, and are shorter than the triangles."""
         run = write_run(

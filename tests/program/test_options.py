@@ -69,6 +69,8 @@ class CommandLine(options_program.OptionsTest):
             ("surface", "example", "--strikes", "1", "--maturities", "1,,2"): "--maturities",
             ("surface", "example", "--strikes", "100 110", "--maturities", "1"): "--strikes = '100 110'",
             ("surface", "example", "--strikes", "60:140:1", "--maturities", "1"): "--strikes = '60:140:1' has two ends but a count of 1",
+            ("surface", "example", "--strikes", ",", "--maturities", "1"): "--strikes = ''",
+            ("price", "-"): "it cannot come from standard input; give the name of a file",
             ("price", "example", "--out", "-"): "standard output is /dev/stdout",
             ("price", "example", "--result", "-"): "standard output is /dev/stdout",
             ("prise", "example"): "unknown command 'prise'; did you mean \"price\"?",
@@ -174,7 +176,7 @@ class Prices(options_program.OptionsTest):
         head, line = "id,style,spot,rate,lambda,alpha,beta,delta", "a,european,1,0.05,1,8.15,-2.5,0.767"
         sets = self.write(f"{head}\n{line}\n", "sets.csv")
         written = set()
-        for strikes, maturities in (("0.9,1.1", "0.5:1:2"), (" 0.9, 1.1 ", "0.5 : 1 : 2")):
+        for strikes, maturities in (("0.9,1.1", "0.5:1:2"), (" 0.9, 1.1 ", "0.5 : 1 : 2"), ("0.9,1.1,", "0.5,1, ")):
             self.expect(0, "surface", sets, "--strikes", strikes, "--maturities", maturities, "--quiet", "--mesh", "64", "--steps", "16")
             written.add((self.folder / "surface.csv").read_bytes())
         self.assertEqual(1, len(written))
@@ -229,7 +231,8 @@ class Prices(options_program.OptionsTest):
         self.price(0, batch(lines), "--boundary", "b.csv")
         with (self.folder / "b.csv").open(encoding="utf-8", newline="") as file:
             points = list(csv.DictReader(file))
-        self.assertEqual(["id", "time", "spot"], list(points[0]))
+        self.assertEqual(["id", "time", "spot", "maturity"], list(points[0]))
+        self.assertEqual({1.0}, {float(point["maturity"]) for point in points})
         self.assertEqual({"put"}, {point["id"] for point in points})
         times = [float(point["time"]) for point in points]
         self.assertEqual((0.0, True), (times[0], times == sorted(times) and times[-1] < 1.0))
@@ -295,6 +298,21 @@ class Prices(options_program.OptionsTest):
         self.assertEqual("drogue-options: 1 of 3 rows failed, the first in line 4, and 1 of 3 rows invalid, the first in line 3; "
                          "every other row is priced in 'prices.csv'", self.price(4, content).stderr.strip())
         self.assertEqual(["ok", "invalid", "failed"], [price["status"] for price in self.prices()])
+
+    def test_says_where_no_row_is_left(self):
+        message = self.price(3, batch([row("a", beta=9), row("b", beta=9)])).stderr.strip()
+        self.assertTrue(message.endswith("(2 of 2 rows invalid; none is priced in 'prices.csv')"), message)
+
+    def test_refuses_rows_that_are_not_utf8(self):
+        """Their bytes would make the output no UTF-8 either."""
+        file = self.folder / "latin.csv"
+        file.write_bytes(batch([row("caf\u00e9"), row("b")]).encode("latin-1"))
+        message = self.expect(3, "price", "latin.csv", "--quiet", *FAST).stderr
+        self.assertIn("latin.csv:2: the line is not UTF-8; save the file as UTF-8 (1 of 2 rows invalid", message)
+        self.assertEqual(["invalid", "ok"], [price["status"] for price in self.prices()])
+        self.assertEqual(["", "b"], [price["id"] for price in self.prices()])
+        self.price(0, batch([row("caf\u00e9"), row("b")]))
+        self.assertEqual("caf\u00e9", self.prices()[0]["id"])
 
     def test_message_of_a_failed_row_names_a_remedy(self):
         """The remedy is an option of the run, and the row is priced with it."""

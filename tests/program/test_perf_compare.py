@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import subprocess
 import sys
 import unittest
 
@@ -93,6 +94,50 @@ class Compare(perf_program.PerfTest):
         slow = [record(case, 1.3) for case in CASES]
         self.compare(0, slow, "--fail-on", "missing")
         self.assertIn("contradicts", self.compare(2, new, "--fail-on", "missing", "--allow-missing").stderr)
+
+    def test_gate_fails_where_a_case_cannot_be_compared(self):
+        """Its times, three times as long here, would pass unseen as long as one other case compares."""
+        other = record(CASES[0], 3.0)
+        changes = {
+            "a record without samples": {"samples": [], "median": None, "interval": None},
+            "other cells: 1024, now 1025": {"facts": other["facts"] | {"cells": 1025}},
+            "other compiler flags: '-O3', now '-O2'": {"provenance": other["provenance"] | {"flags": "-O2"}},
+            "other number of threads: 2, now 1": {"provenance": other["provenance"] | {"threads": 1}},
+            "other unit: 's per step', now 's'": {"unit": "s"},
+            "other caches: warm, now cold": {"instrument": {"caches": "cold"}},
+        }
+        for reason, change in changes.items():
+            new = [other | change, record(CASES[1]), record(CASES[2])]
+            with self.subTest(reason):
+                self.assertEqual("NOT-COMPARABLE", self.verdicts(self.compare(0, new).stdout)[CASES[0]])
+                for words in ("slower", "error", "missing", "slower,error,missing"):
+                    process = self.compare(5, new, "--github", "--fail-on", words)
+                    self.assertIn(f"{CASES[0]}: {reason}; --allow-missing lets it pass", process.stderr)
+                    self.assertIn(f"::error title={CASES[0]}::", process.stdout)
+                self.compare(0, new, "--fail-on", "slower,error", "--allow-missing")
+        computed = record("computed", samples=[], median=None, interval=None)
+        self.write("old.jsonl", [record(CASES[1]), computed])
+        self.expect(0, "compare", "old.jsonl", "old.jsonl", "--fail-on", "slower,error,missing")
+        self.write("new.jsonl", [record(CASES[1]), computed | {"error": 2e-3}])
+        self.expect(5, "compare", "old.jsonl", "new.jsonl", "--fail-on", "error")
+
+    def test_says_that_both_are_of_one_commit(self):
+        line = "\nboth are of one commit: what differs is the machine, its load or the flags\n"
+        self.assertIn(line, self.compare(0, [record(CASES[0], 1.3)]).stdout)
+        for commit in ("2", "", "unknown", "1-dirty"):
+            records = [record(CASES[0])]
+            records[0]["provenance"] = records[0]["provenance"] | {"git": commit}
+            self.assertNotIn(line, self.compare(0, records).stdout)
+            if commit != "2":
+                self.write("old.jsonl", records)
+                self.assertNotIn(line, self.expect(0, "compare", "old.jsonl", "new.jsonl").stdout)
+
+    def test_errors_stand_after_the_verdicts_in_one_pipe(self):
+        self.write("old.jsonl", [record(f"case {number}") for number in range(200)])
+        self.write("new.jsonl", [record(f"case {number}", 1.3) for number in range(200)])
+        words = [perf_program.PROGRAM, "compare", "old.jsonl", "new.jsonl", "--fail-on", "slower"]
+        text = subprocess.run(words, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False).stdout
+        self.assertRegex(text, r"geometric mean of 200\ndrogue-perf: case 0: takes [^\n]*\n\Z")
 
     def test_gate_fails_where_the_samples_are_too_few(self):
         for count in (1, 3):

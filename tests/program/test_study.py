@@ -116,7 +116,7 @@ class GasStudy(StudyTest):
 
     def test_reports_a_study_without_successful_runs(self):
         text = self.study(4, "blast", "meshes=100,schemes=z:teno5",
-                          sets=['scheme.positivity="off"', "verify.reference.cells=400"]).stderr
+                          sets=['scheme.positivity="off"', "verify.reference.cells=800"]).stderr
         self.assertIn("every run of the study failed", text)
         self.assertEqual(2, len(self.tables("out/blast-study")[0]))
 

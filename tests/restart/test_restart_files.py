@@ -200,6 +200,32 @@ class RestartFiles(gas_program.GasTest):
                 self.assertIn("other fields", message)
         self.resume(0, sets=[*SETS, 'output.fields=["p", "u", "rho"]'])
 
+    def test_refuses_output_times_that_have_passed_without_an_output(self):
+        """The run would leave them out without a word."""
+        end = "run.end_time=0.25"
+        for times, missing in (("[0.05, 0.1, 0.15, 0.2, 0.25]", "0.05, 0.15:"), ("[0, 0.1, 0.2, 0.25]", "0.0:")):
+            for words in (["--out", "run", "--restart", "auto"], ["--out", "new", "--restart", "run/restart.h5"]):
+                with self.subTest(times=times, words=words):
+                    before = self.contents()
+                    message = self.expect(6, "sod", "--quiet", "--backend", "serial", *words,
+                                          sets=[*SETS, end, f"output.times={times}"]).stderr
+                    self.assertIn(f"output.times {missing}", message)
+                    self.assertEqual(before, self.contents())
+        self.resume(0, sets=[*SETS, end, "output.times=[0.2, 0.25]"])
+
+    def test_run_that_continued_elsewhere_continues_there(self):
+        """Its fields.h5 holds the outputs since then; those before lie in the other folder."""
+        words = ["--quiet", "--backend", "serial", "--out", "new", "--restart"]
+        later = [*SETS, "run.end_time=0.25", "output.times=[0.1, 0.2, 0.25]"]
+        self.expect(0, "sod", *words, "run/restart.h5", sets=later)
+        later = [*SETS, "run.end_time=0.3", "output.times=[0.1, 0.2, 0.25, 0.3]"]
+        self.expect(0, "sod", *words, "auto", sets=later)
+        written = gas_program.fields(self.folder / "new")
+        times = [written.attributes[f"/steps/{name}"]["time"] for name in written.children("/steps")]
+        self.assertEqual([0.2, 0.25, 0.3], times)
+        (self.folder / "run/fields.h5").unlink()
+        self.assertIn("output.times 0.1: the run continues", self.resume(6, sets=later))
+
     def test_restart_and_overwrite_exclude_each_other(self):
         self.resume(2, "--restart", "auto", "--overwrite")
 

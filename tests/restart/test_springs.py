@@ -185,6 +185,12 @@ class Restart(springs_program.SpringsTest):
         self.assertEqual(self.fields("whole").datasets["/steps/000003/position"],
                          self.fields("part").datasets["/steps/000003/position"])
 
+    def test_refuses_output_times_that_have_passed_without_an_output(self):
+        self.finish("serial", "part")
+        sets = [*SETS, "time.end_time=3", "output.times=[0.6, 1.1, 1.3, 3]"]
+        message = self.expect(6, self.scene, "--quiet", "--backend", "serial", "--out", "part", "--restart", "auto", sets=sets).stderr
+        self.assertIn("output.times 1.1: the run continues from t = 2.49", message)
+
 
 if __name__ == "__main__":
     unittest.main()

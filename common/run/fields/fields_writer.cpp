@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -44,6 +45,24 @@ void reserve(const std::filesystem::path& file, std::uint64_t bytes) {
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) throw io_failure("write", file, error);
 }
 
+/// Times of the outputs of a file, s, and that at which a continued run began it; before all time if none
+/// did.
+struct WrittenTimes {
+  std::set<double> times;
+  double begins_after = -std::numeric_limits<double>::infinity();
+};
+
+WrittenTimes written_times(const std::filesystem::path& file) {
+  const h5::Handle handle = h5::open_file(file, false);
+  const h5::Handle index = h5::open_group(handle, "steps");
+  WrittenTimes written;
+  for (const std::string& name : h5::children(index))
+    written.times.insert(h5::read_number(h5::open_group(index, name), "time"));
+  if (h5::has_attribute(handle, "begins_after"))
+    written.begins_after = h5::read_number(handle, "begins_after");
+  return written;
+}
+
 h5::Handle create_described(const h5::Handle& parent, const std::string& name, const DatasetSpec& spec,
                             hid_t type) {
   h5::Handle dataset = h5::create_dataset(parent, name, type, spec.shape);
@@ -68,7 +87,7 @@ struct FieldsWriter::State {
   h5::Handle step;  // unnamed
   std::map<std::string, h5::Handle, std::less<>> datasets;
 
-  void create() const;
+  void create(std::optional<double> begins_after) const;
   void resume(double time);
   void require_same_fields(const h5::Handle& output) const;
   [[nodiscard]] std::set<std::string> named_grids() const;
@@ -84,13 +103,14 @@ struct FieldsWriter::State {
                 const std::function<void(std::uint64_t, std::span<Number>)>& source);
 };
 
-void FieldsWriter::State::create() const {
+void FieldsWriter::State::create(std::optional<double> begins_after) const {
   const std::filesystem::path temporary = temporary_name(file);
   try {
     h5::Handle handle = h5::create_file(temporary);
     const h5::Handle all = h5::create_group(handle, "mesh", mesh_links, mesh_name_length);
     for (const std::string& grid : named_grids()) h5::create_group(all, grid, mesh_links, mesh_name_length);
     h5::create_group(handle, "steps", page_links, step_name_length);
+    if (begins_after) h5::write_attribute(handle, "begins_after", *begins_after);
     handle.close_file();
   } catch (...) {
     unlink(temporary.c_str());
@@ -244,7 +264,7 @@ FieldsWriter::FieldsWriter(const std::filesystem::path& directory, std::string t
   if (resume_time && std::filesystem::exists(_state->file)) {
     _state->resume(*resume_time);
   } else {
-    _state->create();
+    _state->create(resume_time);
   }
 }
 
@@ -260,6 +280,27 @@ void FieldsWriter::require_same_fields(const std::filesystem::path& directory,
     const h5::Handle output = h5::open_group(index, name);
     if (h5::read_number(output, "time") <= resume_time) state.require_same_fields(output);
   }
+}
+
+std::vector<double> FieldsWriter::missing_times(const std::filesystem::path& directory,
+                                                const std::filesystem::path& former,
+                                                const std::vector<double>& times, double resume_time) {
+  std::error_code absent;
+  const bool is_here = std::filesystem::equivalent(directory, former, absent);
+  const std::filesystem::path own = directory / "fields.h5", other = former / "fields.h5";
+  WrittenTimes written;
+  for (const std::filesystem::path& file : {own, other}) {
+    if (!std::filesystem::exists(file)) continue;
+    const WrittenTimes found = written_times(file);
+    written.times.insert(found.times.begin(), found.times.end());
+    written.begins_after = std::max(written.begins_after, found.begins_after);
+  }
+  if (!is_here && !std::filesystem::exists(other)) return {};
+  std::vector<double> missing;
+  for (const double time : times)
+    if (time > written.begins_after && time <= resume_time && !written.times.contains(time))
+      missing.push_back(time);
+  return missing;
 }
 
 FieldsWriter::~FieldsWriter() { _state->abandon_step(); }

@@ -26,10 +26,11 @@ struct ReferenceSolution {
 ///
 /// Between steps the file is closed and on disk. A step is written unreachable and becomes visible by one
 /// write of one page in end_step(), so a kill leaves a file with whole steps; disk space is reserved in
-/// advance. Beyond 190 steps, whose names fill that page, the write is longer and a kill within its
-/// microseconds can make the file unreadable. The space of steps that a restart drops stays in the file.
-/// ParaView may read along. All functions throw `Failure` (io_error). One thread at a time may call them,
-/// also another thread than the constructor's.
+/// advance. A file that a continued run begins states its time in the attribute `begins_after`, s. Beyond 190
+/// steps, whose names fill that page, the write is longer and a kill within its microseconds can make the
+/// file unreadable. The space of steps that a restart drops stays in the file. ParaView may read along. All
+/// functions throw `Failure` (io_error). One thread at a time may call them, also another thread than the
+/// constructor's.
 class FieldsWriter : public FieldSink {
  public:
   /// Begins new files in `directory`; with `resume_time` continues existing ones without the steps after that
@@ -41,6 +42,15 @@ class FieldsWriter : public FieldSink {
   /// fields. Changes nothing.
   static void require_same_fields(const std::filesystem::path& directory,
                                   const std::vector<DatasetSpec>& fields, double resume_time);
+
+  /// Times among `times`, s, ascending, up to `resume_time`, at which neither the file of `directory` nor
+  /// that of `former`, the directory of the restart file, has an output. Times up to the one at which a
+  /// continued run began a file are not missing: a run elsewhere wrote them. None is missing if `former` is
+  /// another directory without a file.
+  [[nodiscard]] static std::vector<double> missing_times(const std::filesystem::path& directory,
+                                                         const std::filesystem::path& former,
+                                                         const std::vector<double>& times,
+                                                         double resume_time);
 
   ~FieldsWriter() override;
   FieldsWriter(const FieldsWriter&) = delete;

@@ -88,6 +88,7 @@ void read(const Handle& dataset, std::uint64_t first, std::span<double> values);
 void write_attribute(const Handle& object, const std::string& name, double value);
 void write_attribute(const Handle& object, const std::string& name, std::int64_t value);
 void write_attribute(const Handle& object, const std::string& name, const std::string& value);
+bool has_attribute(const Handle& object, const std::string& name);
 double read_number(const Handle& object, const std::string& name);
 std::int64_t read_integer(const Handle& object, const std::string& name);
 std::string read_text(const Handle& object, const std::string& name);

@@ -44,6 +44,11 @@ void write_attribute(const Handle& object, const std::string& name, const std::s
   write_scalar(object, name, text_type().id(), &text);
 }
 
+bool has_attribute(const Handle& object, const std::string& name) {
+  const Lock lock;
+  return H5Aexists(object.id(), name.c_str()) > 0;
+}
+
 double read_number(const Handle& object, const std::string& name) {
   const Lock lock;
   double value = 0.0;

@@ -68,7 +68,7 @@ KOKKOS_INLINE_FUNCTION void reject(Progress& now, StepTrial& trial, StepFailure&
   if (!limited && can_limit) {
     now.limited = 1;
     now.limited_left = automatic_limited_steps;
-  } else if (limited && now.halvings < max_halvings) {
+  } else if (limited && now.halvings < max_halvings && !(k.fixed_dt > 0.0)) {
     ++now.halvings;
     now.dt_scale *= 0.5;
   } else {

@@ -77,7 +77,9 @@ void advance(GasRun& run, const gas::Parameters& p, double end_time) {
     double dt = std::min(proposed_dt(run, p, limited), remaining);
     TrialResult result = try_step(run, p, dt, limited);
     while (result != TrialResult::done) {
-      if (result == TrialResult::too_fast) {
+      if (result == TrialResult::too_fast && p.fixed_dt > 0.0) {
+        break;
+      } else if (result == TrialResult::too_fast) {
         dt *= 0.5;
       } else if (p.positivity == gas::Positivity::automatic && !limited) {
         limited = true;

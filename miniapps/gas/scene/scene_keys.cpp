@@ -76,7 +76,7 @@ void declare_scheme(Table& table, gas::Parameters& scheme) {
   declare_weights(table, scheme);
   table
       .value("fixed_dt", scene::zero_is_unset(scene::real_codec(scheme.fixed_dt), scheme.fixed_dt),
-             "Step that replaces the one of cfl")
+             "Step that replaces the one of cfl; a run that cannot take it ends with exit code 4")
       .unit("s")
       .above(0.0);
   declare_step(table, scheme);

@@ -29,7 +29,13 @@ std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters,
       text << "the state is not finite";
       break;
     case gas::FailureReason::time_step:
-      text << "the time step collapsed to " << failed.dt << " s (CFL)";
+      if (!(parameters.fixed_dt > 0.0))
+        text << "the time step collapsed to " << failed.dt << " s (CFL)";
+      else if (failed.time + failed.dt > failed.time)
+        text << "scheme.fixed_dt = " << parameters.fixed_dt
+             << " s moves waves by more than half a cell in a stage, which the limiter does not allow,";
+      else
+        text << "scheme.fixed_dt = " << parameters.fixed_dt << " s does not change the time,";
       break;
   }
   if (failed.index >= 0)
@@ -39,6 +45,8 @@ std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters,
   if (has_limiter && parameters.positivity == gas::Positivity::off &&
       failed.reason != gas::FailureReason::time_step)
     text << "; scheme.positivity = \"auto\" may save the run";
+  else if (parameters.fixed_dt > 0.0)
+    text << "; a shorter scheme.fixed_dt may save the run";
   return text.str();
 }
 

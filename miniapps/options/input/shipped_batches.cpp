@@ -27,6 +27,10 @@ std::filesystem::path find_batch(const std::string& argument) {
   std::error_code unreadable;
   // The reader rejects a path that is no regular file, and states why.
   if (std::filesystem::exists(argument, unreadable)) return argument;
+  if (argument == "-")
+    throw Failure(
+        ExitCode::usage,
+        "a batch is read twice, so that it cannot come from standard input; give the name of a file");
   std::vector<std::string> names;
   for (const std::filesystem::path& file : shipped_batches()) {
     if (file.stem() == argument) return file;

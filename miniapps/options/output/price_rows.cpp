@@ -120,12 +120,13 @@ void append_invalid_point(ResultBatch& batch, const RowLayout& layout, const Con
   ++batch.counts.invalid_points;
 }
 
-void append_boundary(ResultBatch& batch, const ContractRow& row,
+void append_boundary(ResultBatch& batch, const ContractRow& row, double maturity,
                      std::span<const options::BoundaryPoint> points) {
   for (const options::BoundaryPoint& point : points) {
     csv::append_field(batch.boundaries, row.id);
     append_next(batch.boundaries, point.time);
     append_next(batch.boundaries, point.spot);
+    append_next(batch.boundaries, maturity);
     batch.boundaries += '\n';
   }
 }

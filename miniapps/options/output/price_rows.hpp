@@ -37,10 +37,10 @@ void append_invalid_point(ResultBatch& batch, const RowLayout& layout, const Con
                           double maturity, std::string_view message);
 
 /// Header line of the file of exercise boundaries.
-inline constexpr const char* boundary_header = "id,time,spot\n";
+inline constexpr const char* boundary_header = "id,time,spot,maturity\n";
 
-/// Appends one line per point of an exercise boundary.
-void append_boundary(ResultBatch& batch, const ContractRow& row,
+/// Appends one line per point of an exercise boundary of an option with this time to expiry, years.
+void append_boundary(ResultBatch& batch, const ContractRow& row, double maturity,
                      std::span<const options::BoundaryPoint> points);
 
 }  // namespace drogue::options_app

@@ -56,8 +56,10 @@ void print_summary(const Command& command, const run::ResultDocument& result, co
 
 void require_all_priced(const Command& command, const RowCounts& counts, const BatchReader& reader) {
   const bool surface = command.action == Action::surface;
-  const std::string others = std::string(surface ? "; all others are" : "; every other row is") +
-                             " priced in '" + command.out.string() + "'";
+  const std::string others = ok_rows(counts) + counts.coarse == 0 ? "; none is"
+                             : surface                            ? "; all others are"
+                                                                  : "; every other row is";
+  const std::string priced = others + " priced in '" + command.out.string() + "'";
   const std::string invalid = surface ? invalid_part_of_surface(counts, reader.rows())
                                       : fraction(counts.invalid, reader.rows(), " rows invalid");
   if (counts.failed > 0) {
@@ -66,11 +68,11 @@ void require_all_priced(const Command& command, const RowCounts& counts, const B
                            ", the first in line " + std::to_string(counts.failed_line);
     if (counts.invalid > 0)
       sentence += ", and " + invalid + ", the first in line " + std::to_string(counts.invalid_line);
-    throw Failure(ExitCode::numerical_failure, sentence + others);
+    throw Failure(ExitCode::numerical_failure, sentence + priced);
   }
   if (counts.invalid > 0)
     throw csv::invalid_at(reader.file(), counts.invalid_line,
-                          counts.invalid_message + " (" + invalid + others + ")");
+                          counts.invalid_message + " (" + invalid + priced + ")");
 }
 
 void describe_counts(const RowCounts& counts, run::ResultDocument& result) {

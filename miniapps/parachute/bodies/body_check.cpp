@@ -15,6 +15,7 @@ namespace {
 
 using scene::contradict;
 using scene::real_text;
+using scene::rounded_text;
 using scene::Table;
 
 constexpr double most_vertices = 1048576.0;  // 2^20
@@ -40,7 +41,7 @@ void check_extent(const Table& root, const FlowScene& scene, const Body& body, c
   const flow::Parameters& p = scene.parameters;
   const double margin = margin_of(scene, body, axis), width = p.high[axis] - p.low[axis];
   const double rounding = 1e-9 * width;
-  const std::string reaches = place + " reaches from " + real_text(low) + " to " + real_text(high) +
+  const std::string reaches = place + " reaches from " + rounded_text(low) + " to " + rounded_text(high) +
                               " m along " + axis_names[axis] + at;
   if (p.cells[axis] > 1 && !is_bounded(p, axis)) {
     if (scene.contact && (low < p.low[axis] - rounding || high > p.high[axis] + rounding))
@@ -59,8 +60,8 @@ void check_extent(const Table& root, const FlowScene& scene, const Body& body, c
   contradict(root, key,
              reaches + ", beyond " +
                  (margin > 0.0 ? "the cells beside the sides of the domain" : "the domain") +
-                 ": it must lie between " + real_text(p.low[axis] + margin) + " and " +
-                 real_text(p.high[axis] - margin) + " m" +
+                 ": it must lie between " + rounded_text(p.low[axis] + margin) + " and " +
+                 rounded_text(p.high[axis] - margin) + " m" +
                  (can_be_sharp ? "; periodic sides it may cross, and with coupling.method = \"sharp\" it may "
                                  "touch all sides along which it extends"
                                : ""));
@@ -283,7 +284,7 @@ void check_porosity(const Table& root, const FlowScene& scene, const std::string
   if (law.alpha <= most && law.beta <= most) return;
   contradict(root, name + ".porosity",
              name + ".porosity: alpha = " + real_text(law.alpha) + " Pa s/m and beta = " +
-                 real_text(law.beta) + " Pa s^2/m^2 follow from it; at most " + real_text(most));
+                 real_text(law.beta) + " Pa s^2/m^2 follow from it; at most " + rounded_text(most));
 }
 
 }  // namespace drogue::parachute_app

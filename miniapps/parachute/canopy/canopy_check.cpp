@@ -22,6 +22,7 @@ namespace {
 using fabric::Vector;
 using scene::contradict;
 using scene::real_text;
+using scene::rounded_text;
 using scene::Table;
 
 constexpr double most_canopy_vertices = 1048576.0;  // 2^20
@@ -178,10 +179,10 @@ void check_inside(const Table& root, const flow::Parameters& p, const std::vecto
     const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
     if (low[axis] >= least - rounding && high[axis] <= most + rounding) continue;
     contradict(root, key,
-               name + " with its payload reaches from " + real_text(low[axis]) + " to " +
-                   real_text(high[axis]) + " m along " + axis_names[axis] +
+               name + " with its payload reaches from " + rounded_text(low[axis]) + " to " +
+                   rounded_text(high[axis]) + " m along " + axis_names[axis] +
                    ", beyond the cells beside the sides of the domain: it must lie between " +
-                   real_text(least) + " and " + real_text(most) + " m");
+                   rounded_text(least) + " and " + rounded_text(most) + " m");
   }
 }
 

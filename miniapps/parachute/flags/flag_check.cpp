@@ -12,6 +12,7 @@ namespace {
 
 using scene::contradict;
 using scene::real_text;
+using scene::rounded_text;
 using scene::Table;
 
 constexpr double most_flag_vertices = 1048576.0;  // 2^20
@@ -40,7 +41,7 @@ void check_flag(const Table& root, const flow::Parameters& p, const Flag& flag, 
       if (axis == 2 && *flag.width > most)
         contradict(root, name + ".width",
                    name + ".width = " + real_text(*flag.width) +
-                       " m: the flag meets itself across the periodic sides; at most " + real_text(most) +
+                       " m: the flag meets itself across the periodic sides; at most " + rounded_text(most) +
                        " m");
       continue;
     }
@@ -53,10 +54,10 @@ void check_flag(const Table& root, const flow::Parameters& p, const Flag& flag, 
                name + (axis < 2 ? ".leading_edge"
                        : fits   ? ".middle"
                                 : ".width"),
-               name + " reaches from " + real_text(low[axis]) + " to " + real_text(high[axis]) + " m along " +
-                   axis_names[axis] +
+               name + " reaches from " + rounded_text(low[axis]) + " to " + rounded_text(high[axis]) +
+                   " m along " + axis_names[axis] +
                    ", beyond the cells beside the sides of the domain: it must lie between " +
-                   real_text(least) + " and " + real_text(most) + " m" +
+                   rounded_text(least) + " and " + rounded_text(most) + " m" +
                    (axis == 2 ? ", by its width and middle" : ""));
   }
 }

@@ -86,6 +86,10 @@ _SECTIONS = {
 }  # fmt: skip
 
 
+# Kinds that drogue-perf prints as a table of its own.
+_WITHOUT_SECTION = {"kernels": "of a profile, whose shares of kernels drogue-perf table kernels prints"}
+
+
 def _counted(count: int, words: str, plural: str) -> str:
     return f"{count} {words if count == 1 else plural}"
 
@@ -114,11 +118,14 @@ def notes(evidence: Evidence) -> list[str]:
     if evidence.cold:
         count = _counted(len(evidence.cold), "record", "records")
         found.append(f"{count} with cold caches: no figure compares them with others, whose caches are warm.")
-    if evidence.unknown_kinds:
-        count = _counted(sum(evidence.unknown_kinds.values()), "record is", "records are")
-        found.append(
-            f"{count} ignored, of a kind that this page does not know: {', '.join(sorted(evidence.unknown_kinds))}."
-        )
+    if evidence.outdated:
+        count = _counted(len(evidence.outdated), "record has", "records have")
+        places = "; ".join(f"{record.case} on {record.machine.name}" for record in evidence.outdated)
+        found.append(f"{count} no bounds: their counts of work differ from the latest ones of the same case: {places}.")
+    for kind, number in sorted(evidence.unknown_kinds.items()):
+        count = _counted(number, "record", "records")
+        words = _WITHOUT_SECTION.get(kind, f"of the kind {kind}, which this page does not know")
+        found.append(f"Not shown: {count} {words}.")
     return found
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..failure import INVALID, Failure
 from ..run_directory import RECORDS
+from .counts import without_outdated_counts
 from .perf_record import KINDS, Machine, Record, read_file
 
 
@@ -22,6 +23,7 @@ class Evidence:
     superseded: list[Record] = field(default_factory=list)
     cold: list[Record] = field(default_factory=list)  # with cold caches, to which no page compares others
     ceilings: list[Record] = field(default_factory=list)  # valid ones, which concern all mini-apps
+    outdated: list[Record] = field(default_factory=list)  # whose counts of work stand in no table
     everything: list[Record] = field(default_factory=list)  # in the order of the files, also of unknown kinds
 
     @property
@@ -46,6 +48,7 @@ class Evidence:
             own(self.superseded),
             own(self.cold),
             self.ceilings or [record for record in self.records if record.kind == "ceiling"],
+            own(self.outdated),
         )
 
     @property
@@ -105,4 +108,5 @@ def read_records(folder: Path) -> Evidence | None:
             evidence.untimed.append(record)
         else:
             evidence.records.append(record)
+    evidence.records, evidence.outdated = without_outdated_counts(evidence.records)
     return evidence

@@ -24,9 +24,9 @@ class Table:
     note: str = ""
     folded: bool = False
 
-    def without_empty_columns(self, *names: str) -> "Table":
-        """The table without those columns of these headings that have no word in any row."""
-        kept = [k for k, (name, _) in enumerate(self.columns) if name not in names or any(self._text(row[k]) for row in self.rows)]
+    def without_empty_columns(self) -> "Table":
+        """The table without the columns that have no word in any row."""
+        kept = [k for k in range(len(self.columns)) if not self.rows or any(self._text(row[k]) for row in self.rows)]
         return replace(self, columns=[self.columns[k] for k in kept], rows=[[row[k] for k in kept] for row in self.rows])
 
     @staticmethod

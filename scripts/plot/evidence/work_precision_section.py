@@ -72,7 +72,7 @@ def _table(
     columns.append(("faster at errors", False))
     table = Table(columns, [_row(curve, all_curves, errors) for curve in shown], title=title, folded=folded)
     # A scheme without the competitor on its backend has no factor, nor has one that misses the error.
-    return table.without_empty_columns("factor", "faster at errors")
+    return table
 
 
 def _failures(records: list[Record]) -> list[str]:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import style
+from ..checks import failure_caption
 from ..run_directory import Run
 from ..style import plt
 
@@ -10,12 +11,15 @@ _OUTFLOW = "outflow_"
 
 
 def keeps_energy(run: Run) -> bool:
-    """Whether the kinetic energy changes by dissipation alone: no open side, no moving wall, and no force."""
+    """Whether the kinetic energy changes by dissipation alone: no open side, no moving wall, no force, and nothing in the
+    flow that may take energy up.
+    """
     grid, flow = run.scene.get("grid", {}), run.scene.get("flow", {})
     sides = [side for pair in grid.get("boundary", {}).values() for side in np.ravel(pair).tolist()]
     forces = [*flow.get("body_force", []), *flow.get("pressure_drop", [])]
     closed = all(side in ("periodic", "slip", "wall") for side in sides)
-    return bool(sides) and closed and not grid.get("wall_velocity") and not any(forces)
+    holds = any(run.scene.get(name) for name in ("body", "canopy", "flag"))
+    return bool(sides) and closed and not grid.get("wall_velocity") and not any(forces) and not holds
 
 
 def energy_fall(time: np.ndarray, energy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -118,5 +122,5 @@ def flow_history_figure(run: Run):
         _draw(panel, curves, is_log)
     axes[-1, 0].set_xlabel("time (s)")
     legend = [("\u25cb", "expected, with tolerance", style.INK)] if any(map(len, expected.values())) else []
-    style.heading(figure, run.name, f"history, {len(time.values)} rows", legend)
+    style.heading(figure, run.name, f"history, {len(time.values)} rows{failure_caption(run.result)}", legend)
     return figure

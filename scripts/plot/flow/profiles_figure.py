@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from .. import style
+from ..checks import failure_caption
 from ..run_directory import Run, Snapshot
 from ..style import plt
 from .plane import AXES, cell_counts
@@ -110,7 +111,7 @@ def profiles_figure(run: Run, snapshot: Snapshot):
     width, height = columns * cell[0], -(-len(found) // columns) * cell[1] + _HEADING
     figure = plt.figure(figsize=(width, height))
     counts = " x ".join(str(count) for count in cell_counts(run) if count > 1)
-    caption = f"{counts} cells, t = {snapshot.time:.4g} s"
+    caption = f"{counts} cells, t = {snapshot.time:.4g} s{failure_caption(run.result)}"
     legend = _legend(found)
     needed = max(style.subtitle_width(figure, caption), style.heading_width(figure, run.name, legend))
     width = max(width, needed)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import style
+from ..checks import failure_caption
 from ..run_directory import Run, Snapshot, evenly_spaced
 from ..style import plt
 from .plane import AXES, cell_counts, dimension
@@ -126,5 +127,5 @@ def spectrum_figure(run: Run, last: Snapshot):
     axes.set_title("energy per mass and wave number (m$^3$/s$^2$)")
     figure.subplots_adjust(left=0.13, right=0.84, top=1 - 0.85 / _SIZE[1], bottom=0.13)
     counts = " x ".join(str(count) for count in cell_counts(run) if count > 1)
-    style.heading(figure, run.name, f"spectrum of the kinetic energy, {counts} cells")
+    style.heading(figure, run.name, f"spectrum of the kinetic energy, {counts} cells{failure_caption(run.result)}")
     return figure

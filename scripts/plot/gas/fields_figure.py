@@ -7,7 +7,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from .. import style
-from ..checks import check_label
+from ..checks import check_label, failure_caption
 from ..run_directory import Run, Snapshot
 from ..style import plt
 from .exact_solution import WENO_NAMES, ExactSolution, pointwise_errors
@@ -52,8 +52,9 @@ def scheme_name(scene: dict) -> str:
 
 
 def subtitle(view: View, time: float) -> str:
-    """Scheme, number of cells and time (s)."""
-    return f"{scheme_name(view.run.scene)}, {len(view.x)} cells, t = {time:.4g} s"
+    """Scheme, number of cells, time (s), and the check that failed."""
+    failed = failure_caption(view.run.result)
+    return f"{scheme_name(view.run.scene)}, {len(view.x)} cells, t = {time:.4g} s{failed}"
 
 
 def legend(view: View, shows_exact: bool) -> list[tuple[str, str, str]]:
@@ -99,10 +100,17 @@ def _needs_log_scale(name: str, low: float, high: float) -> bool:
     return name != "u" and low > 0 and high >= 999 * low
 
 
-def set_range(axes, name: str, arrays) -> None:
-    """Sets the vertical range to the values of `arrays`; logarithmic if positive and spanning three decades."""
+_LEAST_EXACT = 1e-6  # of the largest value: in a vacuum an exact value may be 1e-80
+
+
+def set_range(axes, name: str, arrays, exact=()) -> None:
+    """Sets the vertical range to the values of `arrays` and of the arrays `exact`, but far below those of `arrays` they leave
+    it; logarithmic if positive and spanning three decades.
+    """
     low = min(float(np.nanmin(values)) for values in arrays)
-    high = max(float(np.nanmax(values)) for values in arrays)
+    high = max(float(np.nanmax(values)) for values in (*arrays, *exact))
+    least = min((float(np.nanmin(values)) for values in exact), default=low)
+    low = min(low, max(least, _LEAST_EXACT * high) if 0 < least else least)
     if _needs_log_scale(name, low, high):
         axes.set_yscale("log")
         margin = (high / low) ** 0.06
@@ -116,12 +124,12 @@ def set_range(axes, name: str, arrays) -> None:
 
 
 def _format_checks(run: Run) -> str:
-    """Values and tolerances of the checks, for a figure without an error panel."""
+    """Values and tolerances of the checks that passed, for a figure without an error panel."""
     return "".join(
         f";  {check_label(check['name'])} {style.format_number(check['value'])} "
         f"(tolerance {style.format_number(check['tolerance'])})"
         for check in run.result.get("checks", [])
-        if check["name"] != "conservation" and check["value"] is not None
+        if check["name"] != "conservation" and check["value"] is not None and check["passed"]
     )
 
 
@@ -132,7 +140,8 @@ def _error_title(run: Run, name: str) -> str:
         return "|error|"
     tolerances = [check["tolerance"] for check in run.result.get("checks", []) if check["name"] == norm]
     # Columns are narrow.
-    tolerance = rf" $\leq$ {style.format_number(tolerances[0])}" if tolerances and value <= tolerances[0] else ""
+    relation = r"$\leq$" if tolerances and value <= tolerances[0] else "$>$"
+    tolerance = f" {relation} {style.format_number(tolerances[0])}" if tolerances else ""
     return rf"|error|,  $L_1$ = {style.format_number(value)}{tolerance}"
 
 
@@ -169,9 +178,7 @@ def fields_figure(view: View, snapshot: Snapshot):
     for column, name in enumerate(view.fields):
         FieldPanel(axes[0][column], view, name).show(snapshot)
         curve = view.exact.curve(snapshot.time, view.x)[1] if view.exact else {}
-        set_range(
-            axes[0][column], name, [snapshot.fields[name].values, *([curve[name]] if name in curve else [])]
-        )
+        set_range(axes[0][column], name, [snapshot.fields[name].values], [curve[name]] if name in curve else [])
         if name in error:
             title = _error_title(view.run, name) if final else "|error|"
             _draw_error(axes[1][column], view, snapshot, name, error[name], title)
@@ -215,5 +222,6 @@ def space_time_figure(view: View, name: str):
     axes.set_xlabel(view.x_label)
     axes.set_ylabel("time (s)")
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / 3.6))
-    style.heading(figure, view.run.name, f"{scheme_name(view.run.scene)}, {len(view.x)} cells")
+    words = f"{scheme_name(view.run.scene)}, {len(view.x)} cells{failure_caption(view.run.result)}"
+    style.heading(figure, view.run.name, words)
     return figure

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import style
+from ..checks import failure_caption
 from ..run_directory import Run
 from ..style import plt
 
@@ -68,5 +69,5 @@ def history_figure(run: Run):
         panel.plot(*style.decimate(time.values, item.values), color=style.RUN_COLOUR)
         panel.set_title(style.axis_label(_LABELS.get(name, name), item.units))
     axes[-1, 0].set_xlabel("time (s)")
-    style.heading(figure, run.name, f"history, {len(time.values)} rows")
+    style.heading(figure, run.name, f"history, {len(time.values)} rows{failure_caption(run.result)}")
     return figure

@@ -48,12 +48,21 @@ def _duration(years: float) -> str:
 
 def _share_of_lifetimes(curves: dict) -> dict:
     """The curves over the elapsed share of their times to expiry, which their labels state: a week and ten years
-    do not fit on one axis of years.
+    do not fit on one axis of years. `curves`: by label and time to expiry, years.
     """
     return {
-        f"{label}, {_duration(x[-1])}": ([time / x[-1] for time in x] if x[-1] > 0.0 else x, y)
-        for label, (x, y) in curves.items()
+        (f"{label}, {_duration(life)}", life): ([time / life for time in x] if life > 0.0 else x, y)
+        for (label, life), (x, y) in curves.items()
     }
+
+
+def _boundaries(file: Path) -> dict[tuple[str, float], tuple[list[float], list[float]]]:
+    """Exercise boundaries by identifier and time to expiry, years, before which they end. Raises Failure (IO_ERROR)."""
+    try:
+        found = _curves(file, ("id", "maturity"), "time", "spot")
+        return {(name, float(maturity)): curve for (name, maturity), curve in found.items()}
+    except ValueError as error:
+        raise Failure(IO_ERROR, f"{file} cannot be read: {error}.") from None
 
 
 def _draw(axes, curves, labels, title, across, up):
@@ -81,13 +90,11 @@ def prices_figure(folder: Path):
             title = f"price of {first} by years to maturity"
             panels.append((list(chosen.values()), list(chosen), title, "strike", "price"))
     if boundary.is_file():
-        curves = _merge_equal_curves(
-            {name: curve for (name,), curve in _curves(boundary, ("id",), "time", "spot").items()}
-        )
-        across = "time (years)"
-        lifetimes = [x[-1] for x, _ in curves.values() if x[-1] > 0.0]
+        found, across = _boundaries(boundary), "time (years)"
+        lifetimes = [life for _, life in found if life > 0.0]
         if lifetimes and max(lifetimes) > _MOST_ON_ONE_AXIS * min(lifetimes):
-            curves, across = _share_of_lifetimes(curves), "elapsed share of the time to expiry"
+            found, across = _share_of_lifetimes(found), "elapsed share of the time to expiry"
+        curves = _merge_equal_curves({name: curve for (name, _), curve in found.items()})
         if curves:
             panels.append((list(curves.values()), list(curves), "exercise boundary", across, "spot"))
     if not panels:

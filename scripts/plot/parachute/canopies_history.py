@@ -149,4 +149,4 @@ def canopies_history_figure(run: Run):
     time = run.history.get("time")
     if time is None or len(time.values) < 2 or not _count(run):
         return None
-    return time_figure(run.name, time.values, _panels(run))
+    return time_figure(run, time.values, _panels(run))

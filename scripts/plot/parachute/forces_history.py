@@ -74,4 +74,4 @@ def forces_history_figure(run: Run):
         return None
     panels = [panel for k in bodies for panel in (_panel(run, k, time.values), *_displacement_panels(run, k))]
     panels += [panel for k in flags for panel in _flag_panels(run, k, time.values)]
-    return time_figure(run.name, time.values, panels)
+    return time_figure(run, time.values, panels)

@@ -7,6 +7,8 @@ import numpy as np
 from matplotlib.patches import Rectangle
 
 from .. import style
+from ..checks import failure_caption
+from ..run_directory import Run
 from ..style import plt
 
 _MARGIN = 0.08  # of a panel above and below its curves
@@ -73,8 +75,8 @@ def _draw(axes, time: np.ndarray, panel: Panel) -> None:
     style.label_curves(axes, ends)
 
 
-def time_figure(name: str, time: np.ndarray, panels: list[Panel]):
-    """Figure of panels over `time`, s; the name of the run and the meaning of bands stand above them."""
+def time_figure(run: Run, time: np.ndarray, panels: list[Panel]):
+    """Figure of panels over `time`, s; the name of the run, the meaning of bands and a check that failed stand above them."""
     height = 1.0 + 1.6 * len(panels)
     figure, axes = plt.subplots(len(panels), 1, figsize=(5.6, height), sharex=True, squeeze=False)
     figure.subplots_adjust(left=0.15, right=0.8, top=1 - 0.9 / height, bottom=0.45 / height, hspace=0.45)
@@ -85,5 +87,5 @@ def time_figure(name: str, time: np.ndarray, panels: list[Panel]):
     if any(panel.bands for panel in panels):
         has_value = any(band.expected is not None for panel in panels for band in panel.bands)
         marks = "; grey: what [verify] allows" + (", dashed: the value that it expects" if has_value else "")
-    style.heading(figure, name, f"history, {len(time)} rows{marks}")
+    style.heading(figure, run.name, f"history, {len(time)} rows{marks}{failure_caption(run.result)}")
     return figure

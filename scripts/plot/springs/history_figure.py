@@ -3,11 +3,18 @@
 import numpy as np
 
 from .. import style
+from ..checks import failure_caption
 from ..run_directory import Run
 from ..style import plt
 
 _ENERGIES = ("kinetic", "elastic", "potential")
 _WORKS = ("contact", "friction")  # prefixes of the columns *_work
+
+
+def _moves_pins(run: Run) -> bool:
+    """Whether pins do work, which no column counts."""
+    return any(float(motion) != 0 if isinstance(motion, int | float) else motion.strip() != "0"
+               for pin in run.scene.get("pin", []) for motion in pin.get("motion", {}).values())  # fmt: skip
 
 
 def _probes(run: Run) -> list[str]:
@@ -22,15 +29,26 @@ def _draw_curves(axes, time: np.ndarray, curves: dict[str, np.ndarray]) -> None:
     style.label_curves(axes, ends)
 
 
+def _draw_change(axes, time: np.ndarray, values: dict[str, np.ndarray], works: dict[str, np.ndarray]) -> None:
+    released = values["kinetic"][0] - sum(values[name] - values[name][0] for name in ("elastic", "potential"))
+    # The same denominator as in the check, so that the figure shows the value of the check.
+    largest = max(values["kinetic"].max(), released.max()) or 1.0
+    kept = values["energy"] - sum(works.values())
+    axes.plot(*style.decimate(time, (kept - kept[0]) / largest), color=style.ERROR_COLOUR)
+    axes.set_title("change of sum" + (" less works," if works else "") + " over largest kinetic or released energy")
+
+
 def springs_history_figure(run: Run):
-    """Figure; None if the history has fewer than two rows."""
+    """Figure; None if the history has fewer than two rows. Where pins move, the sum of the energies is not drawn: it is not kept."""
     time = run.history.get("time")
     if time is None or len(time.values) < 2:
         return None
     probes = _probes(run)
-    count = 2 + len(probes)
+    keeps_sum = not _moves_pins(run)
+    count = 1 + keeps_sum + len(probes)
     height = 1.0 + 1.6 * count
-    figure, axes = plt.subplots(count, 1, figsize=(5.2, height), sharex=True)
+    figure, axes = plt.subplots(count, 1, figsize=(5.2, height), sharex=True, squeeze=False)
+    axes = list(axes[:, 0])
     figure.subplots_adjust(left=0.16, right=0.8, top=1 - 0.9 / height, bottom=0.45 / height, hspace=0.5)
     values = {name: run.history[name].values for name in (*_ENERGIES, "energy")}
     # Only changes of the potential energy are meaningful.
@@ -40,18 +58,12 @@ def springs_history_figure(run: Run):
     axes[0].set_title(
         "energies, the potential one from its start" + (", and works" if works else "") + " (J)"
     )
-    released = values["kinetic"][0] - sum(values[name] - values[name][0] for name in ("elastic", "potential"))
-    # The same denominator as in the check, so that the figure shows the value of the check.
-    largest = max(values["kinetic"].max(), released.max()) or 1.0
-    kept = values["energy"] - sum(works.values())
-    axes[1].plot(*style.decimate(time.values, (kept - kept[0]) / largest), color=style.ERROR_COLOUR)
-    axes[1].set_title(
-        "change of sum" + (" less works," if works else "") + " over largest kinetic or released energy"
-    )
-    for panel, probe in zip(axes[2:], probes):
+    if keeps_sum:
+        _draw_change(axes[1], time.values, values, works)
+    for panel, probe in zip(axes[1 + keeps_sum :], probes):
         moved = {axis: run.history[f"{probe}_{axis}"].values for axis in "xyz"}
         _draw_curves(panel, time.values, {axis: place - place[0] for axis, place in moved.items()})
         panel.set_title(f"{probe.replace('_', ' ')}: displacement from its start (m)")
     axes[-1].set_xlabel("time (s)")
-    style.heading(figure, run.name, f"history, {len(time.values)} rows")
+    style.heading(figure, run.name, f"history, {len(time.values)} rows{failure_caption(run.result)}")
     return figure

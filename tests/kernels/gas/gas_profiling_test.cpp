@@ -285,6 +285,21 @@ TEST(GasStops, FailureReportsTheCell) {
   }
 }
 
+TEST(GasStops, NeverShortensAFixedStep) {
+  for (const Positivity positivity : {Positivity::on, Positivity::automatic}) {
+    Parameters p = sod(positivity);
+    p.fixed_dt = 1.0;
+    const auto solver = started(backend, p, sod_state(p));
+    EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::failed);
+    EXPECT_EQ(solver->failure().dt, 1.0);
+    EXPECT_EQ(solver->restart_state().step, 0);
+    reference::GasRun run = reference_from(sod_state(p));
+    reference::advance(run, p, 1e9);
+    EXPECT_TRUE(run.failed);
+    EXPECT_EQ(run.steps, 0);
+  }
+}
+
 TEST(GasStops, RejectsStatesWithNaN) {
   for (const Positivity positivity : {Positivity::off, Positivity::on, Positivity::automatic})
     for (std::size_t k = 0; k < 3; ++k) {

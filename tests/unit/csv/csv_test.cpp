@@ -52,13 +52,14 @@ TEST(CsvFields, SplitsALine) {
 /// The parser examines eight characters at a time.
 TEST(CsvFields, SplitsLinesOfAnyLength) {
   std::mt19937 random(5);
+  const char* const letters[] = {"a", "b", ".", "-", "+", "\xC2\xAC", "\x7f", "\xE2\xAC\xBF", ",", ","};
   for (int trial = 0; trial < 2000; ++trial) {
     std::string line;
     std::vector<std::string> values(1);
     for (auto k = random() % 40; k > 0; --k) {
-      const char letter = "ab.-+\xac\x7f\xff,,"[random() % 10];
+      const std::string letter = letters[random() % 10];
       line += letter;
-      if (letter == ',') {
+      if (letter == ",") {
         values.emplace_back();
       } else {
         values.back() += letter;
@@ -256,6 +257,14 @@ TEST(CsvHeader, NamesTheSeparatorAndTheEncoding) {
   const std::string little("f\0i\0r\0\n\0", 8), big("\0f\0i\0r\0\n", 8);
   for (const std::string& text : {"\xFF\xFE" + little, "\xFE\xFF" + big, little, big})
     EXPECT_EQ(header_fault(text), "1: the encoding is UTF-16; save the file as UTF-8");
+  const std::string wide_little("f\0\0\0i\0\0\0\n\0\0\0", 12), wide_big("\0\0\0f\0\0\0i\0\0\0\n", 12);
+  const std::string mark_little("\xFF\xFE\0\0", 4), mark_big("\0\0\xFE\xFF", 4);
+  for (const std::string& text : {mark_little + wide_little, mark_big + wide_big, wide_little, wide_big})
+    EXPECT_EQ(header_fault(text), "1: the encoding is UTF-32; save the file as UTF-8");
+  EXPECT_EQ(header_fault("first,pr\xE9nom\n"),
+            "1: the header cannot be read: the line is not UTF-8; save the file as UTF-8");
+  EXPECT_NE(header_fault("\"sep=;\"\nfirst;second\n").find("1: the separator is a semicolon"),
+            std::string::npos);
   const std::string old_mac = "first,second\r1,2\r";
   EXPECT_EQ(header_fault(old_mac), "1: the lines end in CR alone; LF or CRLF must end them");
   std::string large;
@@ -265,15 +274,28 @@ TEST(CsvHeader, NamesTheSeparatorAndTheEncoding) {
 }
 
 TEST(CsvHeader, SkipsTheSeparatorOfSpreadsheetsAndRowsOfCommas) {
-  const CsvFile file("sep=,\na,b,c\n,,\n1,2,3\n, ,,,\n,\n");
+  const CsvFile file(
+      "\"sep=,\"\na,b,c\n,,\n1,2,3\n, ,,,\n,\n, , ,\n\"\",\"\",\"\"\n\"\", \" \"\n\"\"\n\"\"\"\",\n");
   LineReader reader(file.path());
   EXPECT_EQ(read_header(reader, {"a", "b", "c"}).line, 2);
   Line line;
   ASSERT_TRUE(reader.next(line));
   EXPECT_EQ(line.text, "1,2,3");
   ASSERT_TRUE(reader.next(line));
-  EXPECT_EQ(line.text, ",");  // too few fields for an empty row
+  EXPECT_EQ(line.text, "\"\"\"\",");  // a field that is a quote
   EXPECT_FALSE(reader.next(line));
+}
+
+TEST(CsvFields, RefusesLinesThatAreNotUtf8) {
+  Fields fields;
+  for (const char* line : {"\xC3\xA9,1", "\xE2\x82\xAC", "\xF0\x9F\x98\x80,\"a\"", "\xED\x9F\xBF"})
+    EXPECT_EQ(fields.split(line), "") << line;
+  for (const char* line : {"\xE9,1", "1,abcdefgh\xE9", "\"\xE9\",1", "\xC3", "\xC0\x80", "\xE0\x80\x80",
+                           "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\x80", "\xE2\x82,"}) {
+    EXPECT_EQ(fields.split(line), "the line is not UTF-8; save the file as UTF-8") << line;
+    EXPECT_EQ(fields.size(), 0U);
+  }
+  EXPECT_EQ(shown(std::string(39, 'a') + "\xC3\xA9" + "b"), '"' + std::string(39, 'a') + "...\"");
 }
 
 TEST(CsvFields, DropsTrailingEmptyFields) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "common/program/failure.hpp"
 
 namespace drogue::scene {
@@ -21,6 +23,15 @@ std::string thrown_by(Call call, ExitCode code = ExitCode::invalid_scene) {
 
 std::string syntax_error(const std::string& text) {
   return thrown_by([&] { parse_text(text, "f.toml"); });
+}
+
+TEST(NodeText, RoundsComputedNumbersInSentences) {
+  EXPECT_EQ(rounded_text(0.1 - 0.3), "-0.2");
+  EXPECT_EQ(rounded_text(-0.19999999999999998), "-0.2");
+  EXPECT_EQ(rounded_text(1.0), "1.0");
+  EXPECT_EQ(rounded_text(0.123456789012), "0.123456789012");
+  EXPECT_EQ(rounded_text(std::nextafter(3e200, 1e300)), "3e+200");
+  EXPECT_EQ(rounded_text(std::nan("")), "nan");
 }
 
 TEST(Parse, KeepsOrderTypesAndLines) {
