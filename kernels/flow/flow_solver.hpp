@@ -397,7 +397,7 @@ Control FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fra
   set_guess();
   enqueue_pressure(space(), projection_setup(1.0));
   _last_solution_is_pressure = false;
-  if (_boundary.changes()) _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  if (_boundary.changes()) _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
   const Control solved = read_control();
   write_control(kept);
   return solved;
@@ -424,7 +424,7 @@ void FlowSolver<ExecutionSpace>::start() {
   control.trial.stop = Stop::running;
   control.first_failure = no_failure;
   write_control(control);
-  _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
   enqueue_net_inflow(space());
   for (int axis = 0; axis < 3; ++axis)
     if (_grid.n[axis] == 1 && _boundary.conditions().kind[2 * axis] == BoundaryKind::slip)
@@ -490,7 +490,7 @@ void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
   control.first_failure = no_failure;
   control.trial.stop = Stop::running;
   write_control(control);
-  _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
   begin_ghosts(space(), _velocity);
   finish_ghosts(space(), _velocity);
   enqueue_eddy_viscosity(space(), _velocity);
@@ -544,7 +544,7 @@ Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step,
   const Stop stop = _halo ? advance_collectively({target, pause_step}, poll)
                           : _loop.advance({target, pause_step}, Steps{*this}, poll);
   if (stop == Stop::failed && _boundary.changes()) {
-    _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+    _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
     space().fence("drogue::flow::advance: sides before the failed step");
   }
   return stop;
@@ -585,7 +585,8 @@ double FlowSolver<ExecutionSpace>::largest_dt(const Progress& now, double steps)
 template <class ExecutionSpace>
 double FlowSolver<ExecutionSpace>::next_jump(double time) const {
   for (const stepping::MotionInterval& interval : _motion)
-    if (interval.begins_with != 0 && interval.begin - time > 1e-12 * interval.begin) return interval.begin;
+    if (interval.begins_with != 0 && interval.begin - time > stepping::jump_width * interval.begin)
+      return interval.begin;
   return std::numeric_limits<double>::infinity();
 }
 
@@ -801,7 +802,7 @@ void FlowSolver<ExecutionSpace>::enqueue_rates(const ExecutionSpace& space,
                  EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
                                                    _eddy_acceleration, _control});
   enqueue_momentum(space, setup);
-  if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
+  if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, _constants, {time_fraction, false});
   enqueue_net_inflow(space);
   launch_boundary_faces(space, setup, _boundary.conditions(), _parameters.advection);
 }

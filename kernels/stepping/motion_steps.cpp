@@ -51,6 +51,7 @@ class Division {
         divide(blocks[block][i - 1], blocks[block][i], 0);
     }
     close();
+    divide_pulses();
     return std::move(_intervals);
   }
 
@@ -192,6 +193,19 @@ class Division {
         std::max(_motion.rate(0.0, a.values, a.values), _motion.rate(0.0, b.values, b.values));
     _intervals.push_back({a.time * (1.0 - 4.0 * std::numeric_limits<double>::epsilon()), infinite, rate, 1});
     open(b);
+  }
+
+  /// Bounds dt between two jumps. Rates of a step are in part those before its beginning, so that a first
+  /// step misses a part of what a jump changes, and the first one after a pulse adds as much.
+  void divide_pulses() {
+    constexpr double steps = 16.0;
+    auto jump = _intervals.end();
+    for (auto interval = _intervals.begin(); interval != _intervals.end(); ++interval) {
+      if (interval->begins_with == 0) continue;
+      const double longest = jump == _intervals.end() ? infinite : (interval->begin - jump->begin) / steps;
+      for (; jump < interval; ++jump) jump->longest = std::min(jump->longest, longest);
+      jump = interval;
+    }
   }
 
   void open(const Sample& sample) {

@@ -45,22 +45,49 @@ struct MotionBound {
   bool follows_jump = false;  ///< the step begins with a jump
 };
 
-/// Shortens `steps` equal steps of `dt` from `time`, s, so that they resolve the motion, and dt times the
-/// rate of what moves within them is at most `cfl`. `intervals` has `count` entries, at least one.
-KOKKOS_INLINE_FUNCTION MotionBound bound_by_motion(const MotionInterval* intervals, int count, double time,
-                                                   double dt, double cfl, double steps = 1.0) {
+/// Part of the time of a jump by which another time counts as that of the jump.
+inline constexpr double jump_width = 1e-12;
+
+/// Number of the interval that holds a time, s. `intervals` has `count` entries, at least one.
+KOKKOS_INLINE_FUNCTION int interval_at(const MotionInterval* intervals, int count, double time) {
   int at = 0, end = count;
   while (end - at > 1) {
     const int middle = at + (end - at) / 2;
     (intervals[middle].begin <= time ? at : end) = middle;
   }
-  MotionBound bound{dt, Kokkos::Experimental::infinity_v<double>};
+  return at;
+}
+
+/// Interval whose jump has this time, s; null if there is none. `intervals` has `count` entries, perhaps
+/// none.
+KOKKOS_INLINE_FUNCTION const MotionInterval* jump_at(const MotionInterval* intervals, int count,
+                                                     double time) {
+  // Another interval begins just after a jump.
+  for (int i = count > 0 ? interval_at(intervals, count, time) : -1; i >= 0; --i) {
+    if (time - intervals[i].begin > jump_width * intervals[i].begin) break;
+    if (intervals[i].begins_with != 0) return intervals + i;
+  }
+  return nullptr;
+}
+
+/// `time`, s, or just before the jump that has this time: a step that ends there has the values before it.
+KOKKOS_INLINE_FUNCTION double time_before_jump(const MotionInterval* intervals, int count, double time) {
+  const MotionInterval* jump = jump_at(intervals, count, time);
+  return jump != nullptr ? jump->begin : time;
+}
+
+/// Shortens `steps` equal steps of `dt` from `time`, s, so that they resolve the motion, and dt times the
+/// rate of what moves within them is at most `cfl`. `intervals` has `count` entries, at least one.
+KOKKOS_INLINE_FUNCTION MotionBound bound_by_motion(const MotionInterval* intervals, int count, double time,
+                                                   double dt, double cfl, double steps = 1.0) {
+  const int at = interval_at(intervals, count, time);
+  MotionBound bound{dt, Kokkos::Experimental::infinity_v<double>, jump_at(intervals, count, time) != nullptr};
   for (int i = at; i < count; ++i) {
     const MotionInterval interval = intervals[i];
     const double left = (interval.begin - time) / steps;
     if (left >= bound.dt) break;
     if (interval.begins_with != 0) {
-      const double round_off = 1e-12 * interval.begin;
+      const double round_off = jump_width * interval.begin;
       if (i > at && left > round_off) {
         bound.jump = interval.begin;
         break;

@@ -385,7 +385,8 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
       set_lines();
       _block.end = now.step;
     }
-    const double target = std::min({last_target, _cuts.next(), next_jump(now)});
+    const double end = std::min(last_target, _cuts.next()), jump = next_jump(now);
+    const double target = jump < end * (1.0 - stepping::jump_width) ? jump : end;
     if (condition.has_failed) {
       return_to_last_step(now);
       // Returns its sides to the time before the failed step.

@@ -111,11 +111,14 @@ struct BoundaryTableFunctor {
   BoundaryTime stage;
   int side;
   std::int64_t first;
+  const stepping::MotionInterval* motion;  ///< of the sides, in memory of the backend
+  int motions;                             ///< number of its intervals; 0 without any
 
   KOKKOS_FUNCTION void operator()(const int entry) const {
     Control& c = control();
     if (!stage.initial && c.trial.stop != stepping::Stop::running) return;
-    const double t = stage.initial ? c.now.time : c.now.time + stage.fraction * c.trial.dt;
+    const double t = stepping::time_before_jump(
+        motion, motions, stage.initial ? c.now.time : c.now.time + stage.fraction * c.trial.dt);
     const MacGrid& g = grid;
     const TableEntry at = table_entry<ExecutionSpace>(g, side, entry);
     const int component = at.component, axis = side / 2;
@@ -189,13 +192,13 @@ class BoundaryTables {
 
   /// Enqueues the evaluation of all tables. Asynchronous.
   void enqueue_evaluation(const ExecutionSpace& space, const ControlView<ExecutionSpace>& control,
-                          const BoundaryTime& stage) const {
+                          const StepConstants& constants, const BoundaryTime& stage) const {
     for (int side = 0; side < 6; ++side) {
       if (_conditions.first[side] < 0) continue;
-      device::launch_each(
-          space, "drogue::flow::boundary_table", static_cast<int>(entries_of(side)),
-          BoundaryTableFunctor<ExecutionSpace>{_grid, _conditions.table, _programs[side], control, stage,
-                                               side, _conditions.first[side]});
+      device::launch_each(space, "drogue::flow::boundary_table", static_cast<int>(entries_of(side)),
+                          BoundaryTableFunctor<ExecutionSpace>{_grid, _conditions.table, _programs[side],
+                                                               control, stage, side, _conditions.first[side],
+                                                               constants.motion, constants.motions});
     }
   }
 

@@ -97,6 +97,28 @@ TEST(FlowMotion, StepsEndWhereMotionBeginsAfterRest) {
   EXPECT_FALSE(bound(0.31, 0.5).follows_jump);
 }
 
+TEST(FlowMotion, HasTheValuesBeforeAJumpAtItsTime) {
+  const auto intervals = divided([](double t) { return t < 1.0 ? 0.0 : 1.0; }, 4.0, {1.0});
+  const auto count = static_cast<int>(intervals.size());
+  const auto before = [&](double time) { return stepping::time_before_jump(intervals.data(), count, time); };
+  for (const double time : {std::nextafter(1.0, 0.0), 1.0, 1.0 + 1e-13}) {
+    EXPECT_LT(before(time), 1.0);
+    EXPECT_NEAR(before(time), 1.0, 1e-14);
+  }
+  for (const double time : {0.0, 0.5, 1.0 + 1e-11, 3.0}) EXPECT_EQ(before(time), time);
+  EXPECT_EQ(stepping::time_before_jump(nullptr, 0, 1.0), 1.0);
+}
+
+TEST(FlowMotion, DividesThePulseBetweenTwoJumps) {
+  const auto intervals = divided([](double t) { return t > 1.0 && t < 1.25 ? 1.0 : 0.0; }, 4.0, {1.0, 1.25});
+  const int steps = steps_until(intervals, 4.0, 4.0, 1e3, [](double begin, double end) {
+    if (begin > 0.99 && begin < 1.249) {
+      EXPECT_LE(end - begin, 0.25 / 15.0);
+    }
+  });
+  EXPECT_LT(steps, 24);
+}
+
 TEST(FlowMotion, FindsAShortPulseByTheConstantsOfItsExpression) {
   // A ten-thousandth of the run.
   const auto pulse = [](double t) { return t > 1.23 && t < 1.2304 ? 9.0 : 0.0; };
