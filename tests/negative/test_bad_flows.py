@@ -49,6 +49,49 @@ class BadFlows(parachute_program.FlowTest):
         self.assertGreaterEqual(len(bad_bodies.BAD_LINES), 30)
         self.assert_lines_are_rejected(bad_bodies.GOOD, bad_bodies.BAD_LINES)
 
+    def test_rejects_bodies_that_close_a_channel_with_a_prescribed_flow_rate(self):
+        closed = bad_bodies.GOOD.replace('y = "slip"', 'y = "periodic"').replace("[0.4, 0.8]", "[0.8, 0.8]")
+        closed = closed[:closed.index("[verify]")]
+        self.scene.write_text(closed, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        none = "body[0].porosity={law='none'}"
+        self.assertIn("body[0] closes the channel along x and is impermeable", self.refusal(none))
+        self.expect(0, self.scene, "--check", sets=[none, "body[0].lengths=[0.6,0.8]"])
+        self.expect(0, self.scene, "--check", sets=[none, "grid.boundary.x='periodic'"])
+        self.assertIn("closes the channel", self.refusal(none, "coupling.method='sharp'", "grid.boundary.y='wall'", "grid.boundary.z='slip'"))
+        box = ("fluid.velocity=[0,0,0]", "grid.boundary.x='wall'", none)
+        self.expect(0, self.scene, "--check", sets=box)
+        moving = "body[0].motion={x='0.1*sin(t)'}"
+        self.assertIn("closes the channel", self.refusal(*box, moving))
+        self.expect(0, self.scene, "--check", sets=[*box[:2], moving])
+        second = '[[body]]\nkind = "plate"\nnormal = "x"\ncentre = [0.4, 0.4, 0.4]\nlengths = [0.8, 0.8]\nedge_length = 0.05\n'
+        self.scene.write_text(closed.replace("[coupling]", second + "[coupling]"), encoding="utf-8")
+        periodic = ("grid.boundary.x='periodic'", none)
+        self.expect(0, self.scene, "--check", sets=periodic)
+        self.assertIn("as another body that moves otherwise", self.refusal(*periodic, moving))
+
+    def test_rejects_oblique_sheets_that_close_a_channel_without_a_largest_step(self):
+        closed = bad_bodies.GOOD.replace('y = "slip"', 'y = "periodic"').replace('x = ["inflow", "outflow"]', 'x = "periodic"')
+        closed = closed.replace('kind = "plate"\nnormal = "x"', 'kind = "file"').replace("lengths = [0.4, 0.8]\nedge_length = 0.05", 'file = "oblique.obj"')
+        self.scene.write_text(closed[:closed.index("[verify]")].replace("max_dt = 0.01\n", ""), encoding="utf-8")
+        n = 20
+        points = [(0.4 * i / n - 0.2, 0.8 * i / n - 0.4, 0.8 * k / n - 0.4) for i in range(n + 1) for k in range(n + 1)]
+        faces = [f for i in range(n) for k in range(n) for a in [(n + 1) * i + k + 1] for f in ((a, a + n + 1, a + n + 2), (a, a + n + 2, a + 1))]
+        (self.folder / "oblique.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in points)
+                                                 + "".join(f"f {a} {b} {c}\n" for a, b, c in faces), encoding="utf-8")
+        self.assertIn('missing key "run.max_dt"', self.refusal())
+        self.expect(0, self.scene, "--check", sets=["run.max_dt=0.01"])
+
+        halves = "".join(f'[[body]]\nkind = "plate"\nnormal = "x"\ncentre = [0.8, {y}, 0.4]\nlengths = [0.4, 0.8]\nedge_length = 0.05\n'
+                         f'porosity = {{ law = "{law}" }}\n' for y, law in ((0.2, "forchheimer"), (0.6, "none")))
+        self.scene.write_text(closed[:closed.index("[[body]]")] + halves + "[run]\nend_time = 1\n", encoding="utf-8")
+        self.assertIn("body[0] with others closes the channel along x", self.refusal())
+        self.expect(0, self.scene, "--check", sets=["run.max_dt=0.01"])
+        self.expect(0, self.scene, "--check", sets=["body[1].centre=[0.4,0.6,0.4]"])
+        stream = ("grid.boundary.x=['inflow','outflow']", "run.max_dt=0.01")
+        self.expect(0, self.scene, "--check", sets=stream)
+        self.assertIn("and is impermeable", self.refusal(*stream, "body[0].porosity.law='none'"))
+
     def test_rejects_grids_that_cannot_follow_a_payload(self):
         follow = 'grid.frame="follow"'
         self.assertIn('grid.frame = "follow" applies only with a [[canopy]]', self.refusal(follow))

@@ -57,6 +57,30 @@ history_every = 1
 """
 
 
+# A porous plate that closes a channel with a pressure drop.
+CLOSED = """app = "parachute"
+[fluid]
+density = 1
+viscosity = 0.01
+[grid]
+cells = [24, 4, 4]
+domain = [[0, 2], [0, 1], [0, 1]]
+boundary = { x = "periodic", y = "periodic", z = "periodic" }
+[[body]]
+kind = "plate"
+normal = "x"
+centre = [1, 0.5, 0.5]
+lengths = [1, 1]
+edge_length = 0.05
+porosity = { law = "forchheimer" }
+[flow]
+pressure_drop = [200, 0, 0]
+[run]
+end_time = 2
+[output]
+history_every = 1
+"""
+
 class Drives(parachute_program.FlowTest):
     def check(self, text, *sets, code=0):
         self.expect(code, self.write(text), *QUIET, sets=list(sets))
@@ -115,6 +139,52 @@ class Drives(parachute_program.FlowTest):
         # After the start, whose acceleration jumps.
         late = [abs(f) for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.1]
         self.assertAlmostEqual(exact, max(late), delta=0.08 * exact)
+
+    def test_sheets_that_close_a_channel(self):
+        """Cloth of MIL-C-7020, an impermeable plate and a bed of grains across a channel, with every default."""
+        alpha, beta, drop = 254.4, 37.6, 200
+        steady = (-alpha + math.sqrt(alpha**2 + 4 * beta * drop)) / (2 * beta)
+        open_sides = ("grid.boundary.x='outflow'", "flow={body_force=[100,0,0]}")
+        for sets, velocity, tolerance in (
+                ((), steady, 1e-9), (("coupling={method='sharp'}",), steady, 1e-6), (("coupling={filter=0}",), steady, 1e-9),
+                (("grid={cells=[96,4,4],domain=[[0,8],[0,1],[0,1]],boundary={x='periodic',y='periodic',z='periodic'}}",), steady, 1e-3),
+                (open_sides, 0.7106, 2e-3), (("body[0].porosity={law='none'}",), 0, 1e-9),
+                (("grid.boundary={x='periodic',y='slip',z='slip'}", "grid.cells=[24,12,12]", "coupling={method='sharp'}"), steady, 1e-6)):
+            with self.subTest(sets):
+                rows = self.check(CLOSED, *sets)
+                length = 8 if "domain" in str(sets) else 2
+                speeds = [m / length for m in rows["momentum_x"]]
+                for before, after in zip(speeds, speeds[1:], strict=False):
+                    self.assertGreater(after, before - 1e-3)
+                self.assertLess(max(speeds), velocity + 1e-3)
+                self.assertAlmostEqual(velocity, speeds[-1], delta=tolerance)
+                self.assertAlmostEqual(drop, rows["body_0_force_x"][-1], delta=0.3)
+
+    def test_sheets_through_which_a_stream_is_prescribed(self):
+        stream = CLOSED.replace("[flow]\npressure_drop = [200, 0, 0]\n", "").replace("density = 1", "velocity = [1, 0, 0]\ndensity = 1").replace(
+            'x = "periodic"', 'x = ["inflow", "outflow"]')
+        walls = ("grid.boundary.y='wall'", "grid.boundary.z='wall'", "grid.cells=[24,12,12]", "coupling={method='sharp'}")
+        ergun = "body[0].porosity={law='ergun',void_fraction=0.4,thickness=0.01,grain=1e-5}"
+        bed = 150 * 0.01 * 0.36 * 0.01 / (0.064 * 1e-10) + 1.75 * 0.6 * 0.01 / (0.064 * 1e-5)
+        for sets, force in (((), 292), (("coupling={filter=0}",), 292), (("coupling={method='sharp'}",), 292),
+                            ((ergun, "fluid.viscosity=1e-5"), 1e-3 * (bed - 1.75 * 0.6 * 0.01 / (0.064 * 1e-5)) + 1.75 * 0.6 * 0.01 / (0.064 * 1e-5))):
+            with self.subTest(sets):
+                rows = self.check(stream, "run.end_time=0.5", *sets)
+                for found in rows["body_0_force_x"][1:]:
+                    self.assertAlmostEqual(force, found, delta=1e-6 * force)
+        rows = self.check(stream, "run.end_time=0.3", *walls)
+        self.assertAlmostEqual(292, rows["body_0_force_x"][-1], delta=3)
+        rows = self.check(stream, "run.end_time=3", "fluid.velocity=['0.5+0.3*sin(2*t)',0,0]")
+        for time, found in list(zip(rows["time"], rows["body_0_force_x"], strict=True))[2:]:
+            u = 0.5 + 0.3 * math.sin(2 * time)
+            self.assertAlmostEqual(254.4 * u + 37.6 * u * u, found, delta=12)
+
+    def test_plate_that_moves_the_fluid_of_a_long_channel(self):
+        rows = self.check(PISTON, "grid={cells=[80,4,4],domain=[[0,4],[0,0.4],[0,0.4]],boundary={x='periodic',y='periodic',z='periodic'}}",
+                          "body[0].centre=[2.03,0.2,0.2]")
+        exact = 1.2 * 4 * 0.16 * 0.002 * (20 * math.pi) ** 2
+        late = [abs(f) for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.1]
+        self.assertAlmostEqual(exact, max(late), delta=0.05 * exact)
 
     def test_closed_box_under_gravity_stays_at_rest(self):
         for viscosity in (1, 100):
