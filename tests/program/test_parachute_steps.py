@@ -81,6 +81,29 @@ end_time = 2
 history_every = 1
 """
 
+# A plate on a spring that moves 24.5 times its own mass.
+MOUNT = """app = "parachute"
+[fluid]
+density = 1.225
+viscosity = 0
+[grid]
+cells = [40, 4, 4]
+domain = [[0, 2], [0, 0.5], [0, 0.5]]
+boundary = { x = "periodic", y = "periodic", z = "periodic" }
+[[body]]
+kind = "plate"
+normal = "x"
+centre = [1, 0.25, 0.25]
+lengths = [0.5, 0.5]
+edge_length = 0.05
+mount = { mass = 0.1, stiffness = 40, offset = 0.03 }
+[run]
+end_time = 4
+[output]
+history_every = 1
+"""
+
+
 class Drives(parachute_program.FlowTest):
     def check(self, text, *sets, code=0):
         self.expect(code, self.write(text), *QUIET, sets=list(sets))
@@ -185,6 +208,19 @@ class Drives(parachute_program.FlowTest):
         exact = 1.2 * 4 * 0.16 * 0.002 * (20 * math.pi) ** 2
         late = [abs(f) for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.1]
         self.assertAlmostEqual(exact, max(late), delta=0.05 * exact)
+
+    def test_plates_on_springs_bound_their_steps(self):
+        for offset in (0.0003, 0.03):
+            rows = self.check(MOUNT, f"body[0].mount.offset={offset}", (
+                "verify={oscillation=[{column='body_0_displacement',frequency={value=1.1925,tolerance=0.01},"
+                f"amplitude={{value={offset},tolerance=0.01}}}}]}}"))
+            self.assertGreater(len(rows["time"]), 1000)
+        for sets, words in (("run.dt=0.02", "run.dt = 0.02 s does not resolve body[0].mount"),
+                            ("run.max_dt=0.05", "run.max_dt = 0.05 s does not resolve body[0].mount")):
+            process = self.start(self.write(MOUNT), "--check", sets=[sets])
+            self.assertEqual(0, process.returncode)
+            self.assertIn(words, process.stderr)
+        self.expect(0, self.write(MOUNT), "--check", sets=["run.max_dt=0.005"])
 
     def test_closed_box_under_gravity_stays_at_rest(self):
         for viscosity in (1, 100):

@@ -112,6 +112,12 @@ void check_mount(const Table& root, const FlowScene& scene, const Body& body, co
                  name + ".lengths: a plate with a mount must close the channel, which is " +
                      real_text(width) + " m wide along " + axis_names[axis]);
   }
+  if (scene.coupling.filter == 0.0)
+    contradict(
+        root, "coupling.filter",
+        "coupling.filter = 0: " + name +
+            " with its mount would move the fluid beside it alone, and not that of the channel; it must "
+            "be positive");
   const double moved = p.density * (p.high[0] - p.low[0]) * (p.high[1] - p.low[1]) * (p.high[2] - p.low[2]);
   if (scene.is_explicit() && !scene.allow_unstable && moved > body.mount->mass)
     contradict(root, "coupling.method",
