@@ -92,6 +92,37 @@ class BadFlows(parachute_program.FlowTest):
         self.expect(0, self.scene, "--check", sets=stream)
         self.assertIn("and is impermeable", self.refusal(*stream, "body[0].porosity.law='none'"))
 
+    def test_rejects_bodies_that_cross(self):
+        spheres = ('app = "parachute"\n[fluid]\nvelocity = [1, 0, 0]\n[grid]\ncells = [20, 10, 10]\ndomain = [[0, 2], [0, 1], [0, 1]]\n'
+                   'boundary = { x = ["inflow", "outflow"], y = "periodic", z = "periodic" }\n'
+                   + "".join(f'[[body]]\nkind = "sphere"\ncentre = [{x}, 0.5, 0.5]\nradius = 0.2\nedge_length = 0.06\n' for x in (0.5, 0.8))
+                   + "[run]\nend_time = 1\n")
+        self.scene.write_text(spheres, encoding="utf-8")
+        self.assertIn("body[1] crosses body[0]: bodies may touch", self.refusal())
+        self.expect(0, self.scene, "--check", sets=["body[1].centre=[0.91,0.5,0.5]"])
+        apart = ("body[1].centre=[1.2,0.5,0.5]",)
+        self.expect(0, self.scene, "--check", sets=apart)
+        self.assertIn("body[1] crosses body[0] at t = ", self.refusal(*apart, "body[1].motion={x='-0.7*t'}"))
+        same = ("body[0].motion={x='0.1*t'}", "body[1].motion={x='0.1*t'}")
+        self.expect(0, self.scene, "--check", sets=[*apart, *same])
+        # Plates may touch along an edge and in a corner.
+        plates = spheres[:spheres.index("[[body]]")] + "".join(
+            f'[[body]]\nkind = "plate"\nnormal = "{n}"\ncentre = {c}\nlengths = [0.4, 0.4]\nedge_length = 0.05\n'
+            for n, c in (("x", "[0.5, 0.5, 0.5]"), ("y", "[0.7, 0.3, 0.5]"))) + "[run]\nend_time = 1\n"
+        self.scene.write_text(plates, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assertIn("crosses", self.refusal("body[1].centre=[0.63,0.43,0.5]"))
+
+    def test_rejects_lines_of_canopies_through_bodies(self):
+        body = '[[body]]\nkind = "sphere"\ncentre = CENTRE\nradius = 0.12\nedge_length = 0.05\n'
+        free = bad_canopies.GOOD[:bad_canopies.GOOD.index("[verify]")]
+        for centre, crosses in (([-1, 0, -0.8], True), ([0, 0, 0], False)):
+            self.scene.write_text(free.replace("[coupling]", body.replace("CENTRE", str(centre)) + "[coupling]"), encoding="utf-8")
+            if crosses:
+                self.assertIn("crosses body[0] at the start", self.refusal())
+            else:
+                self.expect(0, self.scene, "--check")
+
     def test_rejects_grids_that_cannot_follow_a_payload(self):
         follow = 'grid.frame="follow"'
         self.assertIn('grid.frame = "follow" applies only with a [[canopy]]', self.refusal(follow))

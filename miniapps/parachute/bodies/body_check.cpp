@@ -8,6 +8,7 @@
 #include "common/scene/read.hpp"
 #include "kernels/mesh/orientation.hpp"
 #include "miniapps/framework/obj_file.hpp"
+#include "miniapps/parachute/bodies/body_overlap.hpp"
 #include "miniapps/parachute/bodies/closed_channel.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
@@ -276,6 +277,7 @@ void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);
   check_slip(root, scene);
   check_closed_channels(root, scene);
+  check_body_overlaps(root, scene);
 }
 
 void check_porosity(const Table& root, const FlowScene& scene, const std::string& name,

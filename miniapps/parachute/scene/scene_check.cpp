@@ -11,6 +11,7 @@
 #include "common/scene/read.hpp"
 #include "kernels/flow/diffusive_step.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
+#include "miniapps/parachute/bodies/body_overlap.hpp"
 #include "miniapps/parachute/canopy/canopy_check.hpp"
 #include "miniapps/parachute/flags/flag_check.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
@@ -402,6 +403,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   complete_and_check_bodies(root, scene);
   check_and_place_canopies(root, scene.canopies);
   check_canopies(root, scene);
+  check_canopies_beside_bodies(root, scene);
   complete_and_check_flags(root, scene);
   check_gravity(root, scene);
   complete_fields(root, scene);
