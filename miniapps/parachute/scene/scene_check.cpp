@@ -312,7 +312,7 @@ void complete_time_step(const Table& root, FlowScene& scene) {
   const double speed = known_speed(scene);
   if (speed > 0.0)
     p.max_dt = std::min(p.max_dt, scene.cfl() * least_width(p) / speed);
-  else if (scene.has_free_sheets() && !fluid_moves(scene))
+  else if (!(scene.canopies.empty() && scene.flags.empty()) && !fluid_moves(scene))
     contradict(root, "run",
                "missing key \"run.max_dt\" (needed where neither stream nor gravity moves a sheet): the "
                "largest dt");
