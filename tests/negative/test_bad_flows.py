@@ -70,6 +70,15 @@ class BadFlows(parachute_program.FlowTest):
         self.expect(0, self.scene, "--check", sets=periodic)
         self.assertIn("as another body that moves otherwise", self.refusal(*periodic, moving))
 
+    def test_notes_bodies_that_nearly_close_a_channel(self):
+        text = bad_bodies.GOOD[:bad_bodies.GOOD.index("[verify]")].replace('y = "slip"', 'y = "periodic"')
+        self.scene.write_text(text.replace("max_dt = 0.01\n", ""), encoding="utf-8")
+        process = self.start(self.scene, "--check", sets=["body[0].lengths=[0.65,0.8]"])
+        self.assertEqual(0, process.returncode)
+        self.assertIn("body[0] covers most of the channel along x: its force follows sudden changes", process.stderr)
+        self.expect(0, self.scene, "--check", sets=["body[0].lengths=[0.65,0.8]", "run.max_dt=0.01"])
+        self.expect(0, self.scene, "--check")
+
     def test_rejects_oblique_sheets_that_close_a_channel_without_a_largest_step(self):
         closed = bad_bodies.GOOD.replace('y = "slip"', 'y = "periodic"').replace('x = ["inflow", "outflow"]', 'x = "periodic"')
         closed = closed.replace('kind = "plate"\nnormal = "x"', 'kind = "file"').replace("lengths = [0.4, 0.8]\nedge_length = 0.05", 'file = "oblique.obj"')

@@ -24,6 +24,11 @@ class Section {
     return std::ranges::all_of(_is_covered, [](char covered) { return covered != 0; });
   }
 
+  /// Part of the cells that are covered.
+  [[nodiscard]] double covered_part() const {
+    return static_cast<double>(std::ranges::count(_is_covered, 1)) / static_cast<double>(_is_covered.size());
+  }
+
   /// Covers the cells whose centre line a triangle crosses, also beyond periodic sides. Returns its projected
   /// area, m^2.
   double cover(const std::array<mesh::Vector, 3>& corner) {
@@ -152,6 +157,24 @@ bool are_jointly_closing(const FlowScene& scene, const Body& body, std::size_t a
   return section.is_covered();
 }
 
+/// Notes bodies that leave so little of a channel open that nearly all of the fluid has to stop before them,
+/// which the coupling follows within many steps.
+void note_narrow_gaps(FlowScene& scene) {
+  constexpr double wide = 0.6;
+  const flow::Parameters& p = scene.parameters;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!has_sides(p, axis) || scene.bodies[i].mount) continue;
+      Section section(p, axis);
+      cover(section, scene.bodies[i]);
+      if (section.is_covered() || section.covered_part() < wide) continue;
+      scene.notices.push_back("body[" + std::to_string(i) + "] covers most of the channel along " +
+                              axis_names[axis] +
+                              ": its force follows sudden changes of the flow within some " +
+                              std::to_string(p.cells[axis]) + " steps; run.max_dt shortens them");
+    }
+}
+
 }  // namespace
 
 std::vector<coupling::ClosingSheet> closing_sheets(const FlowScene& scene) {
@@ -175,9 +198,10 @@ std::vector<coupling::ClosingSheet> closing_sheets(const FlowScene& scene) {
   return sheets;
 }
 
-void check_closed_channels(const scene::Table& root, const FlowScene& scene) {
+void check_closed_channels(const scene::Table& root, FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   const bool has_own_step = p.fixed_dt > 0.0 || root.given("run.max_dt");
+  if (!has_own_step) note_narrow_gaps(scene);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::string moved;  // by the first impermeable body
     bool has_impermeable = false;
