@@ -49,6 +49,96 @@ class BadFlows(parachute_program.FlowTest):
         self.assertGreaterEqual(len(bad_bodies.BAD_LINES), 30)
         self.assert_lines_are_rejected(bad_bodies.GOOD, bad_bodies.BAD_LINES)
 
+    def test_rejects_bodies_that_close_a_channel_with_a_prescribed_flow_rate(self):
+        closed = bad_bodies.GOOD.replace('y = "slip"', 'y = "periodic"').replace("[0.4, 0.8]", "[0.8, 0.8]")
+        closed = closed[:closed.index("[verify]")]
+        self.scene.write_text(closed, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        none = "body[0].porosity={law='none'}"
+        self.assertIn("body[0] closes the channel along x and is impermeable", self.refusal(none))
+        self.expect(0, self.scene, "--check", sets=[none, "body[0].lengths=[0.6,0.8]"])
+        self.expect(0, self.scene, "--check", sets=[none, "grid.boundary.x='periodic'"])
+        self.assertIn("closes the channel", self.refusal(none, "coupling.method='sharp'", "grid.boundary.y='wall'", "grid.boundary.z='slip'"))
+        box = ("fluid.velocity=[0,0,0]", "grid.boundary.x='wall'", none)
+        self.expect(0, self.scene, "--check", sets=box)
+        moving = "body[0].motion={x='0.1*sin(t)'}"
+        self.assertIn("closes the channel", self.refusal(*box, moving))
+        self.expect(0, self.scene, "--check", sets=[*box[:2], moving])
+        second = '[[body]]\nkind = "plate"\nnormal = "x"\ncentre = [0.4, 0.4, 0.4]\nlengths = [0.8, 0.8]\nedge_length = 0.05\n'
+        self.scene.write_text(closed.replace("[coupling]", second + "[coupling]"), encoding="utf-8")
+        periodic = ("grid.boundary.x='periodic'", none)
+        self.expect(0, self.scene, "--check", sets=periodic)
+        self.assertIn("as another body that moves otherwise", self.refusal(*periodic, moving))
+
+    def test_notes_bodies_that_nearly_close_a_channel(self):
+        text = bad_bodies.GOOD[:bad_bodies.GOOD.index("[verify]")].replace('y = "slip"', 'y = "periodic"')
+        self.scene.write_text(text.replace("max_dt = 0.01\n", ""), encoding="utf-8")
+        process = self.start(self.scene, "--check", sets=["body[0].lengths=[0.65,0.8]"])
+        self.assertEqual(0, process.returncode)
+        self.assertIn("body[0] covers most of the channel along x: its force follows sudden changes", process.stderr)
+        self.expect(0, self.scene, "--check", sets=["body[0].lengths=[0.65,0.8]", "run.max_dt=0.01"])
+        self.expect(0, self.scene, "--check")
+
+    def test_rejects_oblique_sheets_that_close_a_channel_without_a_largest_step(self):
+        closed = bad_bodies.GOOD.replace('y = "slip"', 'y = "periodic"').replace('x = ["inflow", "outflow"]', 'x = "periodic"')
+        closed = closed.replace('kind = "plate"\nnormal = "x"', 'kind = "file"').replace("lengths = [0.4, 0.8]\nedge_length = 0.05", 'file = "oblique.obj"')
+        self.scene.write_text(closed[:closed.index("[verify]")].replace("max_dt = 0.01\n", ""), encoding="utf-8")
+        n = 20
+        points = [(0.4 * i / n - 0.2, 0.8 * i / n - 0.4, 0.8 * k / n - 0.4) for i in range(n + 1) for k in range(n + 1)]
+        faces = [f for i in range(n) for k in range(n) for a in [(n + 1) * i + k + 1] for f in ((a, a + n + 1, a + n + 2), (a, a + n + 2, a + 1))]
+        (self.folder / "oblique.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in points)
+                                                 + "".join(f"f {a} {b} {c}\n" for a, b, c in faces), encoding="utf-8")
+        self.assertIn('missing key "run.max_dt"', self.refusal())
+        self.expect(0, self.scene, "--check", sets=["run.max_dt=0.01"])
+
+        halves = "".join(f'[[body]]\nkind = "plate"\nnormal = "x"\ncentre = [0.8, {y}, 0.4]\nlengths = [0.4, 0.8]\nedge_length = 0.05\n'
+                         f'porosity = {{ law = "{law}" }}\n' for y, law in ((0.2, "forchheimer"), (0.6, "none")))
+        self.scene.write_text(closed[:closed.index("[[body]]")] + halves + "[run]\nend_time = 1\n", encoding="utf-8")
+        self.assertIn("body[0] with others closes the channel along x", self.refusal())
+        self.expect(0, self.scene, "--check", sets=["run.max_dt=0.01"])
+        self.expect(0, self.scene, "--check", sets=["body[1].centre=[0.4,0.6,0.4]"])
+        stream = ("grid.boundary.x=['inflow','outflow']", "run.max_dt=0.01")
+        self.expect(0, self.scene, "--check", sets=stream)
+        self.assertIn("and is impermeable", self.refusal(*stream, "body[0].porosity.law='none'"))
+
+    def test_rejects_bodies_that_move_through_others_and_notes_shared_forces(self):
+        spheres = ('app = "parachute"\n[fluid]\nvelocity = [1, 0, 0]\n[grid]\ncells = [20, 10, 10]\ndomain = [[0, 2], [0, 1], [0, 1]]\n'
+                   'boundary = { x = ["inflow", "outflow"], y = "periodic", z = "periodic" }\n'
+                   + "".join(f'[[body]]\nkind = "sphere"\ncentre = [{x}, 0.5, 0.5]\nradius = 0.2\nedge_length = 0.06\n' for x in (0.5, 0.8))
+                   + "[run]\nend_time = 1\n")
+        self.scene.write_text(spheres, encoding="utf-8")
+
+        def notice(*sets):
+            process = self.start(self.scene, "--check", sets=sets)
+            self.assertEqual(0, process.returncode, process.stderr)
+            return process.stderr
+
+        self.assertIn("body[1] overlaps body[0]: each has a share of the force", notice())
+        self.assertNotIn("overlaps", notice("body[1].centre=[0.91,0.5,0.5]"))
+        apart = ("body[1].centre=[1.2,0.5,0.5]",)
+        self.expect(0, self.scene, "--check", sets=apart)
+        self.assertIn("body[1] crosses body[0] at t = ", self.refusal(*apart, "body[1].motion={x='-0.7*t'}"))
+        same = ("body[0].motion={x='0.1*t'}", "body[1].motion={x='0.1*t'}")
+        self.expect(0, self.scene, "--check", sets=[*apart, *same])
+        self.assertIn("body[1] overlaps body[0]", notice(*same))
+        # Plates may touch along an edge and in a corner.
+        plates = spheres[:spheres.index("[[body]]")] + "".join(
+            f'[[body]]\nkind = "plate"\nnormal = "{n}"\ncentre = {c}\nlengths = [0.4, 0.4]\nedge_length = 0.05\n'
+            for n, c in (("x", "[0.5, 0.5, 0.5]"), ("y", "[0.7, 0.3, 0.5]"))) + "[run]\nend_time = 1\n"
+        self.scene.write_text(plates, encoding="utf-8")
+        self.assertNotIn("overlaps", notice())
+        self.assertIn("overlaps", notice("body[1].centre=[0.63,0.43,0.5]"))
+
+    def test_rejects_lines_of_canopies_through_bodies(self):
+        body = '[[body]]\nkind = "sphere"\ncentre = CENTRE\nradius = 0.12\nedge_length = 0.05\n'
+        free = bad_canopies.GOOD[:bad_canopies.GOOD.index("[verify]")]
+        for centre, crosses in (([-1, 0, -0.8], True), ([0, 0, 0], False)):
+            self.scene.write_text(free.replace("[coupling]", body.replace("CENTRE", str(centre)) + "[coupling]"), encoding="utf-8")
+            if crosses:
+                self.assertIn("crosses body[0] at the start", self.refusal())
+            else:
+                self.expect(0, self.scene, "--check")
+
     def test_rejects_grids_that_cannot_follow_a_payload(self):
         follow = 'grid.frame="follow"'
         self.assertIn('grid.frame = "follow" applies only with a [[canopy]]', self.refusal(follow))
@@ -211,13 +301,12 @@ class BadFlows(parachute_program.FlowTest):
         self.assertIn("canopy[0] with its lines crosses the image of canopy[0] beyond the periodic sides at the start", self.refusal(*below))
 
     def test_rejects_bodies_that_meet_images_of_others(self):
-        """Bodies may overlap, and touch images at the sides, but not cross the image of another one."""
+        """Bodies may touch images at the sides, but not cross the image of another one."""
         ball = 'kind = "sphere"\ncentre = [0.5, 0.4, 0.4]\nradius = 0.2\nedge_length = 0.05\n'
         second = "[[body]]\n" + ball.replace("0.4, 0.4]", "0.4, 0.6]")
         head = bad_bodies.GOOD[:bad_bodies.GOOD.index("kind")]
         scene = head + ball + second + "[run]\nend_time = 0.5\nmax_dt = 0.01\n"
         self.scene.write_text(scene, encoding="utf-8")
-        self.expect(0, self.scene, "--check")  # overlap
         self.expect(0, self.scene, "--check", sets=["body[0].centre=[0.5,0.4,0.2]"])  # touch at one point
         across = "body[0].centre=[0.5,0.4,0.05]"
         message = self.refusal(across)

@@ -66,7 +66,8 @@ class Images(parachute_program.FlowTest):
         ball = self.write(scene.read_text().replace(BALLS, BALLS[:len(BALLS) // 2]), "ball.toml")
 
         def forces(out, *sets, of=scene):
-            self.expect(0, of, *QUIET, "--out", out, sets=["grid.boundary.x=['inflow','outflow']", "fluid.velocity=[2,0,0]", *sets])
+            process = self.start(of, *QUIET, "--out", out, sets=["grid.boundary.x=['inflow','outflow']", "fluid.velocity=[2,0,0]", *sets])
+            self.assertEqual(0, process.returncode, process.stderr)
             rows = self.history(out)
             return [rows[name][-1] for name in ("body_0_force_x", "body_1_force_x") if name in rows]
 

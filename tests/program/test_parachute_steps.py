@@ -67,6 +67,53 @@ history_every = 1
 """
 
 
+# A porous plate that closes a channel with a pressure drop.
+CLOSED = """app = "parachute"
+[fluid]
+density = 1
+viscosity = 0.01
+[grid]
+cells = [24, 4, 4]
+domain = [[0, 2], [0, 1], [0, 1]]
+boundary = { x = "periodic", y = "periodic", z = "periodic" }
+[[body]]
+kind = "plate"
+normal = "x"
+centre = [1, 0.5, 0.5]
+lengths = [1, 1]
+edge_length = 0.05
+porosity = { law = "forchheimer" }
+[flow]
+pressure_drop = [200, 0, 0]
+[run]
+end_time = 2
+[output]
+history_every = 1
+"""
+
+# A plate on a spring that moves 24.5 times its own mass.
+MOUNT = """app = "parachute"
+[fluid]
+density = 1.225
+viscosity = 0
+[grid]
+cells = [40, 4, 4]
+domain = [[0, 2], [0, 0.5], [0, 0.5]]
+boundary = { x = "periodic", y = "periodic", z = "periodic" }
+[[body]]
+kind = "plate"
+normal = "x"
+centre = [1, 0.25, 0.25]
+lengths = [0.5, 0.5]
+edge_length = 0.05
+mount = { mass = 0.1, stiffness = 40, offset = 0.03 }
+[run]
+end_time = 4
+[output]
+history_every = 1
+"""
+
+
 class Drives(parachute_program.FlowTest):
     def check(self, text, *sets, code=0):
         self.expect(code, self.write(text), *QUIET, sets=list(sets))
@@ -180,6 +227,65 @@ class Drives(parachute_program.FlowTest):
         self.assertGreater(max(steps), 8 * steps[0])
         for one, next in zip(steps, steps[1:]):
             self.assertLess(next, (2 + 1e-6) * one)
+
+    def test_sheets_that_close_a_channel(self):
+        """Cloth of MIL-C-7020, an impermeable plate and a bed of grains across a channel, with every default."""
+        alpha, beta, drop = 254.4, 37.6, 200
+        steady = (-alpha + math.sqrt(alpha**2 + 4 * beta * drop)) / (2 * beta)
+        open_sides = ("grid.boundary.x='outflow'", "flow={body_force=[100,0,0]}")
+        for sets, velocity, tolerance in (
+                ((), steady, 1e-9), (("coupling={method='sharp'}",), steady, 1e-6), (("coupling={filter=0}",), steady, 1e-9),
+                (("grid={cells=[96,4,4],domain=[[0,8],[0,1],[0,1]],boundary={x='periodic',y='periodic',z='periodic'}}",), steady, 1e-3),
+                (open_sides, 0.7106, 2e-3), (("body[0].porosity={law='none'}",), 0, 1e-9),
+                (("grid.boundary={x='periodic',y='slip',z='slip'}", "grid.cells=[24,12,12]", "coupling={method='sharp'}"), steady, 1e-6)):
+            with self.subTest(sets):
+                rows = self.check(CLOSED, *sets)
+                length = 8 if "domain" in str(sets) else 2
+                speeds = [m / length for m in rows["momentum_x"]]
+                for before, after in zip(speeds, speeds[1:], strict=False):
+                    self.assertGreater(after, before - 1e-3)
+                self.assertLess(max(speeds), velocity + 1e-3)
+                self.assertAlmostEqual(velocity, speeds[-1], delta=tolerance)
+                self.assertAlmostEqual(drop, rows["body_0_force_x"][-1], delta=0.3)
+
+    def test_sheets_through_which_a_stream_is_prescribed(self):
+        stream = CLOSED.replace("[flow]\npressure_drop = [200, 0, 0]\n", "").replace("density = 1", "velocity = [1, 0, 0]\ndensity = 1").replace(
+            'x = "periodic"', 'x = ["inflow", "outflow"]')
+        walls = ("grid.boundary.y='wall'", "grid.boundary.z='wall'", "grid.cells=[24,12,12]", "coupling={method='sharp'}")
+        ergun = "body[0].porosity={law='ergun',void_fraction=0.4,thickness=0.01,grain=1e-5}"
+        bed = 150 * 0.01 * 0.36 * 0.01 / (0.064 * 1e-10) + 1.75 * 0.6 * 0.01 / (0.064 * 1e-5)
+        for sets, force in (((), 292), (("coupling={filter=0}",), 292), (("coupling={method='sharp'}",), 292),
+                            ((ergun, "fluid.viscosity=1e-5"), 1e-3 * (bed - 1.75 * 0.6 * 0.01 / (0.064 * 1e-5)) + 1.75 * 0.6 * 0.01 / (0.064 * 1e-5))):
+            with self.subTest(sets):
+                rows = self.check(stream, "run.end_time=0.5", *sets)
+                for found in rows["body_0_force_x"][1:]:
+                    self.assertAlmostEqual(force, found, delta=1e-6 * force)
+        rows = self.check(stream, "run.end_time=0.3", *walls)
+        self.assertAlmostEqual(292, rows["body_0_force_x"][-1], delta=3)
+        rows = self.check(stream, "run.end_time=3", "fluid.velocity=['0.5+0.3*sin(2*t)',0,0]")
+        for time, found in list(zip(rows["time"], rows["body_0_force_x"], strict=True))[2:]:
+            u = 0.5 + 0.3 * math.sin(2 * time)
+            self.assertAlmostEqual(254.4 * u + 37.6 * u * u, found, delta=12)
+
+    def test_plate_that_moves_the_fluid_of_a_long_channel(self):
+        rows = self.check(PISTON, "grid={cells=[80,4,4],domain=[[0,4],[0,0.4],[0,0.4]],boundary={x='periodic',y='periodic',z='periodic'}}",
+                          "body[0].centre=[2.03,0.2,0.2]")
+        exact = 1.2 * 4 * 0.16 * 0.002 * (20 * math.pi) ** 2
+        late = [abs(f) for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.1]
+        self.assertAlmostEqual(exact, max(late), delta=0.05 * exact)
+
+    def test_plates_on_springs_bound_their_steps(self):
+        for offset in (0.0003, 0.03):
+            rows = self.check(MOUNT, f"body[0].mount.offset={offset}", (
+                "verify={oscillation=[{column='body_0_displacement',frequency={value=1.1925,tolerance=0.01},"
+                f"amplitude={{value={offset},tolerance=0.01}}}}]}}"))
+            self.assertGreater(len(rows["time"]), 1000)
+        for sets, words in (("run.dt=0.02", "run.dt = 0.02 s does not resolve body[0].mount"),
+                            ("run.max_dt=0.05", "run.max_dt = 0.05 s does not resolve body[0].mount")):
+            process = self.start(self.write(MOUNT), "--check", sets=[sets])
+            self.assertEqual(0, process.returncode)
+            self.assertIn(words, process.stderr)
+        self.expect(0, self.write(MOUNT), "--check", sets=["run.max_dt=0.005"])
 
     def test_closed_box_under_gravity_stays_at_rest(self):
         for viscosity in (1, 100):

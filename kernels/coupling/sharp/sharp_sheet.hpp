@@ -2,7 +2,7 @@
 
 #include "kernels/coupling/grid_transfer.hpp"
 #include "kernels/coupling/sharp/crossings.hpp"
-#include "kernels/coupling/sheet/porous_law.hpp"
+#include "kernels/coupling/sheet/closing_sheets.hpp"
 #include "kernels/device/relaxed_access.hpp"
 #include "kernels/fabric/surface/surface.hpp"
 #include "kernels/stepping/status.hpp"
@@ -25,6 +25,8 @@ struct SharpSheetViews {
   FaceArrays<int> count;                            ///< crossings at each face; zero between steps
   FaceArrays<FixedPoint> sums;                      ///< impulses per area; zero between steps
   FaceArrays<double> density;                       ///< force on the air, N/m^3
+  ClosingSheetViews<ExecutionSpace> closing;
+  FaceArrays<double> foretold;  ///< force of closing sheets on the air, N/m^3; zero between steps
   GridAxes axes;
   double dt, inverse_density;  ///< s, m^3/kg
   double summands;             ///< bound on the crossings at a face, a power of two
@@ -47,8 +49,17 @@ struct SharpSheetViews {
       // Flow through the sheet is along its normal: its component along the axis is this part of it.
       const double part = Kokkos::fabs(along[d]) / length, sign = along[d] > 0.0 ? 1.0 : -1.0;
       const double compliance = count.at(d, at.face) * inverse_density * axes.axis[d].inverse_spacing / part;
-      visit(at, sign * porous_impulse(law(vertex[0]), sign * (moving - air) / part, dt, compliance));
+      const double relative = moving - air - closing_change(vertex[0], d, count.at(d, at.face), compliance);
+      visit(at, sign * porous_impulse(law(vertex[0]), sign * relative / part, dt, compliance));
     });
+  }
+
+  /// As for the vertices of an immersed sheet, at a face with a number of crossings. Where there are several,
+  /// the filtered acceleration foretells what they change beside each other.
+  KOKKOS_FUNCTION double closing_change(int vertex, int d, int crossings, double compliance) const {
+    const int k = closing(vertex);
+    if (k < 0 || closing.sheets(k).axis != d) return 0.0;
+    return closing.column(d) - (crossings == 1 ? compliance * closing.impulse(k) : 0.0);
   }
 
   /// Area of a face normal to an axis, m^2.
@@ -70,6 +81,27 @@ struct CountCrossingsFunctor {
     for (int k = 0; k < 3; ++k) corner[k] = spatial::load_vector(s.positions, vertex[k]);
     for_each_crossing(s.axes, corner, vertex,
                       [&](const Crossing& at) { Kokkos::atomic_add(&s.count.at(at.component, at.face), 1); });
+  }
+};
+
+/// Velocity along its axis of a closing sheet relative to the air, m/s: a sum over the crossings of a
+/// triangle.
+template <class ExecutionSpace>
+struct SharpClosingVelocity {
+  SharpSheetViews<ExecutionSpace> sheet;
+
+  KOKKOS_FUNCTION void operator()(const ClosingSheet& closing, int t, ClosingMean& mean) const {
+    const auto& s = sheet;
+    const int vertex[3] = {s.surface.corner(t, 0), s.surface.corner(t, 1), s.surface.corner(t, 2)};
+    spatial::Point corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = spatial::load_vector(s.positions, vertex[k]);
+    for_each_crossing(s.axes, corner, vertex, [&](const Crossing& at) {
+      const int d = at.component;
+      if (d != closing.axis) return;
+      mean.weight += 1.0;
+      mean.sum -= s.velocity.at(d, at.face) + s.dt * s.acceleration.at(d, at.face);
+      for (int k = 0; k < 3; ++k) mean.sum += at.weight[k] * s.velocities(vertex[k], d);
+    });
   }
 };
 
@@ -128,6 +160,9 @@ struct FlushSumsFunctor {
     for (int k = 0; k < 3; ++k) corner[k] = spatial::load_vector(s.positions, vertex[k]);
     for_each_crossing(s.axes, corner, vertex, [&](const Crossing& at) {
       const int d = at.component;
+      const int k = s.closing(vertex[0]);
+      if (k >= 0 && s.closing.sheets(k).axis == d && device::relaxed_load(&s.count.at(d, at.face)) == 1)
+        s.foretold.at(d, at.face) = s.closing.impulse(k) * s.axes.axis[d].inverse_spacing / s.dt;
       device::relaxed_store(&s.count.at(d, at.face), 0);
       const FixedPoint taken = Kokkos::atomic_exchange(&s.sums.at(d, at.face), FixedPoint{0});
       if (taken != 0)
@@ -172,22 +207,30 @@ struct SaveFacesFunctor {
 };
 
 /// Updates the acceleration of the air at all faces without the force of the sheet, unless the flow failed.
-template <class Control>
+template <class ExecutionSpace, class Control>
 struct EndSharpStepFunctor {
   FaceArrays<const double> before, after, density;
   FaceArrays<double> acceleration;
   int faces[3][3];
   double inverse_dt, inverse_density, filter;
   Control control;
+  FaceArrays<double> foretold;  ///< force of closing sheets, N/m^3; reset
+  ClosingSheetViews<ExecutionSpace> closing;
 
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
-    if (control().trial.stop == stepping::Stop::failed) return;
+    const bool failed = control().trial.stop == stepping::Stop::failed,
+               closes = closing.sheet_of.extent(0) > 0;
     const int index[3] = {i, j, k};
     for (int d = 0; d < 3; ++d) {
       if (i >= faces[d][0] || j >= faces[d][1] || k >= faces[d][2]) continue;
       const FaceIndex face{index[d], index[cyclic_axis(d, 1)], index[cyclic_axis(d, 2)]};
-      const double present =
+      double present =
           inverse_dt * (after.at(d, face) - before.at(d, face)) - inverse_density * density.at(d, face);
+      if (closes) {
+        present += inverse_density * foretold.at(d, face) - inverse_dt * closing.column(d);
+        foretold.at(d, face) = 0.0;
+      }
+      if (failed) continue;
       double& mean = acceleration.at(d, face);
       mean += filter * (present - mean);
     }
@@ -217,7 +260,7 @@ class SharpSheet {
   /// std::runtime_error if memory runs out.
   SharpSheet(const GridTransfer<ExecutionSpace>& transfer,
              const fabric::SurfaceViews<ExecutionSpace>& surface, const Kokkos::View<PorousLaw*, Memory>& law,
-             double density)
+             double density, const ClosingSheets<ExecutionSpace>& closing)
       : _transfer(transfer),
         _surface(surface),
         _law(law),
@@ -225,7 +268,9 @@ class SharpSheet {
         _corner_force("drogue::coupling::corner_force", static_cast<std::size_t>(surface.triangles())),
         _count(faces_of<int>("drogue::coupling::crossings")),
         _before(faces_of<double>("drogue::coupling::velocity_before")),
-        _acceleration(faces_of<double>("drogue::coupling::face_acceleration")) {}
+        _acceleration(faces_of<double>("drogue::coupling::face_acceleration")),
+        _foretold(faces_of<double>("drogue::coupling::foretold_force")),
+        _closing(closing) {}
 
   /// Filtered acceleration of the air without the sheet at all faces, m/s^2: a part of the state.
   [[nodiscard]] const Faces<double>& acceleration() const { return _acceleration; }
@@ -257,6 +302,8 @@ class SharpSheet {
                       face_arrays(_transfer.window, _count),
                       face_arrays(_transfer.window, _transfer.sums),
                       face_arrays(_transfer.window, density),
+                      _closing.views(),
+                      face_arrays(_transfer.window, _foretold),
                       grid_axes(grid),
                       dt,
                       1.0 / _density,
@@ -265,6 +312,7 @@ class SharpSheet {
       device::launch_each(space, label, triangles, functor);
     };
     launch("drogue::coupling::count_crossings", CountCrossingsFunctor<ExecutionSpace>{views});
+    if (!_closing.empty()) _closing.foretell(space, SharpClosingVelocity<ExecutionSpace>{views}, dt);
     launch("drogue::coupling::largest_crossing", LargestCrossingFunctor<ExecutionSpace>{views});
     launch("drogue::coupling::add_crossings", AddCrossingsFunctor<ExecutionSpace>{views, _transfer.counts});
     launch("drogue::coupling::flush_sums", FlushSumsFunctor<ExecutionSpace>{views});
@@ -278,15 +326,17 @@ class SharpSheet {
   template <class View, class Control>
   void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
                 double dt, double filter, const Control& control) const {
-    EndSharpStepFunctor<Control> end{constant(_before),
-                                     constant(velocity),
-                                     constant(density),
-                                     face_arrays(_transfer.window, _acceleration),
-                                     {},
-                                     1.0 / dt,
-                                     1.0 / _density,
-                                     filter,
-                                     control};
+    EndSharpStepFunctor<ExecutionSpace, Control> end{constant(_before),
+                                                     constant(velocity),
+                                                     constant(density),
+                                                     face_arrays(_transfer.window, _acceleration),
+                                                     {},
+                                                     1.0 / dt,
+                                                     1.0 / _density,
+                                                     filter,
+                                                     control,
+                                                     face_arrays(_transfer.window, _foretold),
+                                                     _closing.views()};
     launch_faces(space, "drogue::coupling::end_sharp_step", end);
   }
 
@@ -332,7 +382,8 @@ class SharpSheet {
   double _density;  ///< kg/m^3
   Kokkos::View<double* [9], Memory> _corner_force;
   Faces<int> _count;
-  Faces<double> _before, _acceleration;
+  Faces<double> _before, _acceleration, _foretold;
+  ClosingSheets<ExecutionSpace> _closing;
 };
 
 }  // namespace drogue::coupling

@@ -4,11 +4,13 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernels/coupling/interpolate.hpp"
 #include "kernels/coupling/rank_sum.hpp"
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
+#include "kernels/coupling/sheet/closing_sheets.hpp"
 #include "kernels/coupling/sheet/edge_inset.hpp"
 #include "kernels/coupling/sheet/explicit_exchange.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
@@ -18,6 +20,18 @@
 #include "kernels/fabric/surface/surface.hpp"
 
 namespace drogue::coupling {
+
+/// Change of the velocity beside vertex i that the foretold impulses of closing sheets make in the whole
+/// channel, less the part that the copy of the air, of inverse masses `response`, takes by itself, m/s.
+template <class ExecutionSpace>
+KOKKOS_FUNCTION spatial::Point closing_change(const ClosingSheetViews<ExecutionSpace>& closing,
+                                              const spatial::Point& response, int i) {
+  const int k = closing(i);
+  if (k < 0) return {0.0, 0.0, 0.0};
+  const int axis = closing.sheets(k).axis;
+  const double of_copy = dot(response, along_axis(axis, closing.impulse(k)));
+  return along_axis(axis, closing.column(axis) - of_copy);
+}
 
 template <class ExecutionSpace>
 struct BeginSheetStepFunctor {
@@ -37,6 +51,44 @@ struct CopyRowsFunctor {
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     spatial::store_vector(to, i, spatial::load_vector(from, i));
+  }
+};
+
+/// Velocity along its axis of a closing sheet relative to the copies of the air, m/s, weighted by area.
+template <class ExecutionSpace>
+struct ClosingVelocity {
+  LocalAir<ExecutionSpace> air;
+  fabric::PointsView<ExecutionSpace> velocities;  ///< of the vertices at the end of the step, m/s
+  double dt;
+
+  /// At vertex i, m/s.
+  KOKKOS_FUNCTION spatial::Point at(int i) const {
+    using spatial::load_vector;
+    return load_vector(velocities, i) - load_vector(air.before, i) - dt * load_vector(air.acceleration, i);
+  }
+  KOKKOS_FUNCTION void operator()(const ClosingSheet& sheet, int i, ClosingMean& mean) const {
+    mean.weight += air.area(i);
+    mean.sum += air.area(i) * dot(at(i), along_axis(sheet.axis, 1.0));
+  }
+};
+
+/// Impulses of the vertices of closing sheets. Their copies of the air contain the change that the foretold
+/// impulses make in the whole channel.
+template <class ExecutionSpace>
+struct ClosingImpulseFunctor {
+  ClosingVelocity<ExecutionSpace> velocity;
+  ClosingSheetViews<ExecutionSpace> closing;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    const LocalAir<ExecutionSpace>& air = velocity.air;
+    if (closing(i) < 0 || !(air.area(i) > 0.0)) return;
+    const spatial::Point n = spatial::load_vector(air.normal, i),
+                         response = spatial::load_vector(air.compliance, i),
+                         w = velocity.at(i) - closing_change(closing, response, i);
+    if (air.is_no_slip(i))
+      spatial::store_vector(air.no_slip_impulse, i, no_slip_impulse(air.law(i), n, w, velocity.dt, response));
+    else
+      air.impulse(i) = porous_impulse(air.law(i), dot(w, n), velocity.dt, dot(n, product(response, n)));
   }
 };
 
@@ -81,13 +133,15 @@ struct EndSheetStepFunctor {
   typename LocalAir<ExecutionSpace>::Vectors after;  ///< velocity at the end of the step, m/s
   typename LocalAir<ExecutionSpace>::Vectors
       interpolated_force;  ///< interpolated force of the sheet per volume, N/m^3
+  ClosingSheetViews<ExecutionSpace> closing;
   double inverse_dt, inverse_density, filter, defect_filter;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     using spatial::load_vector;
     const spatial::Point by_sheet = inverse_density * load_vector(interpolated_force, i),
-                         present =
-                             inverse_dt * (load_vector(after, i) - load_vector(air.before, i)) - by_sheet,
+                         present = inverse_dt * (load_vector(after, i) - load_vector(air.before, i) -
+                                                 closing_change(closing, load_vector(air.compliance, i), i)) -
+                                   by_sheet,
                          mean = load_vector(filtered.mean, i);
     spatial::store_vector(filtered.mean, i, mean + filter * (present - mean));
     if (filtered.defect.extent(0) == 0) return;
@@ -157,9 +211,12 @@ class ImmersedSheet {
     }
     copy_inverse_masses(space, cloth);
     copy_laws(space);
+    const bool is_sharp = parameters.method == CouplingMethod::sharp;
+    _closing.emplace(space, parameters.closing, _air.law,
+                     is_sharp ? cloth.mesh.triangles : std::vector<std::array<int, 3>>());
     if (parameters.method != CouplingMethod::sharp) return;
     _transfer.has_stencils = false;
-    _sharp.emplace(_transfer, _surface, _air.law, density);
+    _sharp.emplace(_transfer, _surface, _air.law, density, *_closing);
   }
 
   /// VertexForce of the fabric solver.
@@ -177,7 +234,8 @@ class ImmersedSheet {
   /// Weights of both directions. Does not throw.
   [[nodiscard]] const GridTransfer<ExecutionSpace>& transfer() const { return _transfer; }
 
-  /// Sets the force and the acceleration of the air to zero, as before the first step. Asynchronous. Does not
+  /// Sets the force and the acceleration of the air to zero, as before the first step, but beside closing
+  /// sheets to that of what drives the air. Asynchronous. Does not
   /// throw.
   void forget_steps(const ExecutionSpace& space) const {
     Kokkos::deep_copy(space, _filtered.mean, 0.0);
@@ -186,6 +244,13 @@ class ImmersedSheet {
     Kokkos::deep_copy(space, _force, 0.0);
     if (_sharp)
       for (const auto& faces : _sharp->acceleration().component) Kokkos::deep_copy(space, faces, 0.0);
+    for (const ClosingSheet& sheet : _parameters.closing) {
+      const auto axis = static_cast<std::size_t>(sheet.axis);
+      if (_sharp) Kokkos::deep_copy(space, _sharp->acceleration().component[axis], sheet.driving);
+      const auto vertices = std::pair(sheet.begin, sheet.end);
+      Kokkos::deep_copy(space, Kokkos::subview(_filtered.mean, vertices, axis), sheet.driving);
+    }
+    update_acceleration(space);
   }
 
   /// Enqueues what a change of `acceleration` or `defect` makes necessary. Throws only after a failed kernel.
@@ -219,6 +284,12 @@ class ImmersedSheet {
     if (_air.is_explicit())
       device::launch_each(space, "drogue::coupling::impose_velocity", _transfer.points,
                           ImposeVelocityFunctor<ExecutionSpace>{_air, cloth.velocities, dt});
+    if (!_closing->empty()) {
+      const ClosingVelocity<ExecutionSpace> velocity{_air, cloth.velocities, dt};
+      _closing->foretell(space, velocity, dt);
+      device::launch_each(space, "drogue::coupling::closing_impulse", _transfer.points,
+                          ClosingImpulseFunctor<ExecutionSpace>{velocity, _closing->views()});
+    }
     device::launch_each(space, "drogue::coupling::sheet_force", _transfer.points,
                         SheetForceFunctor<ExecutionSpace>{_air, _force, 1.0 / dt});
     spread(space, _transfer, _force, density);
@@ -237,8 +308,8 @@ class ImmersedSheet {
     _rank_sum(space, {_after, _interpolated_force});
     device::launch_each(
         space, "drogue::coupling::end_sheet_step", _transfer.points,
-        EndSheetStepFunctor<ExecutionSpace>{_air, _filtered, _after, _interpolated_force, 1.0 / dt,
-                                            1.0 / _density, filter, _parameters.defect_filter});
+        EndSheetStepFunctor<ExecutionSpace>{_air, _filtered, _after, _interpolated_force, _closing->views(),
+                                            1.0 / dt, 1.0 / _density, filter, _parameters.defect_filter});
   }
 
   /// Enqueues the velocity of the flow, m/s, interpolated to where the vertices at their present positions
@@ -332,6 +403,7 @@ class ImmersedSheet {
   Vectors _force, _after;
   Vectors _present;  ///< positions with the inset, m; empty without it
   Vectors _interpolated_force;
+  std::optional<ClosingSheets<ExecutionSpace>> _closing;  ///< never empty
   std::optional<SharpSheet<ExecutionSpace>> _sharp;
 };
 

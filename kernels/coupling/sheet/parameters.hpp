@@ -28,6 +28,17 @@ enum class CouplingMethod {
   sharp,  ///< pressure jumps between the cells that a sheet in prescribed motion separates (`SharpSheet`)
 };
 
+/// Plane sheet in prescribed motion, normal to an axis, that closes a channel along it, so that all of the
+/// air there has one mean velocity.
+struct ClosingSheet {
+  int axis = 0;
+  int begin = 0, end = 0;  ///< its vertices, which have one law
+  /// Change of the mean velocity by an impulse per area of the sheet, m^2/kg: 1 / (density length) of the
+  /// channel, or 0 where its sides prescribe the flow rate.
+  double inverse_mass = 0.0;
+  double driving = 0.0;  ///< acceleration of the air by body force and pressure drop at the start, m/s^2
+};
+
 /// Parameters of the exchange between a sheet and the air.
 struct SheetParameters {
   DeltaKernel kernel = DeltaKernel::cbs43;
@@ -47,6 +58,9 @@ struct SheetParameters {
   /// order in the cells with 0. Not for `CouplingMethod::sharp`.
   double edge_inset = 0.0;
   CouplingMethod method = CouplingMethod::spread;
+  /// Sheets that close a channel. Along an axis, one of them at most is impermeable, and none where
+  /// `inverse_mass` is 0.
+  std::vector<ClosingSheet> closing;
 };
 
 /// Frame of reference that follows a vertex, such as a payload, so that the vertex stays in the grid. The

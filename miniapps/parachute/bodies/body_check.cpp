@@ -8,6 +8,8 @@
 #include "common/scene/read.hpp"
 #include "kernels/mesh/orientation.hpp"
 #include "miniapps/framework/obj_file.hpp"
+#include "miniapps/parachute/bodies/body_overlap.hpp"
+#include "miniapps/parachute/bodies/closed_channel.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -112,6 +114,12 @@ void check_mount(const Table& root, const FlowScene& scene, const Body& body, co
                  name + ".lengths: a plate with a mount must close the channel, which is " +
                      real_text(width) + " m wide along " + axis_names[axis]);
   }
+  if (scene.coupling.filter == 0.0)
+    contradict(
+        root, "coupling.filter",
+        "coupling.filter = 0: " + name +
+            " with its mount would move the fluid beside it alone, and not that of the channel; it must "
+            "be positive");
   const double moved = p.density * (p.high[0] - p.low[0]) * (p.high[1] - p.low[1]) * (p.high[2] - p.low[2]);
   if (scene.is_explicit() && !scene.allow_unstable && moved > body.mount->mass)
     contradict(root, "coupling.method",
@@ -269,6 +277,8 @@ void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);
   check_slip(root, scene);
+  check_closed_channels(root, scene);
+  check_body_overlaps(root, scene);
 }
 
 void check_porosity(const Table& root, const FlowScene& scene, const std::string& name,

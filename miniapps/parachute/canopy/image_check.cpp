@@ -31,8 +31,7 @@ void refuse(const Table& root, const FlowScene& scene, const SheetParts& parts,
   contradict(root, parts.name(later) + place_key(scene, parts, later),
              parts.name(later) + (is_canopy ? " with its lines" : "") + " crosses the image of " +
                  parts.name(earlier) + " beyond the periodic sides" + when +
-                 ": the domain must be wider, or have other sides" +
-                 (later < parts.bodies ? "; within one domain, bodies may overlap" : ""));
+                 ": the domain must be wider, or have other sides");
 }
 
 /// Displacements of a body, m.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
 
@@ -10,6 +11,7 @@
 #include "common/scene/read.hpp"
 #include "kernels/flow/diffusive_step.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
+#include "miniapps/parachute/bodies/body_overlap.hpp"
 #include "miniapps/parachute/canopy/canopy_check.hpp"
 #include "miniapps/parachute/canopy/image_check.hpp"
 #include "miniapps/parachute/flags/flag_check.hpp"
@@ -262,16 +264,56 @@ bool fluid_moves(const FlowScene& scene) {
                              [](const flow::Boundary& side) { return !side.velocity_expressions.empty(); });
 }
 
+/// Angular frequency, 1/s, with which a plate on a spring and all of the fluid oscillate.
+double mount_frequency(const flow::Parameters& p, const Mount& mount) {
+  double fluid = p.density;
+  for (std::size_t axis = 0; axis < 3; ++axis) fluid *= p.high[axis] - p.low[axis];
+  return std::sqrt(mount.stiffness / (mount.mass + fluid));
+}
+
+/// Step, s, with which the fluid that a plate on a spring moves beyond its own 2.1 cells lags by a part
+/// `error` of its mass: (L / (2.1 h) - 1) (omega dt)^2 / filter.
+double mount_step(const FlowScene& scene, const Body& body, double error) {
+  const double others =
+      std::max(1.0, scene.parameters.cells[static_cast<std::size_t>(body.axis)] / 2.1 - 1.0);
+  return std::sqrt(error * scene.coupling.filter / others) / mount_frequency(scene.parameters, *body.mount);
+}
+
+/// Bounds dt by the oscillations of plates on springs, unless it is given: a frequency then has an error of
+/// some half a percent. Notes a given one that does not resolve them.
+void bound_step_by_mounts(FlowScene& scene) {
+  flow::Parameters& p = scene.parameters;
+  const double given = p.fixed_dt > 0.0 ? p.fixed_dt : p.max_dt;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (!body.mount) continue;
+    constexpr double error = 0.01, most = 0.1;
+    const double enough = mount_step(scene, body, error);
+    if (given == 0.0) {
+      p.max_dt = p.max_dt > 0.0 ? std::min(p.max_dt, enough) : enough;
+    } else if (given > mount_step(scene, body, most)) {
+      std::ostringstream text;
+      text.precision(3);
+      text << (p.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ") << given << " s does not resolve body[" << i
+           << "].mount, which oscillates with " << mount_frequency(p, *body.mount) / (2.0 * std::numbers::pi)
+           << " Hz: its frequency will be wrong by more than 5 %; " << enough << " s give it to 0.5 %";
+      scene.notices.push_back(text.str());
+    }
+  }
+}
+
 /// Gives run.max_dt its default. Fluid at rest would leave dt without a bound, while sheets that it moves
 /// need one; steps resolve prescribed motion by themselves.
 void complete_time_step(const Table& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  if (!scene.has_sheets() || p.fixed_dt > 0.0 || p.max_dt > 0.0) return;
-  p.max_dt = scene.end_time;
+  const bool is_given = p.fixed_dt > 0.0 || p.max_dt > 0.0;
+  bound_step_by_mounts(scene);
+  if (!scene.has_sheets() || is_given) return;
+  p.max_dt = p.max_dt > 0.0 ? std::min(p.max_dt, scene.end_time) : scene.end_time;
   const double speed = known_speed(scene);
   if (speed > 0.0)
     p.max_dt = std::min(p.max_dt, scene.cfl() * least_width(p) / speed);
-  else if (scene.has_free_sheets() && !fluid_moves(scene))
+  else if (!(scene.canopies.empty() && scene.flags.empty()) && !fluid_moves(scene))
     contradict(root, "run",
                "missing key \"run.max_dt\" (needed where neither stream nor gravity moves a sheet): the "
                "largest dt");
@@ -362,6 +404,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   complete_and_check_bodies(root, scene);
   check_and_place_canopies(root, scene.canopies);
   check_canopies(root, scene);
+  check_canopies_beside_bodies(root, scene);
   complete_and_check_flags(root, scene);
   check_images(root, scene);
   check_gravity(root, scene);

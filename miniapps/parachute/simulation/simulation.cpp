@@ -8,6 +8,7 @@
 #include "common/program/stopwatch.hpp"
 #include "common/run/fields/rectilinear_mesh.hpp"
 #include "common/scene/node.hpp"
+#include "miniapps/parachute/bodies/closed_channel.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -41,6 +42,7 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
   p.flow = scene.parameters;
   p.fabric = sheets.fabric;
   p.sheet = scene.coupling;
+  p.sheet.closing = closing_sheets(scene);
   if (!scene.has_free_sheets()) p.substeps = 1;
   p.fabric.gravity = scene.gravity;
   p.fabric.contact.self = scene.contact;

@@ -78,7 +78,7 @@ TEST(SharpSheet, ForcesOfCrumpledLayersMatchTheReference) {
   const Kokkos::View<PorousLaw*, Space::memory_space> law("law", rows);
   Kokkos::deep_copy(law, PorousLaw{sheet.alpha, sheet.beta, false});
   freeze_positions(space, transfer, x, v, 0.0);
-  const SharpSheet<Space> sharp(transfer, surface, law, density);
+  const SharpSheet<Space> sharp(transfer, surface, law, density, {space, {}, law, {}});
   SharpSheet<Space>::Faces<double> velocities, densities;
   for (int d = 0; d < 3; ++d) {
     const auto n = [&](int axis) { return static_cast<std::size_t>(faces_along(grid, d, axis)); };

@@ -44,6 +44,7 @@ coupling::Parameters uncommon_parameters() {
   cloth.patch = 5;
   all.sheet.law_of_vertex = {{1.0, 2.0, false, true}, {3.0, 4.0, true, false}};
   all.sheet.filter = 0.625;
+  all.sheet.closing = {{0, 0, 2, 0.5, 3.0}};
   all.follow.vertex = 1;
   all.substeps = 9;
   return all;
@@ -74,6 +75,7 @@ TEST(FlowParametersMessage, KeepsEveryMember) {
   EXPECT_EQ(0.375, cloth.contact.friction);
   EXPECT_EQ(5, cloth.patch);
   EXPECT_TRUE(everything.sheet.law_of_vertex.at(0).no_slip);
+  EXPECT_EQ(0.5, everything.sheet.closing.at(0).inverse_mass);
   EXPECT_EQ(1, everything.follow.vertex);
   EXPECT_EQ(9, everything.substeps);
 }

@@ -1,0 +1,181 @@
+#include "miniapps/parachute/bodies/body_overlap.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "common/scene/read.hpp"
+#include "kernels/reference/fabric/intersections.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using mesh::Vector;
+
+/// Part of the edges by which a body is displaced: surfaces that only touch then part.
+constexpr double displacement = 1e-3;
+
+struct Box {
+  Vector low, high;
+};
+
+template <class Points>
+Box box_of(const Points& points) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  for (const Vector& x : points)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      box.low[axis] = std::min(box.low[axis], x[axis]), box.high[axis] = std::max(box.high[axis], x[axis]);
+  return box;
+}
+
+bool overlap(const Box& a, const Box& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return false;
+  return true;
+}
+
+/// Surface of a body at a time.
+struct Surface {
+  std::vector<Vector> positions;
+  std::vector<std::array<int, 3>> triangles;
+  Box box;
+
+  [[nodiscard]] Surface displaced(const Vector& by) const {
+    Surface surface = *this;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (Vector& x : surface.positions) x[axis] += by[axis];
+      surface.box.low[axis] += by[axis], surface.box.high[axis] += by[axis];
+    }
+    return surface;
+  }
+
+  /// Appends the triangles that reach into a box to the parts of a pair.
+  void append_within(const Box& common, std::vector<Vector>& points,
+                     std::vector<std::array<int, 3>>& faces) const {
+    const int first = static_cast<int>(points.size());
+    points.insert(points.end(), positions.begin(), positions.end());
+    for (const auto& corners : triangles) {
+      std::array<Vector, 3> corner{};
+      for (std::size_t k = 0; k < 3; ++k) corner[k] = positions[static_cast<std::size_t>(corners[k])];
+      if (overlap(box_of(corner), common))
+        faces.push_back({first + corners[0], first + corners[1], first + corners[2]});
+    }
+  }
+};
+
+/// True if two surfaces have a common point, with the second one displaced by `by`, m.
+bool meet(const Surface& a, const Surface& b, const Vector& by) {
+  const Surface moved = b.displaced(by);
+  if (!overlap(a.box, moved.box)) return false;
+  Box common{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    common.low[axis] = std::max(a.box.low[axis], moved.box.low[axis]),
+    common.high[axis] = std::min(a.box.high[axis], moved.box.high[axis]);
+  std::vector<Vector> points;
+  std::vector<std::array<int, 3>> faces;
+  a.append_within(common, points, faces);
+  const std::size_t of_a = faces.size();
+  const int begin_b = static_cast<int>(points.size());
+  moved.append_within(common, points, faces);
+  if (of_a == 0 || of_a == faces.size()) return false;
+  const auto are_of_both = [&](const reference::Intersection& found) {
+    return (found.segment[0] < begin_b) != (found.triangle < of_a);
+  };
+  return std::ranges::any_of(reference::intersections(points, faces, {}), are_of_both);
+}
+
+/// True if two surfaces cross each other: if no small displacement, `by` along some direction of each octant,
+/// parts them, as it does where they touch, such as a plate that stands on another one.
+bool cross(const Surface& a, const Surface& b, double by) {
+  if (!meet(a, b, {0.0, 0.0, 0.0})) return false;
+  for (int octant = 0; octant < 8; ++octant) {
+    const auto along = [&](int axis) { return (octant >> axis & 1) != 0 ? by : -by; };
+    if (!meet(a, b, {along(0), 0.83 * along(1), 0.71 * along(2)})) return false;
+  }
+  return true;
+}
+
+/// Displacement of a body at a time, m.
+class Motion {
+ public:
+  explicit Motion(const Body& body)
+      : _along{function(body, 0), function(body, 1), function(body, 2)}, _moves(body.moves()) {}
+
+  [[nodiscard]] bool moves() const { return _moves; }
+  [[nodiscard]] Surface moved(const mesh::Mesh& mesh, double time) const {
+    return Surface{mesh.rest, mesh.triangles, box_of(mesh.rest)}.displaced(
+        {_along[0]({}, time), _along[1]({}, time), _along[2]({}, time)});
+  }
+
+ private:
+  static SpaceTimeFunction function(const Body& body, std::size_t axis) {
+    return SpaceTimeFunction(body.motion[axis].empty() ? "0" : body.motion[axis]);
+  }
+
+  std::array<SpaceTimeFunction, 3> _along;
+  bool _moves;
+};
+
+}  // namespace
+
+void check_body_overlaps(const scene::Table& root, FlowScene& scene) {
+  if (scene.bodies.size() < 2) return;
+  std::vector<Motion> motions(scene.bodies.begin(), scene.bodies.end());
+  std::vector<mesh::Mesh> meshes;
+  for (const Body& body : scene.bodies) meshes.push_back(mesh_of(body));
+  const bool moves = std::ranges::any_of(motions, &Motion::moves);
+  constexpr int intervals = 256;
+  for (int step = 0; step <= (moves ? intervals : 0); ++step) {
+    const double time = scene.end_time * step / intervals;
+    std::vector<Surface> surfaces;
+    for (std::size_t i = 0; i < meshes.size(); ++i) surfaces.push_back(motions[i].moved(meshes[i], time));
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k) {
+        const Body &body = scene.bodies[i], &other = scene.bodies[k];
+        if (step > 0 && body.motion == other.motion) continue;
+        const double edge = std::min(body.largest_edge(), other.largest_edge());
+        if (!cross(surfaces[i], surfaces[k], displacement * edge)) continue;
+        const std::string name = "body[" + std::to_string(i) + "]",
+                          other_name = "body[" + std::to_string(k) + "]";
+        if (body.motion == other.motion)
+          scene.notices.push_back(name + " overlaps " + other_name +
+                                  ": each has a share of the force on both together");
+        else
+          scene::contradict(root, name + (body.moves() ? ".motion" : ".centre"),
+                            name + " crosses " + other_name + " at t = " + scene::real_text(time) +
+                                " s: bodies that move against each other may touch, and not overlap");
+      }
+  }
+}
+
+void check_canopies_beside_bodies(const scene::Table& root, const FlowScene& scene) {
+  if (scene.bodies.empty() || scene.canopies.empty()) return;
+  const Sheets sheets =
+      make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density, scene.parameters.viscosity);
+  const auto bodies_end = static_cast<int>(vertices_of(scene.bodies));
+  const auto canopies_end = static_cast<int>(sheets.canopies.back().end);
+  const auto is_of_canopy = [&](int vertex) { return vertex >= bodies_end && vertex < canopies_end; };
+  for (const reference::Intersection& found :
+       reference::intersections(sheets.positions, sheets.fabric.mesh.triangles, sheets.fabric.mesh.lines)) {
+    const int on_triangle = sheets.fabric.mesh.triangles[found.triangle][0];
+    const bool by_canopy = is_of_canopy(found.segment[0]) && on_triangle < bodies_end,
+               by_body = found.segment[0] < bodies_end && is_of_canopy(on_triangle);
+    if (!by_canopy && !by_body) continue;
+    const int of_canopy = by_canopy ? found.segment[0] : on_triangle,
+              of_body = by_canopy ? on_triangle : found.segment[0];
+    std::size_t canopy = 0, body = 0;
+    while (of_canopy >= static_cast<int>(sheets.canopies[canopy].end)) ++canopy;
+    for (int end = 0; body < scene.bodies.size(); ++body)
+      if (of_body < (end += static_cast<int>(scene.bodies[body].vertices()))) break;
+    const std::string name = "canopy[" + std::to_string(canopy) + "]";
+    scene::contradict(root, name + ".centre",
+                      name + " with its lines crosses body[" + std::to_string(body) +
+                          "] at the start: cloth and lines cannot pass a body");
+  }
+}
+
+}  // namespace drogue::parachute_app
