@@ -240,13 +240,15 @@ void record_failure(ResultDocument& result, const Failure& failure, const std::f
   }
 }
 
-bool is_of_finished_run(const std::filesystem::path& file) {
+std::optional<double> time_of_finished_run(const std::filesystem::path& file) {
   std::ifstream stream(file);
   const Json json = Json::parse(stream, nullptr, false);
-  if (!json.is_object()) return false;
-  const auto status = json.find("status");
-  return status != json.end() &&
-         (*status == status_name(ExitCode::ok) || *status == status_name(ExitCode::verification_failed));
+  if (!json.is_object()) return {};
+  const auto status = json.find("status"), time = json.find("time");
+  const bool has_finished = status != json.end() && (*status == status_name(ExitCode::ok) ||
+                                                     *status == status_name(ExitCode::verification_failed));
+  if (!has_finished || time == json.end() || !time->is_number()) return {};
+  return time->get<double>();
 }
 
 void write_result(const std::filesystem::path& file, ResultDocument result) {

@@ -137,9 +137,9 @@ std::string to_json(const ResultDocument& result);
 /// `write` throws one.
 void record_failure(ResultDocument& result, const Failure& failure, const std::function<void()>& write);
 
-/// True if the result.json `file` is of a run that reached its end, whether its checks passed or not. False
-/// for a file that is absent or unreadable.
-[[nodiscard]] bool is_of_finished_run(const std::filesystem::path& file);
+/// Time of the end, s, if the result.json `file` is of a run that reached it, whether its checks passed or
+/// not. Nothing for a file that is absent or unreadable.
+[[nodiscard]] std::optional<double> time_of_finished_run(const std::filesystem::path& file);
 
 /// Writes `file` atomically, with the peak of host memory. Throws `Failure` (io_error).
 void write_result(const std::filesystem::path& file, ResultDocument result);

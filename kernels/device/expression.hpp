@@ -12,11 +12,11 @@ KOKKOS_INLINE_FUNCTION double apply(Operation operation, double a) {
     case Operation::negate:
       return -a;
     case Operation::sin:
-      return portable::sin(a);
+      return portable::wide_sin(a);
     case Operation::cos:
-      return portable::cos(a);
+      return portable::wide_cos(a);
     case Operation::tan:
-      return portable::sin(a) / portable::cos(a);
+      return portable::wide_sin(a) / portable::wide_cos(a);
     case Operation::asin:
       return portable::asin(a);
     case Operation::acos:

@@ -93,20 +93,87 @@ KOKKOS_INLINE_FUNCTION double cosine_series(double r) {
   return sum;
 }
 
-/// Sine of x (radians); NaN for |x| > 1e6.
+/// Sine of r plus a number of right angles, for |r| <= pi/4.
+KOKKOS_INLINE_FUNCTION double sine_in(int quadrant, double r) {
+  const double value = (quadrant & 1) != 0 ? cosine_series(r) : sine_series(r);
+  return (quadrant & 2) != 0 ? -value : value;
+}
+
+/// Cosine of r plus a number of right angles, for |r| <= pi/4.
+KOKKOS_INLINE_FUNCTION double cosine_in(int quadrant, double r) {
+  const double value = (quadrant & 1) != 0 ? sine_series(r) : cosine_series(r);
+  return quadrant == 1 || quadrant == 2 ? -value : value;
+}
+
+/// Sine of x (radians); NaN for |x| > 1e6, which spares kernels of known arguments the code of `wide_sin`.
 KOKKOS_INLINE_FUNCTION double sin(double x) {
   int quadrant = 0;
   const double r = reduced_angle(x, quadrant);
-  const double value = (quadrant & 1) != 0 ? cosine_series(r) : sine_series(r);
-  return (quadrant & 2) != 0 ? -value : value;
+  return sine_in(quadrant, r);
 }
 
 /// Cosine of x (radians); NaN for |x| > 1e6.
 KOKKOS_INLINE_FUNCTION double cos(double x) {
   int quadrant = 0;
   const double r = reduced_angle(x, quadrant);
-  const double value = (quadrant & 1) != 0 ? sine_series(r) : cosine_series(r);
-  return quadrant == 1 || quadrant == 2 ? -value : value;
+  return cosine_in(quadrant, r);
+}
+
+/// Argument reduction (Payne and Hanek) in integers, as `reduced_angle`, for 2^19 <= |x| < infinity: of x
+/// 2/pi only the bits of the fraction and of the quadrant are computed, to 2^-64.
+KOKKOS_INLINE_FUNCTION double reduced_large_angle(double x, int& quadrant) {
+  constexpr int used = 5;  // words of 2/pi beyond those that contribute multiples of four quadrants
+  constexpr std::uint32_t two_over_pi[] = {
+      0xA2F9836EU, 0x4E441529U, 0xFC2757D1U, 0xF534DDC0U, 0xDB629599U, 0x3C439041U, 0xFE5163ABU,
+      0xDEBBC561U, 0xB7246E3AU, 0x424DD2E0U, 0x06492EEAU, 0x09D1921CU, 0xFE1DEB1CU, 0xB129A73EU,
+      0xE88235F5U, 0x2EBB4484U, 0xE99C7026U, 0xB45F7E41U, 0x3991D639U, 0x835339F4U, 0x9C845F8BU,
+      0xBDF9283BU, 0x1FF897FFU, 0xDE05980FU, 0xEF2F118BU, 0x5A0A6D1FU, 0x6D367ECFU, 0x27CB09B7U,
+      0x4F463F66U, 0x9E5FEA2DU, 0x7527BAC7U, 0xEBE5F17BU, 0x3D0739F7U, 0x8A5292EAU, 0x6BFB5FB1U};
+  const auto bits = Kokkos::bit_cast<std::uint64_t>(x);
+  const std::uint64_t mantissa = (bits & 0xFFFFFFFFFFFFFULL) | 0x10000000000000ULL;
+  const int exponent = static_cast<int>(bits >> 52U & 0x7FFU) - 1075;  // |x| = mantissa 2^exponent
+  const int first = exponent < 2 ? 0 : (exponent - 2) / 32;
+  std::uint64_t product[used + 3] = {};  // words of 32 bits, the least one first
+  for (int i = 0; i < used; ++i) {
+    const std::uint64_t word = two_over_pi[first + used - 1 - i];
+    const std::uint64_t low = word * (mantissa & 0xFFFFFFFFU) + product[i];
+    const std::uint64_t high = word * (mantissa >> 32U) + product[i + 1] + (low >> 32U);
+    product[i] = low & 0xFFFFFFFFU;
+    product[i + 1] = high & 0xFFFFFFFFU;
+    product[i + 2] = high >> 32U;
+  }
+  const int point = 32 * (first + used) - exponent;  // bits after the binary point: 127 to 193
+  const auto bits_from = [&product](int at) {
+    const int word = at / 32, shift = at % 32;
+    const std::uint64_t low = (product[word] | product[word + 1] << 32U) >> shift;
+    return shift == 0 ? low : low | product[word + 2] << (64 - shift);
+  };
+  const std::uint64_t fraction = bits_from(point - 64);
+  // The nearest multiple is the next one where the fraction is a half or more, which then is negative.
+  const auto nearest = static_cast<int>((bits_from(point - 1) + 1U) >> 1U & 3U);
+  const double r = static_cast<double>(static_cast<std::int64_t>(fraction)) * 0x1p-64 * (0.5 * pi);
+  quadrant = x < 0.0 ? (4 - nearest) & 3 : nearest;
+  return x < 0.0 ? -r : r;
+}
+
+/// Argument reduction as `reduced_angle`; NaN unless x is finite.
+KOKKOS_INLINE_FUNCTION double reduced_wide_angle(double x, int& quadrant) {
+  const bool is_large = magnitude(x) > 1e6 && magnitude(x) < infinity();
+  return is_large ? reduced_large_angle(x, quadrant) : reduced_angle(x, quadrant);
+}
+
+/// Sine of any finite x (radians), the same as `sin` as far as that goes.
+KOKKOS_INLINE_FUNCTION double wide_sin(double x) {
+  int quadrant = 0;
+  const double r = reduced_wide_angle(x, quadrant);
+  return sine_in(quadrant, r);
+}
+
+/// Cosine of any finite x (radians), the same as `cos` as far as that goes.
+KOKKOS_INLINE_FUNCTION double wide_cos(double x) {
+  int quadrant = 0;
+  const double r = reduced_wide_angle(x, quadrant);
+  return cosine_in(quadrant, r);
 }
 
 /// Arc tangent, radians. Two half-angle steps reduce |x| <= 1 below tan(pi/16), where the series converges in

@@ -1,12 +1,15 @@
 #include "kernels/device/runtime.hpp"
 
 #include <Kokkos_Core.hpp>
+#include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <condition_variable>
 #include <cstdint>
 #include <cstdlib>
 #include <mutex>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #if defined(KOKKOS_ENABLE_OPENMP)
 #include <omp.h>
@@ -50,6 +53,27 @@ bool checked_number(const std::vector<std::string>& arguments, const std::string
     given = true;
   }
   return given;
+}
+
+/// Starts `count` threads at once, and ends them. Throws std::system_error (one sentence) if the system
+/// refuses one: the library of OpenMP would end the process.
+void require_threads(int count) {
+  std::atomic<bool> ends = false;
+  std::vector<std::thread> threads;
+  const auto end_all = [&] {
+    ends = true;
+    ends.notify_all();
+    for (std::thread& thread : threads) thread.join();
+  };
+  try {
+    while (static_cast<int>(threads.size()) < count) threads.emplace_back([&ends] { ends.wait(false); });
+  } catch (const std::system_error& refused) {
+    end_all();
+    throw std::system_error(refused.code(), "of " + std::to_string(count + 1) + " threads only " +
+                                                std::to_string(threads.size() + 1) +
+                                                " start; OMP_NUM_THREADS gives fewer");
+  }
+  end_all();
 }
 
 bool are_waits_configured() {
@@ -120,8 +144,9 @@ Runtime::Runtime(const std::vector<std::string>& arguments, ThreadWaits waits) {
   Kokkos::Tools::Experimental::set_request_tool_settings_callback(without_global_fences);
   checked_number(arguments, "--kokkos-device-id", "KOKKOS_DEVICE_ID", 0, 1023);
   std::vector<std::string> copies = {"drogue"};
-  if (!checked_number(arguments, "--kokkos-num-threads", "KOKKOS_NUM_THREADS", 1, most_threads) &&
-      default_threads() > most_threads)
+  const bool is_given =
+      checked_number(arguments, "--kokkos-num-threads", "KOKKOS_NUM_THREADS", 1, most_threads);
+  if (!is_given && default_threads() > most_threads)
     copies.push_back("--kokkos-num-threads=" + std::to_string(most_threads));
   copies.insert(copies.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
@@ -134,6 +159,7 @@ Runtime::Runtime(const std::vector<std::string>& arguments, ThreadWaits waits) {
   // Read before the threads of this process start, which spin for some milliseconds after each loop.
   const bool adapts = waits == ThreadWaits::adapted && !are_waits_configured();
   const HostCores cores = adapts ? host_cores() : HostCores{};
+  if (!is_given) require_threads(std::min(default_threads(), most_threads) - 1);
   Kokkos::initialize(count, pointers.data());
   if (!adapts || !are_cores_shared(openmp_threads(), cores)) return;
   _short_waits = std::make_unique<ShortWaits>(cores.allowed);

@@ -824,8 +824,11 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_time_state(const TimeState& 
   _time = time;
   if (_loop.has_captured_steps()) forget_captures();
   reset_monitor();
-  if (moves_pins() && !_failure) apply_dirichlet(_x, _v, 0.0, true);
   enqueue_checkpoint();
+  if (moves_pins() && !_failure) {
+    apply_dirichlet(_x, _v, 0.0, true);
+    enqueue_checkpoint();
+  }
   if (has_contact_in_steps()) _contact->set_dt(_time.dt);
   _launcher.discard_graphs();
 }

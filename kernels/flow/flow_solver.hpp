@@ -387,10 +387,12 @@ void FlowSolver<ExecutionSpace>::set_guess() const {
 template <class ExecutionSpace>
 Control FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fraction) {
   const Control kept = read_control();
-  const double dt =
-      motion_bound(kept.now, std::min(admissible_dt(kept.now, _constants), _constants.implicit_dt), 1.0).dt;
+  const stepping::MotionBound bound =
+      motion_bound(kept.now, std::min(admissible_dt(kept.now, _constants), _constants.implicit_dt), 1.0);
+  double dt = std::min(bound.dt, bound.jump - kept.now.time);
   // Without a bound, only a force acts, of which the pressure is a multiple.
-  begin_trial(kept, fraction * (dt > 0.0 && std::isfinite(dt) ? dt : 1.0));
+  if (!(dt > 0.0) || !std::isfinite(dt)) dt = _parameters.horizon > 0.0 ? _parameters.horizon : 1.0;
+  begin_trial(kept, fraction * dt);
   MomentumSetup<ExecutionSpace> setup = momentum_setup(nu);
   setup.weights = {0.0, 1.0, false};
   enqueue_rates(space(), setup, 1.0);

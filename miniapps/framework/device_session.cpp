@@ -1,5 +1,7 @@
 #include "miniapps/framework/device_session.hpp"
 
+#include <system_error>
+
 #include "common/program/failure.hpp"
 #include "common/program/program.hpp"
 #include "kernels/device/host_cores.hpp"
@@ -22,9 +24,13 @@ void require_backend(device::Backend backend) {
 
 DeviceSession::DeviceSession(device::Backend backend, const std::vector<std::string>& kokkos_arguments)
     : _backend(backend), _runtime(with_usage_error([&] {
-        return std::make_unique<device::Runtime>(kokkos_arguments, backend == device::Backend::openmp
-                                                                       ? device::ThreadWaits::adapted
-                                                                       : device::ThreadWaits::as_configured);
+        try {
+          return std::make_unique<device::Runtime>(
+              kokkos_arguments, backend == device::Backend::openmp ? device::ThreadWaits::adapted
+                                                                   : device::ThreadWaits::as_configured);
+        } catch (const std::system_error& refused) {
+          throw Failure(ExitCode::io_error, refused.what());
+        }
       })) {
   device::start_profiling();
 }

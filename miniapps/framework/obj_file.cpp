@@ -54,12 +54,12 @@ class ObjParser {
     int line;
   };
 
-  /// Takes the next line from the text, without its end.
+  /// Takes the next line from the text, without its end: LF, CR LF or CR.
   std::string_view next_line() {
-    const std::size_t end = _text.find('\n');
-    std::string_view line = _text.substr(0, end);
-    _text.remove_prefix(end == std::string_view::npos ? _text.size() : end + 1);
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::size_t end = _text.find_first_of("\r\n");
+    const std::string_view line = _text.substr(0, end);
+    const bool has_both = end != std::string_view::npos && _text.substr(end).starts_with("\r\n");
+    _text.remove_prefix(end == std::string_view::npos ? _text.size() : end + (has_both ? 2 : 1));
     return line;
   }
 
@@ -93,9 +93,10 @@ class ObjParser {
     if (kind == "l") return polyline(words);
     for (const std::string& known : skipped)
       if (kind == known) return;
-    std::vector<std::string> valid = skipped;
-    valid.insert(valid.end(), {"v", "f", "l"});
-    refuse("unknown statement " + scene::toml_string(kind) + "; valid are v, f, l");
+    std::string passed_over;
+    for (const std::string& known : skipped) passed_over += (passed_over.empty() ? "" : ", ") + known;
+    refuse("unknown statement " + scene::toml_string(kind) + "; valid are v, f, l, and without effect " +
+           passed_over);
   }
 
   void vertex(const std::vector<std::string_view>& words) {

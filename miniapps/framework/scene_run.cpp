@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <system_error>
 
 #include "common/program/program.hpp"
 #include "common/program/stopwatch.hpp"
+#include "common/scene/node.hpp"
 #include "miniapps/framework/device_session.hpp"
 #include "miniapps/framework/run_loop.hpp"
 
@@ -83,6 +85,7 @@ class SceneRun {
     const std::unique_ptr<Simulation> simulation =
         scene->create({backend, _options.baseline, _options.quiet, _communicator});
     set_up(*simulation, files);
+    require_not_finished_later(simulation->end_time());
     begin_directory();
     _directory.write_scene(scene->print());
     _result.timing.setup_s = _stopwatch.seconds() - simulation->phases().phases();
@@ -131,7 +134,7 @@ class SceneRun {
     } catch (const Failure&) {
       // No scene, or none of this program; or it lacks a file that lies beside the original.
     }
-    if (same && _restart.empty() && run::is_of_finished_run(_out / "result.json"))
+    if (same && _restart.empty() && run::time_of_finished_run(_out / "result.json"))
       throw Failure(ExitCode::usage,
                     "'" + _out.string() +
                         "' holds a finished run and no restart file, so that it cannot be continued; choose "
@@ -141,6 +144,17 @@ class SceneRun {
                                          (_restart.empty() ? " and no restart file; choose another --out, or "
                                                              "give --overwrite to replace it"
                                                            : "; choose another --out"));
+  }
+
+  /// A restart file from before the end of a finished run must not replace it by a shorter one.
+  void require_not_finished_later(const EndTime& end) const {
+    if (_restart.empty() || _options.overwrite) return;
+    const std::optional<double> finished = run::time_of_finished_run(_out / "result.json");
+    if (finished && *finished > end.time)
+      throw Failure(ExitCode::usage, "'" + _out.string() +
+                                         "' holds a run finished at t = " + scene::real_text(*finished) +
+                                         " s, later than " + end.key + " = " + scene::real_text(end.time) +
+                                         "; choose another --out, or give --overwrite to replace it");
   }
 
   /// Writes how the run failed. An error in the scene or the command line leaves the files of a former run

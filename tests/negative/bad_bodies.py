@@ -143,6 +143,8 @@ BAD_ROUND_LINES = [
     (10, "centre = [0.25, 0.4, 0.4]", 13, ["body[0]", "to 0.45 m along x at t = 0", "between 0.1"]),
     (10, "centre = [0.5, 0.25, 0.4]", 13, ["body[0]", "along y", "0.06", "0.1", 'coupling.method = "sharp"']),
     (13, 'motion = { x = "log(t-1)" }', 13, ["body[0].motion.x", "not finite", "at t = 0"]),
+    (13, 'motion = { x = "1e-9/(t-0.0123)" }', 13, ["body[0].motion.x", "not finite", "at t = 0.0123 s"]),
+    (13, 'motion = { x = "0*sqrt(0.05-t)" }', 13, ["body[0].motion.x", "not finite", "at t = 0.05"]),
     (13, 'motion = { x = "2*t" }', 13, ["body[0]", "along x", "1.5"]),
     (21, "length = 1.7", 19, ["body[1]", "along z", "at most 1.6 m"]),
     (29, "centre = [1.3, 1.1, 1.1]", 29, ["body[2]", "along x", "1.55"]),

@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import subprocess
 import sys
 import unittest
@@ -39,6 +40,16 @@ class Choice(gas_program.GasTest):
 
     def test_one_core_takes_serial(self):
         self.assertEqual("serial", self.backend_of(gas_program.PROGRAM, "sod", *GAS, "mesh.cells=1024", first_core_only=True))
+
+    def test_threads_that_cannot_start_end_with_one_sentence(self):
+        """Their stacks, 8 MiB each, exceed what the process may map."""
+        limit = 2 << 30
+        line = gas_program.arguments("sod", "--out", "run", "--quiet", "--backend", "openmp", sets=GAS)
+        process = subprocess.run(line, cwd=self.folder, capture_output=True, text=True, check=False,
+                                 env={**gas_program.ENVIRONMENT, "OMP_NUM_THREADS": "500"},
+                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        self.assertEqual(6, process.returncode, process.stderr)
+        self.assertRegex(process.stderr, r"^drogue-gas: .*of 500 threads only \d+ start; OMP_NUM_THREADS gives fewer.*\n$")
 
     def test_one_thread_takes_serial(self):
         self.assertEqual("serial", self.backend_of(gas_program.PROGRAM, "sod", *GAS, "mesh.cells=1024", OMP_NUM_THREADS="1"))

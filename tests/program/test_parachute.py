@@ -204,16 +204,17 @@ class Failures(parachute_program.FlowTest):
             self.assertNotIn("viscosity", self.expect(4, self.write(GUST), *words, "--overwrite", sets=quiet).stderr)
 
     def test_inflow_that_becomes_undefined_is_a_failure(self):
-        message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["sqrt(0.2-t)+1", 0, 0]']).stderr
+        """At an output, which is none of the times of the check."""
+        message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["1+1e-9/(10*t-2)", 0, 0]']).stderr
         self.assertRegex(message, r"the prescribed velocity is not finite on the side x_low at step \d+, t = ")
         self.assertLessEqual(self.result("out")["time"], 0.2)
 
-    def test_wall_velocity_that_becomes_undefined_in_the_last_step_is_a_failure(self):
-        for velocity in ('["sqrt(0.1-t)", 0, 0]', '[0, 0, "sqrt(0.1-t)"]'):
+    def test_wall_velocity_that_becomes_undefined_is_a_failure(self):
+        for velocity in ('["1e-9/(10*t-1)", 0, 0]', '[0, 0, "1e-9/(10*t-1)"]'):
             message = self.expect(4, self.write(VORTICES), *QUIET, "--overwrite", sets=[
                 "run.end_time=0.15", "run.dt=0.05", "output.times=[0.15]", "grid.boundary.y='wall'",
                 f"grid.wall_velocity={{y_low={velocity}}}"]).stderr
-            self.assertRegex(message, r"the prescribed velocity is not finite on the side y_low at step 3, t = 0.1 s")
+            self.assertRegex(message, r"the prescribed velocity is not finite on the side y_low at step 2, t = 0.05 s")
 
     def test_velocity_through_slip_sides_of_one_cell_is_rejected(self):
         message = self.expect(3, self.write(VORTICES), *QUIET, sets=[
@@ -577,7 +578,7 @@ class Bodies(parachute_program.FlowTest):
 
     def test_body_that_leaves_the_domain_ends_the_run(self):
         """An oscillation of the period of the times at which the scene is checked."""
-        away = PLATE.replace("porosity = {", 'motion = { x = "0.7*sin(2*pi*256/30*t)" }\nporosity = {')
+        away = PLATE.replace("porosity = {", 'motion = { x = "0.7*sin(53.6165146212658*t)" }\nporosity = {')
         run = self.expect(4, self.write(away), *QUIET, sets=["run.end_time=30", "output={}", "run.max_dt=0.0005"])
         self.assertIn("body[0] leaves the domain: a vertex at (", run.stderr)
 
@@ -784,7 +785,7 @@ class Canopies(parachute_program.FlowTest):
 
     def peak(self, out, scene, *sets, restart=()):
         words = [] if restart else ["--overwrite"]
-        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", out, *words, *restart, sets=["verify={peak_force=[{force=[0,1e9],time=[0,1e9]}]}", *sets])
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", out, *words, *restart, sets=["verify={peak_force=[{force=[0,1e9]}]}", *sets])
         canopies = self.result(out)["canopies"]
         return canopies["peak_force_0"], canopies["peak_force_0_time"]
 

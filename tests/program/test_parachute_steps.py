@@ -287,6 +287,31 @@ class Drives(parachute_program.FlowTest):
             self.assertIn(words, process.stderr)
         self.expect(0, self.write(MOUNT), "--check", sets=["run.max_dt=0.005"])
 
+    def test_acceleration_of_a_small_fast_part_of_a_motion(self):
+        """It is a five-hundredth of the displacement, and most of the acceleration."""
+        motion = "0.05*(1-cos(2*pi*t))+1e-4*sin(100*pi*t)"
+        rows = self.check(PISTON, f"body[0].motion.x='{motion}'", "run.end_time=0.1")
+        force = [f for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.05]
+        exact = 1.2 * 1.6 * 0.64 * 1e-4 * (100 * math.pi) ** 2
+        self.assertAlmostEqual(exact, (max(force) - min(force)) / 2, delta=0.08 * exact)
+
+    def test_motion_counts_within_the_run_alone(self):
+        """It need not be defined later than a step after it; its argument may be large; a value that is not finite ends the run."""
+        mass = 1.2 * 1.6 * 0.64
+        exact = mass * 0.002 * (20 * math.pi) ** 2
+        for end in (0.9, 0.205):
+            rows = self.check(PISTON, f"body[0].motion.x='0.002*(1-cos(20*pi*t))+0*sqrt({end}-t)'", "run.end_time=0.2")
+            late = [abs(f) for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.1]
+            self.assertAlmostEqual(exact, max(late), delta=0.08 * exact)
+            self.assertAlmostEqual(exact, late[-1], delta=0.08 * exact)
+        rows = self.check(PISTON, "body[0].motion.x='0.002*sin(20*pi*(t+160000))'", "run.end_time=0.2")
+        late = [abs(f) for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.1]
+        self.assertAlmostEqual(exact, max(late), delta=0.08 * exact)
+        # The window lies between the times that the check samples.
+        motion = "0.02*sin(20*t)+0*sqrt(abs(10*t-1.0078)-0.006)"
+        message = self.expect(4, self.write(PISTON), *QUIET, sets=[f"body[0].motion.x='{motion}'", "run.max_dt=5e-4"]).stderr
+        self.assertRegex(message, r"body\[0\]\.motion\.x = 0\.02\*sin.* is not finite at t = 0\.10\d* s")
+
     def test_closed_box_under_gravity_stays_at_rest(self):
         for viscosity in (1, 100):
             rows = self.check(CHANNEL, flow(SCHEMES[0], "body_force=[0,-9810,0]"), "fluid.density=1000",

@@ -17,6 +17,30 @@ from hdf5_file import Hdf5File
 from springs_program import DRUM
 
 
+SOFT_STRING = """app = "springs"
+[mesh.string]
+from = [0, 0, 0]
+to = [1, 0, 0]
+vertices = 2
+[material]
+axial_stiffness = 1
+line_density = 2
+[time]
+end_time = 10
+[output]
+history_every = 1
+probes = [{ at = [1, 0, 0] }]
+"""
+PULSE = """[[load]]
+where = "x>0.5"
+force = { x = "exp(-((t-5.05)/0.01)^2)" }
+"""
+FAST_PIN = """[[pin]]
+where = "x<0.5"
+motion = { x = "0.1*sin(2*pi*5*t)" }
+"""
+
+
 class CommandLine(springs_program.SpringsTest):
     def test_information_needs_no_scene(self):
         self.assertRegex(self.expect(0, "--version").stdout, r"^drogue-springs \d+\.\d+\.\d+\n")
@@ -255,7 +279,9 @@ class Failures(springs_program.SpringsTest):
         self.assertRegex(self.expect(3, scene, "--check").stderr, "the edge of vertices [34] and 5 meets face 0")
 
     def test_reports_a_state_that_is_not_finite(self):
-        message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=['load=[{force={z="sqrt(0.05-t)"}}]']).stderr
+        # Between two times of the check.
+        message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out",
+                              sets=['load=[{force={z="t<=0.0504 || t>0.0504+0.0003 ? 0.1 : sqrt(-1)"}}]']).stderr
         self.assertRegex(message, r"not finite at vertex \d+ \(at rest at .* m\) at step \d+, t = 0\.05.* s")
         self.assertIn("restart.h5 holds the last good state", message)
         reported = self.result("out")
@@ -338,7 +364,7 @@ class Failures(springs_program.SpringsTest):
 
     def test_reports_a_force_that_is_not_finite(self):
         """The last good state precedes the first value that is not finite, at any vertex."""
-        force = 'load=[{where="x>0.2",force={z="sqrt(0.1-t)"}}]'
+        force = 'load=[{where="x>0.2",force={z="0.3*sqrt(abs(10*t-1.0055)-0.002)"}}]'  # between the times of the check
         for dt in ("auto", 1e-4):
             with self.subTest(dt):
                 message = self.expect(4, self.write(DRUM), "--quiet", "--overwrite", "--out", "out", sets=[force, f"time.dt={dt}"]).stderr
@@ -346,8 +372,23 @@ class Failures(springs_program.SpringsTest):
                 self.assertIn("if no expression gives such a number", message)
                 reported = self.result("out")
                 self.assertEqual(("numerical-failure", 4), (reported["status"], reported["exit_code"]))
-                self.assertLessEqual(reported["time"], 0.1)
+                self.assertLessEqual(reported["time"], 0.1008)
                 self.assertTrue(all(map(math.isfinite, self.history("out")["kinetic"])))
+
+    def test_steps_resolve_loads_and_pins_that_change(self):
+        """A pulse far shorter than the stable step has its impulse, and a fast pin moves the mass little."""
+        self.expect(0, self.write(SOFT_STRING + PULSE), "--quiet", "--out", "pulse")
+        self.assertAlmostEqual(0.01 * math.sqrt(math.pi), max(self.history("pulse")["momentum_x"]), delta=2e-4)
+        square = PULSE.replace("exp(-((t-5.05)/0.01)^2)", "t>5.05 && t<5.07 ? 1 : 0")
+        self.expect(0, self.write(SOFT_STRING + square), "--quiet", "--out", "square")
+        self.assertAlmostEqual(0.02, max(self.history("square")["momentum_x"]), delta=0.002)
+        self.expect(0, self.write(SOFT_STRING + FAST_PIN), "--quiet", "--out", "pin")
+        # From rest: 0.1 / (omega^2 - 1) (omega sin t - sin(omega t)), with omega = 10 pi.
+        moved = max(abs(x - 1) for x in self.history("pin")["probe_0_x"])
+        self.assertAlmostEqual(0.1 / (10 * math.pi), moved, delta=2e-4)
+        checked = gas_program.run(str(self.write(SOFT_STRING + FAST_PIN)), "--check", "--set", "time.dt=0.1", program=springs_program.PROGRAM, cwd=self.folder)
+        self.assertEqual(0, checked.returncode)
+        self.assertRegex(checked.stderr, r"pin\[0\].motion.x: steps that resolve it are at most 0.0\d+ s long, time.dt = 0.1 s")
 
     def test_motion_may_end_with_the_scene(self):
         ends = DRUM.replace('0.4-1e-9"', '0.4-1e-9"\nmotion = { z = "0.01*sqrt(0.4-t)" }')
@@ -395,15 +436,16 @@ class Failures(springs_program.SpringsTest):
     def compare_with_a_continuing_run(self, scene, sets, end):
         words = ["--quiet", "--backend", "serial", "--overwrite", "--out"]
         sets = [*sets, f"time.end_time={1.5 * end}", f"output.times=[{1.5 * end}]", "output.history_every=1"]
-        gravity, force = "{gravity=[0,0,-9.81]}", f"1e-6*sqrt({end}-t)"
-        message = self.expect(4, self.write(scene), *words, "out", sets=[*sets, f'load=[{gravity},{{force={{z="{force}"}}}}]']).stderr
+        gravity = "{gravity=[0,0,-9.81]}"
+        # The force is not finite between two times of the check.
+        defined, undefined = (f"t <= {end} ? 1e-6*sqrt({end}-t) : (t > {end}+{0.00175 * end} ? 0 : {after})" for after in ("0*1", "sqrt(-1)"))
+        message = self.expect(4, self.write(scene), *words, "out", sets=[*sets, f'load=[{gravity},{{force={{z="{undefined}"}}}}]']).stderr
         lost = int(re.search(r"at step (\d+)", message)[1])
         self.assertIn(f"restart.h5 holds the last good state, of step {lost - 1}", message)
         self.assertEqual(lost - 1, self.history("out")["step"][-1])
         # The same run up to that step, with one restart file.
-        longer = f"t <= {end} ? {force} : 0"
         self.expect(0, self.write(scene), *words, "whole", sets=[
-            *sets, f'load=[{gravity},{{force={{z="{longer}"}}}}]', f"output.restart_every={lost - 1}"])
+            *sets, f'load=[{gravity},{{force={{z="{defined}"}}}}]', f"output.restart_every={lost - 1}"])
         found, known = (Hdf5File(self.program, self.folder / folder / "restart.h5") for folder in ("out", "whole"))
         self.assertIn("/position", found.datasets)
         self.assertEqual(known.datasets, found.datasets)

@@ -147,6 +147,16 @@ class RestartFiles(gas_program.GasTest):
             self.assertIn("a finished run and no restart file", message)
             self.assertEqual(before, self.contents("bare"))
 
+    def test_refuses_an_end_before_that_of_the_finished_run(self):
+        """Without a restart file of its end, the former one lies before both."""
+        later = ["run.end_time=0.25", "output.times=[0.1, 0.2, 0.25]", "output.restart_every=0"]
+        self.resume(0, sets=[*SETS, *later])
+        before = self.contents()
+        message = self.resume(2, sets=[*SETS, *later, "run.end_time=0.22", "output.times=[0.1, 0.2, 0.22]"])
+        self.assertIn("holds a run finished at t = 0.25 s, later than run.end_time = 0.22; choose another --out", message)
+        self.assertEqual(before, self.contents())
+        self.resume(0, sets=[*SETS, *later])
+
     def test_says_which_pictures_it_removes(self):
         for name in ("fields.png", "space_time_rho.png", "mine.png"):
             (self.folder / "run" / name).write_bytes(b"picture")

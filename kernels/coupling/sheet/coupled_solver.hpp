@@ -192,16 +192,17 @@ class CoupledSolver {
 
  private:
   static Parameters completed(Parameters p) {
+    if (!(p.flow.fixed_dt > 0.0 || p.flow.max_dt > 0.0))
+      throw std::invalid_argument("coupled solver: either fixed_dt or max_dt must be positive");
     p.fabric.integrator = fabric::Integrator::symplectic_euler;
-    p.fabric.dt = 1.0;  // every block sets its own
+    // Every block sets its own; before the first one, a motion is evaluated within the run.
+    p.fabric.dt = p.flow.fixed_dt > 0.0 ? p.flow.fixed_dt : 1e-6 * std::max(p.flow.horizon, p.flow.max_dt);
     p.fabric.contact.interval = p.contact_interval;
     fabric::check_parameters(p.fabric);
     if (p.substeps < 0)
       throw std::invalid_argument("coupled solver: the number of substeps must not be negative");
     if (!(p.longest_batch > 0.0))
       throw std::invalid_argument("coupled solver: the time of a batch of steps must be positive");
-    if (!(p.flow.fixed_dt > 0.0 || p.flow.max_dt > 0.0))
-      throw std::invalid_argument("coupled solver: either fixed_dt or max_dt must be positive");
     if (p.flow.cfl == 0.0) p.flow.cfl = default_cfl;
     p.flow.external_force = true;
     if (p.flow.horizon > 0.0 && p.flow.motion.empty()) p.flow.motion = vertex_motion(p);
@@ -235,6 +236,7 @@ class CoupledSolver {
   void end_block_at(double target, const flow::Progress& now);
   void enqueue_step(double dt, bool is_first);
   void adapt_batch(std::int64_t steps, const device::Stopwatch& stopwatch);
+  [[nodiscard]] bool cloth_has_failed();
   [[nodiscard]] bool needs_shorter_steps(const flow::Progress& now);
   void return_to_last_step(const flow::Progress& now);
 
@@ -350,7 +352,8 @@ bool CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double
 /// Gives the cloth the step, the time and dt of the present block.
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::set_cloth_time() {
-  const double dt = _block.dt > 0.0 ? _block.dt / static_cast<double>(_block.substeps) : 1.0;
+  const double dt =
+      _block.dt > 0.0 ? _block.dt / static_cast<double>(_block.substeps) : _parameters.fabric.dt;
   _fabric.set_time_state({_block.cloth_step, dt, _block.since, _block.start});
 }
 
@@ -407,6 +410,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
     const device::Stopwatch stopwatch;
     _flow.set_fixed_dt(dt);
     set_cloth_time();
+    if (cloth_has_failed()) return flow::Stop::failed;
     _enqueued_step = now.step, _enqueued_cloth_step = _block.cloth_step;
     _flow.enqueue_begin(target);
     for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt, now.step + k == 0);
@@ -452,6 +456,18 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
   _flow.enqueue_step();
   record_pulls();
   _sheet.end_step(_space, velocity, density, dt, is_first, _flow.control());
+}
+
+/// True if the state at the beginning of a batch of steps is not finite, say by prescribed motion: it would
+/// take no step.
+template <class ExecutionSpace>
+bool CoupledSolver<ExecutionSpace>::cloth_has_failed() {
+  const auto failure = _fabric.failure();
+  if (!failure) return false;
+  _cloth_failure = failure;
+  Kokkos::deep_copy(_space, _reason, FailureReason::cloth);
+  _space.fence("drogue::coupling::cloth_has_failed");
+  return true;
 }
 
 /// True if the flow has stopped because the dt of the block exceeds the stability limit of the next step.

@@ -159,12 +159,11 @@ void check_places(const Table& root, const FlowScene& scene, const Body& body, c
   std::array<bool, 3> is_side{};  // of a plate
   if (body.kind == BodyKind::plate)
     for (const std::size_t axis : body.axes()) is_side[axis] = true;
-  constexpr int intervals = 256;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string& text = body.motion[axis];
     const SpaceTimeFunction displacement(text.empty() ? "0" : text);
-    for (int i = 0; i <= (displacement.constant() ? 0 : intervals); ++i) {
-      const double time = scene.end_time * i / intervals, moved = displacement({}, time);
+    for (const double time : displacement.sample_times(scene.end_time)) {
+      const double moved = displacement({}, time);
       const std::string at = text.empty() ? "" : " at t = " + real_text(time) + " s",
                         resting = is_side[axis] ? ".lengths" : ".centre",
                         key = name + (text.empty() ? resting : std::string(".motion.") + axis_names[axis]);

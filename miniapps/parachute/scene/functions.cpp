@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "common/expression/compile.hpp"
+#include "common/expression/sample_times.hpp"
 #include "common/program/thread_parts.hpp"
 
 namespace drogue::parachute_app {
@@ -19,8 +20,12 @@ bool varies(const std::string& text) {
 
 }  // namespace
 
-SpaceTimeFunction::SpaceTimeFunction(const std::string& text) : _expression(text, variables) {
+SpaceTimeFunction::SpaceTimeFunction(const std::string& text) : _text(text), _expression(text, variables) {
   if (!varies(text)) _constant = _expression(std::array{0.0, 0.0, 0.0, 0.0});
+}
+
+std::vector<double> SpaceTimeFunction::sample_times(double end) const {
+  return expression::sample_times(_text, variables, end);
 }
 
 device::ExpressionProgram device_program(const std::string& text) {

@@ -22,12 +22,16 @@ class SpaceTimeFunction {
   /// Value for all places and times; nothing if it varies. Does not throw.
   [[nodiscard]] const std::optional<double>& constant() const { return _constant; }
 
+  /// Times of a run of `end`, s, at which to check it. Throws only std::bad_alloc.
+  [[nodiscard]] std::vector<double> sample_times(double end) const;
+
   /// Value at a place, m, and a time, s; not finite where the expression is undefined. Does not throw.
   double operator()(const std::array<double, 3>& place, double time) const {
     return _constant ? *_constant : _expression(std::array{place[0], place[1], place[2], time});
   }
 
  private:
+  std::string _text;
   expression::Expression _expression;
   std::optional<double> _constant;
 };

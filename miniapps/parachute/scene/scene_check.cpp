@@ -126,7 +126,8 @@ bool is_closed(const flow::Parameters& p, std::size_t axis) {
   return p.cells[axis] == 1 && p.boundary[2 * axis].kind == BoundaryKind::slip;
 }
 
-/// Checks a prescribed velocity at time 0, and that walls move along themselves.
+/// Checks a prescribed velocity at time 0, and at some of its points during the run, and that walls move
+/// along themselves.
 void check_velocity(const Table& root, const FlowScene& scene, const std::string& key,
                     const VectorExpression& text, std::size_t side) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -140,13 +141,18 @@ void check_velocity(const Table& root, const FlowScene& scene, const std::string
                  component + " is normal to the slip sides of an axis with one cell: it must be 0");
     // Tangential components belong to faces that begin at the edges of the side.
     const Lattice lattice = side_lattice(scene.parameters, side, velocity_field(axis));
-    const std::vector<double> values = evaluate(velocity, lattice, 0.0);
-    const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
-    if (bad != values.end())
+    const auto refuse = [&](std::size_t entry, double time) {
       contradict(root, key,
-                 component + " is not finite at " +
-                     place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) +
-                     " on the side " + side_names[side] + " at t = 0");
+                 component + " is not finite at " + place_text(lattice.place(entry)) + " on the side " +
+                     side_names[side] + " at t = " + real_text(time) + (time > 0.0 ? " s" : ""));
+    };
+    const std::vector<double> values = evaluate(velocity, lattice, 0.0);
+    for (std::size_t entry = 0; entry < values.size(); ++entry)
+      if (!std::isfinite(values[entry])) refuse(entry, 0.0);
+    constexpr std::size_t points = 64;
+    for (const double time : velocity.sample_times(scene.end_time))
+      for (std::size_t entry = 0; entry < values.size(); entry += 1 + values.size() / points)
+        if (!std::isfinite(velocity(lattice.place(entry), time))) refuse(entry, time);
   }
 }
 
@@ -319,19 +325,22 @@ void complete_time_step(const Table& root, FlowScene& scene) {
                "largest dt");
 }
 
-/// Refuses a dt, or a viscosity that limits it, with which the run would need more steps than it may take.
+/// Refuses a dt, a largest one, or a viscosity that limits it, with which the run would need more steps than
+/// it may take.
 void check_steps(const Table& root, const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   const auto most = static_cast<double>(p.max_steps);
   std::ostringstream text;
   text.precision(3);
-  if (p.fixed_dt > 0.0) {
-    const double steps = scene.end_time / p.fixed_dt;
+  const auto refuse_step = [&](const char* key, double dt) {
+    const double steps = scene.end_time / dt;
     if (steps <= most || root.given("run.max_steps")) return;
-    text << "run.dt = " << p.fixed_dt << " s: " << steps
+    text << key << " = " << dt << " s: " << steps
          << " steps to run.end_time, more than run.max_steps = " << most;
-    contradict(root, "run.dt", text.str());
-  }
+    contradict(root, key, text.str());
+  };
+  if (p.fixed_dt > 0.0) return refuse_step("run.dt", p.fixed_dt);
+  if (p.max_dt > 0.0) refuse_step("run.max_dt", p.max_dt);
   const double dt = flow::largest_diffusive_dt(p), steps = scene.end_time / dt;
   if (steps <= most || root.given("run.max_steps")) return;
   text << "fluid.viscosity: limits a step to " << dt << " s, " << steps

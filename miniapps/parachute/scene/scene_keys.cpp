@@ -152,7 +152,7 @@ void declare_run(Table& table, FlowScene& scene) {
                               [&scene] { return scene.cfl(); }),
              "Courant number: dt times the largest sum of speeds over cell widths along the axes; at most "
              "0.7 with ab2")
-      .above(0.0)
+      .at_least(1e-6)
       .at_most(flow::stable_cfl(flow::TimeScheme::rk3))
       .when(free_step, free_step_condition, "dt")
       .default_text("1 for rk3, 0.5 for ab2 and with a [[body]], [[canopy]] or [[flag]]");

@@ -83,6 +83,7 @@ class Simulation final : public framework::Simulation {
   void sample_positions(const SheetGrid& grid, std::vector<double>& values);
   [[nodiscard]] std::string failure_cause();
   [[nodiscard]] std::string flow_failure_text();
+  [[nodiscard]] std::string lost_motion_text(const fabric::StepFailure& failure) const;
   [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);
   [[nodiscard]] std::string stiff_cloth_text();
   [[nodiscard]] std::string broken_line_text();

@@ -199,6 +199,31 @@ std::string Simulation::leaving_vertex_text() {
          " after " + now_text() + "; a larger grid.domain or a shorter run.end_time may save the run";
 }
 
+/// Motion of the body with the failed vertex that is not finite near the failed step; empty if there is none.
+std::string Simulation::lost_motion_text(const fabric::StepFailure& failure) const {
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < _scene.bodies.size(); ++i) {
+    const Body& body = _scene.bodies[i];
+    const std::size_t begin = end;
+    end += static_cast<std::size_t>(body.vertices());
+    const auto vertex = static_cast<std::size_t>(failure.index);
+    if (vertex < begin || vertex >= end) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const SpaceTimeFunction displacement(body.motion[axis].empty() ? "0" : body.motion[axis]);
+      for (const double steps : {1.0, 2.0, 0.0, 1.5, 0.5})
+        if (const double time = failure.time + steps * failure.dt; !std::isfinite(displacement({}, time))) {
+          std::ostringstream text;
+          text.precision(9);
+          text << "body[" << i << "].motion."
+               << "xyz"[axis] << " = " << scene::shortened(body.motion[axis])
+               << " is not finite at t = " << time << " s";
+          return text.str();
+        }
+    }
+  }
+  return "";
+}
+
 std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
   std::ostringstream text;
   text.precision(9);
@@ -208,6 +233,7 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
       return text.str();
     case coupling::FailureReason::cloth: {
       const auto failure = _coupled->cloth_failure().value_or(fabric::StepFailure{});
+      if (const std::string motion = lost_motion_text(failure); !motion.empty()) return motion;
       text << cloth_failure_text(failure.reason) << " at " << vertex_text(failure.index) << " after "
            << now_text() << "; a smaller " << step_key() << " may save the run";
       return text.str();

@@ -57,6 +57,7 @@ void check_canopies(const Verify& wanted, const CanopyRecord& record, run::Resul
     const auto [force, time] = record.peaks().at(static_cast<std::size_t>(peak.canopy));
     const std::string name = "peak_force_" + std::to_string(i);
     check_bounds(name, force, peak.force);
+    result.metrics.set("canopies", name + "_time", time);
     if (peak.time) check_bounds(name + "_time", time, *peak.time);
   }
   const auto check_largest = [&](const std::string& name, double value, std::optional<double> tolerance) {

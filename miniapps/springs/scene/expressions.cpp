@@ -5,6 +5,7 @@
 
 #include "common/expression/compile.hpp"
 #include "common/expression/expression.hpp"
+#include "common/expression/sample_times.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -48,6 +49,10 @@ bool depends_on_time(const std::string& expression) {
   if (expression.empty()) return false;
   const auto program = expression::compile(expression, place_and_time);
   return std::ranges::any_of(program, [](const auto& step) { return step.name == "t"; });
+}
+
+std::vector<double> sample_times(const std::string& expression, double end) {
+  return expression::sample_times(expression, place_and_time, end);
 }
 
 device::ExpressionProgram device_program(const std::string& expression) {

@@ -22,6 +22,9 @@ std::vector<fabric::Vector> values_at(const ExpressionVector& expressions, const
 /// True if an expression depends on the time.
 bool depends_on_time(const std::string& expression);
 
+/// Times of a run of `end`, s, at which to check an expression.
+std::vector<double> sample_times(const std::string& expression, double end);
+
 /// Device program of an expression of x, y, z and t. Throws std::invalid_argument if it is too long.
 device::ExpressionProgram device_program(const std::string& expression);
 

@@ -9,6 +9,7 @@
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/fabric/parameters.hpp"
 #include "kernels/mesh/generators.hpp"
+#include "kernels/stepping/motion_interval.hpp"
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
@@ -188,6 +189,8 @@ struct SpringsScene {
   Output output;
   Verify verify;
   fabric::Driver driver = fabric::Driver::automatic;
+  /// Divisions of the run by prescribed motion and loads that change in time.
+  std::vector<std::vector<stepping::MotionInterval>> changes;
   std::vector<std::string> notices;  ///< `framework::Scene::notices`
 
   /// True if the source has triangles, or lines; both for a file that is not read yet.

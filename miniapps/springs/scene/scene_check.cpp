@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
@@ -10,6 +11,7 @@
 #include "kernels/mesh/edges.hpp"
 #include "kernels/mesh/orientation.hpp"
 #include "kernels/mesh/topology.hpp"
+#include "kernels/stepping/expression_steps.hpp"
 #include "miniapps/springs/scene/expressions.hpp"
 #include "miniapps/springs/simulation/stress_fields.hpp"
 
@@ -21,6 +23,8 @@ using scene::real_text;
 using scene::Table;
 
 constexpr const char* axis_names = "xyz";
+/// Most steps by which loads and prescribed motion may be resolved.
+constexpr double most_steps_of_changes = 1e9;
 
 std::string element(const std::string& name, std::size_t i) { return name + "[" + std::to_string(i) + "]"; }
 
@@ -39,6 +43,15 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
                              scene.notices);
 }
 
+/// Checks the value of an expression at a vertex: finite, and below the limit of a lost state.
+void require_finite_value(const Table& root, const SpringsScene& scene, const std::string& path, double value,
+                          std::size_t vertex, const std::string& when = "") {
+  if (std::abs(value) < 1e99) return;
+  contradict(root, path,
+             path + " gives " + real_text(value) + " " + place_text(scene, vertex) + when +
+                 (std::isfinite(value) ? "; it must be less than 1e99" : "; it must be finite"));
+}
+
 /// Checks an expression at every vertex and time 0: finite, and below the limit of a lost state. An
 /// expression that a kernel evaluates must also fit its device program.
 void require_finite(const Table& root, const SpringsScene& scene, const std::string& path,
@@ -49,12 +62,7 @@ void require_finite(const Table& root, const SpringsScene& scene, const std::str
     contradict(root, path, path + ": " + refused.what());
   }
   const std::vector<double> values = values_at(expression, scene.mesh);
-  const auto bad = std::ranges::find_if(values, [](double value) { return !(std::abs(value) < 1e99); });
-  if (bad != values.end())
-    contradict(root, path,
-               path + " gives " + real_text(*bad) + " " +
-                   place_text(scene, static_cast<std::size_t>(bad - values.begin())) +
-                   (std::isfinite(*bad) ? "; it must be less than 1e99" : "; it must be finite"));
+  for (std::size_t i = 0; i < values.size(); ++i) require_finite_value(root, scene, path, values[i], i);
 }
 
 void require_finite(const Table& root, const SpringsScene& scene, const std::string& path,
@@ -62,6 +70,44 @@ void require_finite(const Table& root, const SpringsScene& scene, const std::str
   for (std::size_t axis = 0; axis < 3; ++axis)
     require_finite(root, scene, path + "." + axis_names[axis], vector.of(axis),
                    depends_on_time(vector.of(axis)));
+}
+
+/// Checks an expression that moves or loads `vertices` as above, at some of them during the run, and bounds
+/// the automatic step, so that it resolves what changes.
+void check_in_time(const Table& root, SpringsScene& scene, const std::string& path,
+                   const std::string& expression, const std::vector<int>& vertices) {
+  const double end = scene.time.end_time;
+  if (!depends_on_time(expression) || vertices.empty() || end == 0.0) return;
+  constexpr std::size_t most = 64;
+  fabric::Mesh some;
+  std::vector<std::size_t> vertex;
+  for (std::size_t k = 0; k < vertices.size(); k += 1 + vertices.size() / most) {
+    vertex.push_back(static_cast<std::size_t>(vertices[k]));
+    some.rest.push_back(scene.mesh.rest[vertex.back()]);
+  }
+  for (const double time : sample_times(expression, end)) {
+    const std::vector<double> values = values_at(expression, some, time);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      require_finite_value(root, scene, path, values[k], vertex[k], " at t = " + real_text(time) + " s");
+  }
+  const auto changes = stepping::expression_intervals(device_program(expression), some.rest, end);
+  scene.changes.push_back(changes);
+  const double shortest = stepping::shortest_interval(changes, 0.0, end);
+  std::ostringstream text;
+  text.precision(3);
+  text << path << ": steps that resolve it are at most " << shortest << " s long";
+  if (!scene.time.dt && end / shortest > most_steps_of_changes) {
+    text << ", " << end / shortest << " to time.end_time; time.dt takes longer ones";
+    contradict(root, path, text.str());
+  }
+  text << ", time.dt = " << scene.time.dt.value_or(0.0) << " s";
+  if (scene.time.dt && *scene.time.dt > shortest) scene.notices.push_back(text.str());
+}
+
+void check_in_time(const Table& root, SpringsScene& scene, const std::string& path,
+                   const ExpressionVector& vector, const std::vector<int>& vertices) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    check_in_time(root, scene, path + "." + axis_names[axis], vector.of(axis), vertices);
 }
 
 void complete_material(const Table& root, SpringsScene& scene) {
@@ -101,7 +147,7 @@ void complete_material(const Table& root, SpringsScene& scene) {
   f.material.axial_stiffness = scene.mesh.line_stiffness.front();
 }
 
-void check_pins(const Table& root, const SpringsScene& scene) {
+void check_pins(const Table& root, SpringsScene& scene) {
   // Number of the pin that prescribes an axis of a vertex, from 1; 0: none.
   std::vector<std::array<std::size_t, 3>> holder(scene.mesh.rest.size(), {0, 0, 0});
   for (std::size_t k = 0; k < scene.pins.size(); ++k) {
@@ -109,6 +155,7 @@ void check_pins(const Table& root, const SpringsScene& scene) {
     const std::string path = element("pin", k);
     require_finite(root, scene, path + ".motion", pin.motion);
     const auto vertices = require_some(root, scene, path + ".where", pin.where, "the pin holds nothing");
+    check_in_time(root, scene, path + ".motion", pin.motion, vertices);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const bool fixed = pin.axes.find(axis_names[axis]) != std::string::npos;
       const std::string moved = path + ".motion." + axis_names[axis];
@@ -172,12 +219,16 @@ void check_loads(const Table& root, SpringsScene& scene) {
       check_sides(root, scene, path + "." + name);
       require_finite(root, scene, path + "." + name, text,
                      name != std::string("pressure") || depends_on_time(text));
+      check_in_time(root, scene, path + "." + name, text, selected("", scene.mesh));
     }
     if (!load.force) continue;
     require_finite(root, scene, path + ".force", *load.force);
     if (!load.force->given()) contradict(root, path + ".force", path + ".force needs one of x, y, z");
-    if (!load.where.empty())
-      require_some(root, scene, path + ".where", load.where, "the force acts on nothing");
+    const std::vector<int> loaded =
+        load.where.empty()
+            ? selected("", scene.mesh)
+            : require_some(root, scene, path + ".where", load.where, "the force acts on nothing");
+    check_in_time(root, scene, path + ".force", *load.force, loaded);
   }
   for (std::size_t k = 0; k < scene.payloads.size(); ++k)
     require_some(root, scene, element("mass", k) + ".where", scene.payloads[k].where,

@@ -78,6 +78,7 @@ void add_loads(const SpringsScene& scene, Problem& problem) {
 }
 
 void add_motions(const SpringsScene& scene, Problem& problem) {
+  if (scene.time.end_time == 0.0) return;  // `place_vertices` has put them there
   std::vector<int> place(problem.order.size());
   for (std::size_t k = 0; k < place.size(); ++k)
     place[static_cast<std::size_t>(problem.order[k])] = static_cast<int>(k);

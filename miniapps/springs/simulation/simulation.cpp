@@ -7,6 +7,7 @@
 #include "common/program/stopwatch.hpp"
 #include "common/scene/node.hpp"
 #include "kernels/fabric/contact/features.hpp"
+#include "kernels/stepping/expression_steps.hpp"
 #include "miniapps/springs/simulation/energy_balance.hpp"
 
 namespace drogue::springs_app {
@@ -112,7 +113,10 @@ void Simulation::plan() {
   _stop_time = framework::next_stop(_scene.output, begin, _scene.time.end_time);
   _stop_step = step;
   if (_stop_time <= begin) return;
-  const double longest = _scene.time.dt ? *_scene.time.dt : _scene.time.safety * stable_dt();
+  double longest = _scene.time.dt ? *_scene.time.dt : _scene.time.safety * stable_dt();
+  if (!_scene.time.dt)
+    for (const std::vector<stepping::MotionInterval>& changes : _scene.changes)
+      longest = std::min(longest, stepping::shortest_interval(changes, begin, _stop_time));
   // Round-off of an integer quotient must not add a step.
   const double steps = std::max(1.0, std::ceil((_stop_time - begin) / longest * (1.0 - 1e-12)));
   if (!(steps <= most_steps))
@@ -255,7 +259,8 @@ bool Simulation::plan_next_interval() {
 /// Repeats the valid steps before `lost` from the checkpoint that the solver restored.
 void Simulation::return_to_last_good(std::int64_t lost) {
   round_trip();  // an upload clears the failure
-  _solver->advance(lost - 1 - _solver->time_state().step);
+  // The start itself may be lost.
+  _solver->advance(std::max<std::int64_t>(0, lost - 1 - _solver->time_state().step));
   _solver->failure();  // waits
 }
 

@@ -74,6 +74,43 @@ TEST(MovingSheet, CarriesTheFluidOfAChannelWithIt) {
   EXPECT_GT(error[0] / error[1], 3.0);
 }
 
+TEST(MovingSheet, IsWhereItsMotionIsDefined) {
+  // A step after the end of the run at most; no fixed time after its start.
+  for (const double defined_until : {1.0, 0.06}) {
+    CoupledCase c(16, 4, 0.1, 0.005);
+    c.add_strip(0.83, 0.0, 0.83, 0.4, 8);
+    c.p.sheet.law.impermeable = true;
+    move(c, 0, postfix({0.1, defined_until, "t", "-", 1.5, "^", "*"}));
+    CoupledRun run(c);
+    ASSERT_TRUE(run.advance(10)) << defined_until;
+    std::vector<Vector> x(c.x.size()), v(c.x.size());
+    run.solver->download_cloth(x, v);
+    EXPECT_NEAR(x[0][0] - c.x[0][0], 0.1 * std::pow(defined_until - 0.05, 1.5), 1e-9);
+    EXPECT_GT(std::abs(run.force()[0]), 1e-4) << "the air feels it";
+  }
+}
+
+TEST(MovingSheet, MotionThatIsNotFiniteFails) {
+  struct Case {
+    const char* what;
+    device::ExpressionProgram motion;
+    int steps;  ///< that are taken: the velocity needs the motion a step ahead
+  };
+  const Case cases[] = {{"from the start", postfix({"t", "sqrt", "negate", 0.5, "-", "sqrt"}), 0},
+                        {"during the run", postfix({0.1, 0.0325, "t", "-", "sqrt", "*"}), 5}};
+  for (const Case& each : cases) {
+    CoupledCase c(16, 4, 0.1, 0.005);
+    c.add_strip(0.83, 0.0, 0.83, 0.4, 8);
+    c.p.sheet.law.impermeable = true;
+    move(c, 0, each.motion);
+    CoupledRun run(c);
+    EXPECT_FALSE(run.advance(10)) << each.what;
+    EXPECT_EQ(run.solver->failure_reason(), FailureReason::cloth) << each.what;
+    ASSERT_TRUE(run.solver->cloth_failure()) << each.what;
+    EXPECT_EQ(run.solver->progress().step, each.steps) << each.what;
+  }
+}
+
 TEST(MovingSheet, NeitherFencesNorAllocatesNorCopiesInSteps) {
   CoupledCase c(16, 4, 0.1, 0.005);
   c.add_strip(0.83, 0.0, 0.83, 0.4, 8);

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "common/expression/compile.hpp"
+#include "common/expression/sample_times.hpp"
 #include "tests/support/random_expression.hpp"
 
 namespace drogue::expression {
@@ -110,6 +112,16 @@ TEST(Compile, AgreesWithMuParser) {
     ++compared;
   }
   EXPECT_GT(compared, 1500);
+}
+
+TEST(Expression, SampleTimesHoldTheNumbersOfTheExpression) {
+  const std::vector<std::string> variables = {"x", "t"};
+  EXPECT_EQ(sample_times("3*x", variables, 2.0), std::vector<double>{0.0});
+  const std::vector<double> times = sample_times("1/(t-0.3)+sqrt(-1.1+x)*5", variables, 2.0);
+  EXPECT_EQ(times.size(), 259U) << "257 even ones, 0.3 and 1.1; 5 lies after the end";
+  EXPECT_TRUE(std::ranges::is_sorted(times));
+  EXPECT_EQ(times.back(), 2.0);
+  for (const double number : {0.3, 1.1}) EXPECT_EQ(std::ranges::count(times, number), 1) << number;
 }
 
 }  // namespace

@@ -42,6 +42,14 @@ TEST(ObjFile, ReadsCrLfAndAllNumberFormats) {
   EXPECT_EQ(contents.mesh.triangles[0], (std::array{0, 1, 2}));
 }
 
+TEST(ObjFile, ReadsCrAsTheEndOfALine) {
+  const ObjContents contents = read_mesh("v 0 0 0\rv 1 0 0\r\rv 0 2 0\rf 1 2 3\r");
+  EXPECT_EQ(contents.mesh.rest.size(), 3U);
+  EXPECT_EQ(contents.vertex_line, (std::vector<int>{1, 2, 4}));
+  EXPECT_EQ(contents.triangle_line, std::vector<int>{5});
+  EXPECT_TRUE(mesh_error("v 0 0 0\rv 1 0\r").starts_with("m.obj:2: ")) << "lines count";
+}
+
 TEST(ObjFile, AcceptsUnitWeightsAndColours) {
   const ObjContents contents = read_mesh("v 1 0 0 1.0\nv 0 1 0 0.5 0.25 1\nv 0 0 1\nf 1 2 3\n");
   EXPECT_EQ(contents.mesh.rest, (std::vector<mesh::Vector>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
@@ -73,7 +81,8 @@ TEST(ObjFile, ErrorsNameFileLineAndPart) {
       {three + "l 1\n", "m.obj:4: ", "two vertices"},
       {three + "l 1 1\n", "m.obj:4: ", "from vertex 1 of the file to itself"},
       {three + "f 1 2 3\nl 1 7\n", "m.obj:5: ", "names vertex 7"},
-      {three + "fa 1 2 3\n", "m.obj:4: ", "unknown statement \"fa\""},
+      {three + "fa 1 2 3\n",
+       "m.obj:4: ", "unknown statement \"fa\"; valid are v, f, l, and without effect p, vn,"},
       {three + "v 0 0 0\nf 1 2 3\nl 1 4\n", "m.obj:4: ", "vertex 4 of the file lies where vertex 1 does"},
       {three + "v 5 5 5\nf 1 2 3\n", "m.obj:4: ", "vertex 4 of the file belongs to no face"},
       {three + "v 2 0 0\nf 1 2 3\nf 1 2 4\n",

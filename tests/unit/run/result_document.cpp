@@ -175,17 +175,17 @@ TEST(ResultDocument, ChecksReportTheirMeasurements) {
 TEST(ResultDocument, KnowsTheResultOfAFinishedRun) {
   const test::TemporaryDirectory directory;
   const auto file = directory / "result.json";
-  EXPECT_FALSE(is_of_finished_run(file));
+  EXPECT_FALSE(time_of_finished_run(file));
   for (const auto& [code, finished] :
        {std::pair{ExitCode::ok, true}, std::pair{ExitCode::verification_failed, true},
         std::pair{ExitCode::interrupted, false}, std::pair{ExitCode::io_error, false}}) {
     ResultDocument result = new_result("drogue-gas", "sod");
     result.exit_code = code;
     write_result(file, result);
-    EXPECT_EQ(is_of_finished_run(file), finished) << status_name(code);
+    EXPECT_EQ(time_of_finished_run(file).has_value(), finished) << status_name(code);
   }
   write_file_atomically(file, "{ \"status\": \"o");
-  EXPECT_FALSE(is_of_finished_run(file));
+  EXPECT_FALSE(time_of_finished_run(file));
 }
 
 TEST(ResultDocument, HoldsBuildFactsAndPeakMemory) {
