@@ -269,7 +269,7 @@ class Drives(parachute_program.FlowTest):
 
     def test_plate_that_moves_the_fluid_of_a_long_channel(self):
         rows = self.check(PISTON, "grid={cells=[80,4,4],domain=[[0,4],[0,0.4],[0,0.4]],boundary={x='periodic',y='periodic',z='periodic'}}",
-                          "body[0].centre=[2.03,0.2,0.2]")
+                          "body[0].centre=[2.03,0.2,0.2]", "body[0].lengths=[0.4,0.4]")
         exact = 1.2 * 4 * 0.16 * 0.002 * (20 * math.pi) ** 2
         late = [abs(f) for f, t in zip(rows["body_0_force_x"], rows["time"], strict=True) if t > 0.1]
         self.assertAlmostEqual(exact, max(late), delta=0.05 * exact)
