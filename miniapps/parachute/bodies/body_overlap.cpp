@@ -8,7 +8,7 @@
 
 #include "common/scene/read.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
-#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/bodies/body_motion.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -18,21 +18,21 @@ using mesh::Vector;
 /// Part of the edges by which a body is displaced: surfaces that only touch then part.
 constexpr double displacement = 1e-3;
 
-struct Box {
+struct Extent {
   Vector low, high;
 };
 
 template <class Points>
-Box box_of(const Points& points) {
+Extent extent_of(const Points& points) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  Extent box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   for (const Vector& x : points)
     for (std::size_t axis = 0; axis < 3; ++axis)
       box.low[axis] = std::min(box.low[axis], x[axis]), box.high[axis] = std::max(box.high[axis], x[axis]);
   return box;
 }
 
-bool overlap(const Box& a, const Box& b) {
+bool overlap(const Extent& a, const Extent& b) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return false;
   return true;
@@ -42,7 +42,7 @@ bool overlap(const Box& a, const Box& b) {
 struct Surface {
   std::vector<Vector> positions;
   std::vector<std::array<int, 3>> triangles;
-  Box box;
+  Extent box;
 
   [[nodiscard]] Surface displaced(const Vector& by) const {
     Surface surface = *this;
@@ -54,14 +54,14 @@ struct Surface {
   }
 
   /// Appends the triangles that reach into a box to the parts of a pair.
-  void append_within(const Box& common, std::vector<Vector>& points,
+  void append_within(const Extent& common, std::vector<Vector>& points,
                      std::vector<std::array<int, 3>>& faces) const {
     const int first = static_cast<int>(points.size());
     points.insert(points.end(), positions.begin(), positions.end());
     for (const auto& corners : triangles) {
       std::array<Vector, 3> corner{};
       for (std::size_t k = 0; k < 3; ++k) corner[k] = positions[static_cast<std::size_t>(corners[k])];
-      if (overlap(box_of(corner), common))
+      if (overlap(extent_of(corner), common))
         faces.push_back({first + corners[0], first + corners[1], first + corners[2]});
     }
   }
@@ -71,7 +71,7 @@ struct Surface {
 bool meet(const Surface& a, const Surface& b, const Vector& by) {
   const Surface moved = b.displaced(by);
   if (!overlap(a.box, moved.box)) return false;
-  Box common{};
+  Extent common{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     common.low[axis] = std::max(a.box.low[axis], moved.box.low[axis]),
     common.high[axis] = std::min(a.box.high[axis], moved.box.high[axis]);
@@ -99,40 +99,24 @@ bool cross(const Surface& a, const Surface& b, double by) {
   return true;
 }
 
-/// Displacement of a body at a time, m.
-class Motion {
- public:
-  explicit Motion(const Body& body)
-      : _along{function(body, 0), function(body, 1), function(body, 2)}, _moves(body.moves()) {}
-
-  [[nodiscard]] bool moves() const { return _moves; }
-  [[nodiscard]] Surface moved(const mesh::Mesh& mesh, double time) const {
-    return Surface{mesh.rest, mesh.triangles, box_of(mesh.rest)}.displaced(
-        {_along[0]({}, time), _along[1]({}, time), _along[2]({}, time)});
-  }
-
- private:
-  static SpaceTimeFunction function(const Body& body, std::size_t axis) {
-    return SpaceTimeFunction(body.motion[axis].empty() ? "0" : body.motion[axis]);
-  }
-
-  std::array<SpaceTimeFunction, 3> _along;
-  bool _moves;
-};
+Surface surface_at(const mesh::Mesh& mesh, const BodyMotion& motion, double time) {
+  return Surface{mesh.rest, mesh.triangles, extent_of(mesh.rest)}.displaced(motion.at(time));
+}
 
 }  // namespace
 
 void check_body_overlaps(const scene::Table& root, FlowScene& scene) {
   if (scene.bodies.size() < 2) return;
-  std::vector<Motion> motions(scene.bodies.begin(), scene.bodies.end());
+  std::vector<BodyMotion> motions(scene.bodies.begin(), scene.bodies.end());
   std::vector<mesh::Mesh> meshes;
   for (const Body& body : scene.bodies) meshes.push_back(mesh_of(body));
-  const bool moves = std::ranges::any_of(motions, &Motion::moves);
+  const bool moves = std::ranges::any_of(motions, &BodyMotion::moves);
   constexpr int intervals = 256;
   for (int step = 0; step <= (moves ? intervals : 0); ++step) {
     const double time = scene.end_time * step / intervals;
     std::vector<Surface> surfaces;
-    for (std::size_t i = 0; i < meshes.size(); ++i) surfaces.push_back(motions[i].moved(meshes[i], time));
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+      surfaces.push_back(surface_at(meshes[i], motions[i], time));
     for (std::size_t i = 0; i < surfaces.size(); ++i)
       for (std::size_t k = 0; k < i; ++k) {
         const Body &body = scene.bodies[i], &other = scene.bodies[k];

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "common/scene/read.hpp"
+#include "miniapps/parachute/bodies/body_motion.hpp"
 #include "miniapps/parachute/canopy/periodic_images.hpp"
-#include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -34,25 +34,6 @@ void refuse(const Table& root, const FlowScene& scene, const SheetParts& parts,
                  ": the domain must be wider, or have other sides");
 }
 
-/// Displacements of a body, m.
-class Motion {
- public:
-  explicit Motion(const Body& body)
-      : _along{SpaceTimeFunction(text(body, 0)), SpaceTimeFunction(text(body, 1)),
-               SpaceTimeFunction(text(body, 2))} {}
-
-  [[nodiscard]] Vector at(double time) const {
-    return {_along[0]({}, time), _along[1]({}, time), _along[2]({}, time)};
-  }
-
- private:
-  static std::string text(const Body& body, std::size_t axis) {
-    return body.motion[axis].empty() ? "0" : body.motion[axis];
-  }
-
-  std::array<SpaceTimeFunction, 3> _along;
-};
-
 }  // namespace
 
 void check_images(const Table& root, const FlowScene& scene) {
@@ -62,7 +43,7 @@ void check_images(const Table& root, const FlowScene& scene) {
                                         scene.parameters.viscosity, scene.flags);
   const SheetParts parts = parts_of(scene.bodies, sheets);
   const auto lines = whole_lines(sheets, 0.0);
-  std::vector<Motion> motions(scene.bodies.begin(), scene.bodies.end());
+  std::vector<BodyMotion> motions(scene.bodies.begin(), scene.bodies.end());
   constexpr int intervals = 256;
   const bool moves = scene.bodies.size() > 1 && std::ranges::any_of(scene.bodies, &Body::moves);
   for (int i = 0; i <= (moves ? intervals : 0); ++i) {
