@@ -14,6 +14,7 @@ import options_program
 import parachute_program
 import springs_program
 from options_program import row
+from perf_program import CACHE
 
 CORES = len(os.sched_getaffinity(0))
 GAS = ["run.end_time=0.001", "output.times=[0.0]"]
@@ -41,6 +42,7 @@ class Choice(gas_program.GasTest):
     def test_one_core_takes_serial(self):
         self.assertEqual("serial", self.backend_of(gas_program.PROGRAM, "sod", *GAS, "mesh.cells=1024", first_core_only=True))
 
+    @unittest.skipIf("DROGUE_SANITIZE:BOOL=ON" in CACHE, "a sanitizer maps more than the limit")
     def test_threads_that_cannot_start_end_with_one_sentence(self):
         """Their stacks, 8 MiB each, exceed what the process may map."""
         limit = 2 << 30
