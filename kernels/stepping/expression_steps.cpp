@@ -26,17 +26,10 @@ std::vector<MotionInterval> expression_intervals(const device::ExpressionProgram
 }
 
 double shortest_interval(std::span<const MotionInterval> intervals, double begin, double end) {
-  constexpr double steps_between_jumps = 20.0;
-  double shortest = std::numeric_limits<double>::infinity(), last_jump = -shortest;
-  for (std::size_t i = 0; i < intervals.size() && intervals[i].begin < end; ++i) {
-    if (intervals[i].begins_with != 0) {
-      if (intervals[i].begin > begin)
-        shortest = std::min(shortest, (intervals[i].begin - last_jump) / steps_between_jumps);
-      last_jump = intervals[i].begin;
-    }
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < intervals.size() && intervals[i].begin < end; ++i)
     if (i + 1 == intervals.size() || intervals[i + 1].begin > begin)
       shortest = std::min(shortest, intervals[i].longest);
-  }
   return shortest;
 }
 

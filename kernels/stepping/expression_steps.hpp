@@ -15,8 +15,7 @@ namespace drogue::stepping {
                                                                std::span<const std::array<double, 3>> places,
                                                                double end);
 
-/// Least `longest` of the intervals between two times, s, or twentieth of the time from one jump to the next;
-/// infinite for none. Does not throw.
+/// Least `longest` of the intervals between two times, s; infinite for none. Does not throw.
 [[nodiscard]] double shortest_interval(std::span<const MotionInterval> intervals, double begin, double end);
 
 }  // namespace drogue::stepping

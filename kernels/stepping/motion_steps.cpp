@@ -198,7 +198,7 @@ class Division {
   /// Bounds dt between two jumps. Rates of a step are in part those before its beginning, so that a first
   /// step misses a part of what a jump changes, and the first one after a pulse adds as much.
   void divide_pulses() {
-    constexpr double steps = 16.0;
+    constexpr double steps = 20.0;
     auto jump = _intervals.end();
     for (auto interval = _intervals.begin(); interval != _intervals.end(); ++interval) {
       if (interval->begins_with == 0) continue;

@@ -26,7 +26,8 @@ struct PrescribedMotion {
 };
 
 /// Divides the time from 0 to `end`, s, > 0. A sine has some 20 intervals a period. A jump takes the time
-/// between two neighbouring numbers; its interval begins just before it. Values that are not finite count as
+/// between two neighbouring numbers; its interval begins just before it. `longest` is at most a twentieth of
+/// the time between two jumps. Values that are not finite count as
 /// zero. Motion that changes too often for a list of a million intervals keeps the shortest `longest` found.
 /// Throws std::bad_alloc.
 [[nodiscard]] std::vector<MotionInterval> motion_intervals(const PrescribedMotion& motion, double end);

@@ -113,10 +113,10 @@ TEST(FlowMotion, DividesThePulseBetweenTwoJumps) {
   const auto intervals = divided([](double t) { return t > 1.0 && t < 1.25 ? 1.0 : 0.0; }, 4.0, {1.0, 1.25});
   const int steps = steps_until(intervals, 4.0, 4.0, 1e3, [](double begin, double end) {
     if (begin > 0.99 && begin < 1.249) {
-      EXPECT_LE(end - begin, 0.25 / 15.0);
+      EXPECT_LE(end - begin, 0.25 / 19.0);
     }
   });
-  EXPECT_LT(steps, 24);
+  EXPECT_LT(steps, 28);
 }
 
 TEST(FlowMotion, FindsAShortPulseByTheConstantsOfItsExpression) {
