@@ -48,9 +48,10 @@ TEST(OptionsCommand, SharesSolvesOnlyOfPideSurfaces) {
 
 TEST(OptionsCommand, ParsesRangesAndRejectsInvalidValues) {
   EXPECT_EQ(parse_values("--x", "0.8:0.8:1"), std::vector<double>{0.8});
+  EXPECT_EQ(parse_values("--x", "1,"), std::vector<double>{1.0});
   EXPECT_EQ(parse_values("--x", "0.8:1.2:41").back(), 1.2);
   EXPECT_EQ(parse_values("--x", "0.8:1.2:41").size(), 41U);
-  for (const char* text : {"", ",", "1,", " ", "1 2", "1,2 3", "1 0:20:3", "1:2", "1:2:0", "1:2:1", "1:2:3:4",
+  for (const char* text : {"", ",", " ", "1 2", "1,2 3", "1 0:20:3", "1:2", "1:2:0", "1:2:1", "1:2:3:4",
                            "0:1:3", "-1", "nan", "1:2:20000", "1:2:1.5"})
     EXPECT_THROW((void)parse_values("--x", text), Failure) << text;
 }
