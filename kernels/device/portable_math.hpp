@@ -93,30 +93,20 @@ KOKKOS_INLINE_FUNCTION double cosine_series(double r) {
   return sum;
 }
 
-/// Sine of r plus a number of right angles, for |r| <= pi/4.
-KOKKOS_INLINE_FUNCTION double sine_in(int quadrant, double r) {
-  const double value = (quadrant & 1) != 0 ? cosine_series(r) : sine_series(r);
-  return (quadrant & 2) != 0 ? -value : value;
-}
-
-/// Cosine of r plus a number of right angles, for |r| <= pi/4.
-KOKKOS_INLINE_FUNCTION double cosine_in(int quadrant, double r) {
-  const double value = (quadrant & 1) != 0 ? sine_series(r) : cosine_series(r);
-  return quadrant == 1 || quadrant == 2 ? -value : value;
-}
-
 /// Sine of x (radians); NaN for |x| > 1e6, which spares kernels of known arguments the code of `wide_sin`.
 KOKKOS_INLINE_FUNCTION double sin(double x) {
   int quadrant = 0;
   const double r = reduced_angle(x, quadrant);
-  return sine_in(quadrant, r);
+  const double value = (quadrant & 1) != 0 ? cosine_series(r) : sine_series(r);
+  return (quadrant & 2) != 0 ? -value : value;
 }
 
 /// Cosine of x (radians); NaN for |x| > 1e6.
 KOKKOS_INLINE_FUNCTION double cos(double x) {
   int quadrant = 0;
   const double r = reduced_angle(x, quadrant);
-  return cosine_in(quadrant, r);
+  const double value = (quadrant & 1) != 0 ? sine_series(r) : cosine_series(r);
+  return quadrant == 1 || quadrant == 2 ? -value : value;
 }
 
 /// Argument reduction (Payne and Hanek) in integers, as `reduced_angle`, for 2^19 <= |x| < infinity: of x
@@ -166,14 +156,16 @@ KOKKOS_INLINE_FUNCTION double reduced_wide_angle(double x, int& quadrant) {
 KOKKOS_INLINE_FUNCTION double wide_sin(double x) {
   int quadrant = 0;
   const double r = reduced_wide_angle(x, quadrant);
-  return sine_in(quadrant, r);
+  const double value = (quadrant & 1) != 0 ? cosine_series(r) : sine_series(r);
+  return (quadrant & 2) != 0 ? -value : value;
 }
 
 /// Cosine of any finite x (radians), the same as `cos` as far as that goes.
 KOKKOS_INLINE_FUNCTION double wide_cos(double x) {
   int quadrant = 0;
   const double r = reduced_wide_angle(x, quadrant);
-  return cosine_in(quadrant, r);
+  const double value = (quadrant & 1) != 0 ? sine_series(r) : cosine_series(r);
+  return quadrant == 1 || quadrant == 2 ? -value : value;
 }
 
 /// Arc tangent, radians. Two half-angle steps reduce |x| <= 1 below tan(pi/16), where the series converges in
