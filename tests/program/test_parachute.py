@@ -175,7 +175,7 @@ class Failures(parachute_program.FlowTest):
             message = self.expect(4, "cavity", *QUIET, "--overwrite", sets=[
                 "flow.pressure='hypre-pfmg'", "flow.pressure_tolerance=1e-300", f"run.dt={step}",
                 "initial.velocity=['sin(3*x)*cos(2*y)', 'cos(x)*y', 0]"]).stderr
-            self.assertRegex(message, r"did not converge at the initial projection, t = 0 s; its relative residual is [0-9.]+e-1[0-9]: .*flow.pressure_tolerance above 1e-300\n$")
+            self.assertRegex(message, r"did not converge (at the initial projection|for the pressure at step 0), t = 0 s; its relative residual is [0-9.]+e-[01][0-9]: .*flow.pressure_tolerance above 1e-300\n$")
             self.assertNotIn("nan", message)
 
     def test_pressure_that_does_not_converge_is_no_output(self):
@@ -205,7 +205,7 @@ class Failures(parachute_program.FlowTest):
 
     def test_inflow_that_becomes_undefined_is_a_failure(self):
         """At an output, which is none of the times of the check."""
-        message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["1+1e-9/(10*t-2)", 0, 0]']).stderr
+        message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["1+0*sqrt(abs(10*t-2)-0.005)", 0, 0]']).stderr
         self.assertRegex(message, r"the prescribed velocity is not finite on the side x_low at step \d+, t = ")
         self.assertLessEqual(self.result("out")["time"], 0.2)
 
@@ -548,7 +548,7 @@ class Bodies(parachute_program.FlowTest):
 
     def test_all_kinds_of_bodies_run_and_continue(self):
         round_bodies = bad_bodies.ROUND[:bad_bodies.ROUND.index("[verify]")]
-        sets = ["run.end_time=0.4", "output={history_every=1,restart_every=8}"]
+        sets = ["run.end_time=0.4", "output={history_every=1,restart_every=8,fields=['pressure'],times=[0.2,0.4]}"]
         self.expect(0, self.write(round_bodies), *QUIET, sets=sets)
         printed = self.expect(0, self.write(round_bodies), "--print-scene").stdout
         self.assertIn("slip = true", printed)
@@ -558,7 +558,7 @@ class Bodies(parachute_program.FlowTest):
             self.assertGreater(rows[f"body_{body}_force_x"][-1], 0.0)
         half = self.folder / "half"
         self.expect(0, self.write(round_bodies), "--quiet", "--backend", "serial", "--out", half,
-                    sets=[*sets, "run.end_time=0.2"])
+                    sets=[*sets, "run.end_time=0.2", "output.times=[0.2]"])
         self.expect(0, self.write(round_bodies), "--quiet", "--backend", "serial", "--out", half, "--restart",
                     half / "restart.h5", sets=sets)
         again = self.history("half")

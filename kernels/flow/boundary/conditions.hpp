@@ -117,8 +117,8 @@ struct BoundaryTableFunctor {
   KOKKOS_FUNCTION void operator()(const int entry) const {
     Control& c = control();
     if (!stage.initial && c.trial.stop != stepping::Stop::running) return;
-    const double t = stepping::time_before_jump(
-        motion, motions, stage.initial ? c.now.time : c.now.time + stage.fraction * c.trial.dt);
+    const double end = stage.initial ? c.now.time : c.now.time + stage.fraction * c.trial.dt,
+                 t = stepping::time_before_jump(motion, motions, end);
     const MacGrid& g = grid;
     const TableEntry at = table_entry<ExecutionSpace>(g, side, entry);
     const int component = at.component, axis = side / 2;
@@ -134,8 +134,10 @@ struct BoundaryTableFunctor {
         point[at.axis[i]] = coordinate(at.axis[i], component, support[i].index + (is_next ? 1 : 0));
       }
       if (weight == 0.0) continue;
-      value += weight * device::evaluate(programs(static_cast<std::size_t>(component)), point[0], point[1],
-                                         point[2], t);
+      const device::ExpressionProgram& program = programs(static_cast<std::size_t>(component));
+      value += weight * device::evaluate(program, point[0], point[1], point[2], t);
+      // A pole is no jump: it stays not finite.
+      if (t != end) value += 0.0 * device::evaluate(program, point[0], point[1], point[2], end);
     }
     double& stored = table(static_cast<std::size_t>(first + entry));
     const double change = Kokkos::fabs(value - stored);
