@@ -175,7 +175,7 @@ class Failures(parachute_program.FlowTest):
             message = self.expect(4, "cavity", *QUIET, "--overwrite", sets=[
                 "flow.pressure='hypre-pfmg'", "flow.pressure_tolerance=1e-300", f"run.dt={step}",
                 "initial.velocity=['sin(3*x)*cos(2*y)', 'cos(x)*y', 0]"]).stderr
-            self.assertRegex(message, r"did not converge (at the initial projection|for the pressure at step 0), t = 0 s; its relative residual is [0-9.]+e-[01][0-9]: .*flow.pressure_tolerance above 1e-300\n$")
+            self.assertRegex(message, r"did not converge at the initial projection, t = 0 s; its relative residual is [0-9.]+e-1[0-9]: .*flow.pressure_tolerance above 1e-300\n$")
             self.assertNotIn("nan", message)
 
     def test_pressure_that_does_not_converge_is_no_output(self):
@@ -205,7 +205,7 @@ class Failures(parachute_program.FlowTest):
 
     def test_inflow_that_becomes_undefined_is_a_failure(self):
         """At an output, which is none of the times of the check."""
-        message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["1+0*sqrt(abs(10*t-2)-0.005)", 0, 0]']).stderr
+        message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["1+1e-9/(10*t-2)", 0, 0]']).stderr
         self.assertRegex(message, r"the prescribed velocity is not finite on the side x_low at step \d+, t = ")
         self.assertLessEqual(self.result("out")["time"], 0.2)
 

@@ -9,6 +9,7 @@
 #include "common/scene/read.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "miniapps/parachute/bodies/body_motion.hpp"
+#include "miniapps/parachute/canopy/periodic_images.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -140,25 +141,16 @@ void check_canopies_beside_bodies(const scene::Table& root, const FlowScene& sce
   if (scene.bodies.empty() || scene.canopies.empty()) return;
   const Sheets sheets =
       make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density, scene.parameters.viscosity);
-  const auto bodies_end = static_cast<int>(vertices_of(scene.bodies));
-  const auto canopies_end = static_cast<int>(sheets.canopies.back().end);
-  const auto is_of_canopy = [&](int vertex) { return vertex >= bodies_end && vertex < canopies_end; };
+  const SheetParts parts = parts_of(scene.bodies, sheets);
   for (const reference::Intersection& found :
        reference::intersections(sheets.positions, sheets.fabric.mesh.triangles, sheets.fabric.mesh.lines)) {
-    const int on_triangle = sheets.fabric.mesh.triangles[found.triangle][0];
-    const bool by_canopy = is_of_canopy(found.segment[0]) && on_triangle < bodies_end,
-               by_body = found.segment[0] < bodies_end && is_of_canopy(on_triangle);
-    if (!by_canopy && !by_body) continue;
-    const int of_canopy = by_canopy ? found.segment[0] : on_triangle,
-              of_body = by_canopy ? on_triangle : found.segment[0];
-    std::size_t canopy = 0, body = 0;
-    while (of_canopy >= static_cast<int>(sheets.canopies[canopy].end)) ++canopy;
-    for (int end = 0; body < scene.bodies.size(); ++body)
-      if (of_body < (end += static_cast<int>(scene.bodies[body].vertices()))) break;
-    const std::string name = "canopy[" + std::to_string(canopy) + "]";
-    scene::contradict(root, name + ".centre",
-                      name + " with its lines crosses body[" + std::to_string(body) +
-                          "] at the start: cloth and lines cannot pass a body");
+    const std::size_t one = parts.of(found.segment[0]),
+                      other = parts.of(sheets.fabric.mesh.triangles[found.triangle][0]),
+                      body = std::min(one, other), canopy = std::max(one, other);
+    if (body >= parts.bodies || canopy < parts.bodies) continue;
+    scene::contradict(root, parts.name(canopy) + ".centre",
+                      parts.name(canopy) + " with its lines crosses " + parts.name(body) +
+                          " at the start: cloth and lines cannot pass a body");
   }
 }
 

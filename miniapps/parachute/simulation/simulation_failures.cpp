@@ -41,8 +41,10 @@ std::string Simulation::flow_failure_text() {
   const double last_dt = _solver->progress().last_dt;
   const bool outgrows = failure.reason == flow::FailureReason::time_step && !(fixed_dt > 0.0) &&
                         failure.dt > 0.0 && failure.dt < last_dt;
-  // Without a finite velocity of the start the first step has no dt.
-  const bool is_initial = failure.step == 1 && std::isnan(failure.dt);
+  // Without a finite velocity of the start the first step has no dt, and before that step there is none.
+  const bool is_initial =
+      failure.step == 1 && (std::isnan(failure.dt) ||
+                            (failure.reason == flow::FailureReason::pressure_solver && failure.dt == 0.0));
   if (outgrows)
     text << "in a step of " << last_dt << " s the velocity has grown so much that the largest stable one is "
          << failure.dt << " s,";
@@ -82,6 +84,9 @@ void Simulation::require_converged_pressure(flow::CellField field) {
   const auto solve = _solver->last_pressure_solve();
   if (field != flow::CellField::pressure || !solve || solve->residual <= _scene.parameters.pressure_tolerance)
     return;
+  // An output at the start comes before the first step, which names a start that failed.
+  if (_solver->failure().reason == flow::FailureReason::pressure_solver)
+    throw Failure(ExitCode::numerical_failure, flow_failure_text());
   throw Failure(ExitCode::numerical_failure, flow::failure_text(flow::FailureReason::pressure_solver) +
                                                  (" for the pressure at " + now_text()) +
                                                  residual_text(solve->residual));
