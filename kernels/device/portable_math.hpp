@@ -152,6 +152,8 @@ KOKKOS_INLINE_FUNCTION double reduced_wide_angle(double x, int& quadrant) {
   return is_large ? reduced_large_angle(x, quadrant) : reduced_angle(x, quadrant);
 }
 
+// Written out as `sin` and `cos` are: with a function in common, the compiler fused those otherwise from one
+// instance of a backend to the next, and options had other bits.
 /// Sine of any finite x (radians), the same as `sin` as far as that goes.
 KOKKOS_INLINE_FUNCTION double wide_sin(double x) {
   int quadrant = 0;

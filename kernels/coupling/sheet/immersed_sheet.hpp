@@ -235,8 +235,7 @@ class ImmersedSheet {
   [[nodiscard]] const GridTransfer<ExecutionSpace>& transfer() const { return _transfer; }
 
   /// Sets the force and the acceleration of the air to zero, as before the first step, but beside closing
-  /// sheets to that of what drives the air. Asynchronous. Does not
-  /// throw.
+  /// sheets to that of what drives the air. Asynchronous. Does not throw.
   void forget_steps(const ExecutionSpace& space) const {
     Kokkos::deep_copy(space, _filtered.mean, 0.0);
     Kokkos::deep_copy(space, _filtered.defect, 0.0);
