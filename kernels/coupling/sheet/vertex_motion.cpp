@@ -27,13 +27,9 @@ std::vector<stepping::MotionInterval> with_short_first_steps(
   std::vector<stepping::MotionInterval> result;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     stepping::MotionInterval part = intervals[i];
-    double time = cfl / part.rate;  // infinite at rest
-    if (std::isfinite(time)) {
-      // A power of two, since another end of the run changes the last digits of the first rate.
-      int exponent = 0;
-      std::frexp(time, &exponent);
-      time = std::ldexp(0.5, exponent);
-    }
+    // The nearest power of two, since another end of the run changes the first rate a little; it is infinite at
+    // rest.
+    const double time = std::exp2(std::round(std::log2(cfl / part.rate)));
     if ((i == 0 || part.begins_with != 0) && time < settling_steps * part.longest) {
       result.push_back({part.begin, time / settling_steps, part.rate, part.begins_with});
       if (i + 1 < intervals.size() && part.begin + time >= intervals[i + 1].begin) continue;
