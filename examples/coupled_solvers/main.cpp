@@ -71,8 +71,8 @@ int run(int steps) {
   const int vertices = fabric.vertices();
   const coupling::GridTransfer<ExecutionSpace> transfer(space, flow::coupling_grid(flow.grid()),
                                                         coupling::DeltaKernel::cbs43, vertices);
-  const auto beside = fabric::make_points<ExecutionSpace>("example::air", n * n);
-  const auto force = fabric::make_points<ExecutionSpace>("example::force_on_air", n * n);
+  const fabric::PointsView<ExecutionSpace> beside("example::air", n * n);
+  const fabric::PointsView<ExecutionSpace> force("example::force_on_air", n * n);
   const auto [positions, velocities] = fabric.state();
   // Where the flow keeps its velocity and takes forces per volume.
   const auto air_velocity = flow::face_views<ExecutionSpace>(flow.grid(), flow.velocity());
