@@ -1,7 +1,3 @@
-#include <Kokkos_Core.hpp>
-#include <cmath>
-#include <numbers>
-
 #include "common/scene/codec.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"
@@ -12,7 +8,7 @@
 // drogue-heat: u_t = u_xx on the unit interval with periodic ends, from sin(2 pi x), by explicit Euler steps.
 using namespace drogue;
 using namespace drogue::framework;
-constexpr double k = 2.0 * std::numbers::pi;  // wave number, 1/m
+constexpr double k = 6.283185307179586;  // wave number, 1/m
 
 struct HeatData {
   std::string description;
@@ -22,21 +18,19 @@ struct HeatData {
   std::optional<double> linf;  // tolerance of the error
 };
 
-/// Step of cell i. c: dt / dx^2, times the diffusivity of 1 m^2/s.
-template <class View>
-struct HeatStepFunctor {
-  View u, next;  // temperature, K
-  double c;
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    const int n = static_cast<int>(u.extent(0));
-    next(i) = u(i) + c * (u((i + 1) % n) - 2.0 * u(i) + u((i + n - 1) % n));
-  }
-};
-
 template <class ExecutionSpace>
 struct Heat final : Simulation {
   using View = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
-  using Host = Kokkos::View<double*, Kokkos::HostSpace>;
+  /// Step of cell i. c: dt / dx^2, times the diffusivity of 1 m^2/s.
+  struct StepFunctor {
+    View u, next;  // temperature, K
+    double c;
+    KOKKOS_FUNCTION void operator()(const int i) const {
+      const int n = static_cast<int>(u.extent(0));
+      next(i) = u(i) + c * (u((i + 1) % n) - 2.0 * u(i) + u((i + n - 1) % n));
+    }
+  };
+
   explicit Heat(const HeatData& data) : _data(data), _n(static_cast<int>(data.cells)) {}
   const OutputRequest& output() const override { return _data.output; }
   EndTime end_time() const override { return {_data.end_time, "end_time"}; }
@@ -65,9 +59,14 @@ struct Heat final : Simulation {
   }
   std::vector<run::Column> history_columns() const override { return {{"u_0", "K"}}; }
   HistoryRow row() override { return {_now.time, {download()[0]}}; }
+  void write_mesh(run::FieldSink& fields) const override {
+    std::vector<double> x(_n);
+    for (int i = 0; i < _n; ++i) x[i] = (i + 0.5) / _n;
+    fields.add_mesh({"x", {x.size()}, "m", "cell", "cell centres"}, x);
+  }
   std::vector<run::DatasetSpec> field_specs() const override { return {{"u", {_u.size()}, "K", "cell", ""}}; }
   FieldsTask snapshot() override {
-    return [u = download()](run::FieldSink& fields) { fields.write("u", 0, u); };
+    return [u = download()](run::FieldSink& to) { to.write("u", 0, u); };
   }
   ExitCode verify(const run::RunDirectory*, run::ResultDocument& result) override {
     const std::vector<double> u = download(), expected = exact();
@@ -85,14 +84,14 @@ struct Heat final : Simulation {
   /// Enqueues a step that ends at `target`, s, at the latest. Asynchronous.
   void enqueue_step(double target) {
     const double left = target - _now.time, dt = std::min(0.4 / (_n * _n), left);
-    device::launch_each(_instance.space(), "heat::step", _n, HeatStepFunctor<View>{_u, _next, dt * _n * _n});
+    device::launch_each(_instance.space(), "heat::step", _n, StepFunctor{_u, _next, dt * _n * _n});
     std::swap(_u, _next);
     _now = {_now.step + 1, dt < left ? _now.time + dt : target};
   }
-  void upload(std::vector<double> u) const { Kokkos::deep_copy(_u, Host(u.data(), _n)); }
+  void upload(std::vector<double> u) const { Kokkos::deep_copy(_u, typename View::HostMirror(u.data(), _n)); }
   std::vector<double> download() const {
     std::vector<double> u(_n);
-    Kokkos::deep_copy(Host(u.data(), _n), _u);  // waits for all kernels
+    Kokkos::deep_copy(typename View::HostMirror(u.data(), _n), _u);  // waits for all kernels
     return u;
   }
   const HeatData& _data;
