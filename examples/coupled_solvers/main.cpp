@@ -114,5 +114,5 @@ int main(int argc, char** argv) try {
   const int steps = argc > 2 ? std::stoi(argv[2]) : 64;
   return device::dispatch(backend, [=]<class ExecutionSpace>() { return run<ExecutionSpace>(steps); });
 } catch (const std::exception& error) {
-  return std::fprintf(stderr, "%s\n", error.what()), 2;
+  return std::fprintf(stderr, "%s\nusage: coupled_solvers [BACKEND [STEPS]]\n", error.what()), 2;
 }

@@ -52,6 +52,6 @@ int main(int argc, char** argv) try {
     std::printf("%.5f %.5f %.4f\n", put.price, put.error, put.delta);
   }
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "%s\n", error.what());
+  std::fprintf(stderr, "%s\nusage: option_prices [BACKEND]\n", error.what());
   return 2;
 }
