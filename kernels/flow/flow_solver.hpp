@@ -67,9 +67,6 @@ class FlowSolver {
   [[nodiscard]] const MacGrid& grid() const { return _grid; }
   /// Velocity with ghost cells, m/s; valid after the kernels enqueued so far. Does not throw.
   [[nodiscard]] const Values& velocity() const { return _velocity; }
-  /// Kinematic pressure at the cells that acted in the last step, x fastest, m^2/s^2: of second order at the
-  /// middle of that step, and zero before the first. Does not throw.
-  [[nodiscard]] const Values& pressure() const { return _pressure; }
   /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless
   /// `Parameters::external_force`. On sides it acts only on outflows. Other kernels may write it between
   /// steps; it keeps its values. Does not throw.

@@ -17,23 +17,9 @@
 
 namespace drogue::gas {
 
-/// Device state of a gas solver.
-template <class ExecutionSpace>
-struct GasState {
-  /// Conserved fields of the cells, shape (cells, 3): kg/m^3, kg/(m^2 s), J/m^3. Steps rotate the buffers.
-  FieldsView<ExecutionSpace> buffer[3];
-  Kokkos::View<const Control, typename ExecutionSpace::memory_space> control;
-
-  /// Fields of the last accepted step, in the units of `buffer` (kg, m, s, J); to be called in kernels. Does
-  /// not throw.
-  [[nodiscard]] KOKKOS_FUNCTION const FieldsView<ExecutionSpace>& now() const {
-    return buffer[control().restart.current];
-  }
-};
-
-/// Gas solver on the caller's instance of an execution space, for coupling to other kernels. It owns three
-/// field buffers, a device-resident control block and two captured steps, with and without the flux limiter;
-/// the control block decides which of the two has an effect.
+/// Gas solver on the caller's instance of an execution space. It owns three field buffers, a device-resident
+/// control block and two captured steps, with and without the flux limiter; the control block decides which
+/// of the two has an effect.
 ///
 /// All work is enqueued on the instance, which must outlive the solver; on CUDA it must have a stream of its
 /// own. Functions that `Solver` declares are documented in `Solver`.
@@ -42,21 +28,6 @@ class GasSolver {
  public:
   /// Throws std::runtime_error if memory runs out.
   GasSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters);
-
-  /// Views of the state, which kernels on the same instance may read between steps without a copy or fence.
-  /// Does not throw.
-  [[nodiscard]] GasState<ExecutionSpace> state() const {
-    return {{_setup.buffer[0], _setup.buffer[1], _setup.buffer[2]}, _setup.control};
-  }
-
-  /// Enqueues the begin of an advance to `target`, s, after `start` or `restore`. Asynchronous. Throws
-  /// std::runtime_error if a launch fails.
-  void enqueue_begin(double target);
-
-  /// Enqueues one launch: one step with dt from the device, or none after the target. With
-  /// Positivity::automatic a step that must be repeated with the limiter is taken by a later launch.
-  /// Asynchronous; the caller bounds the launches in flight. Throws std::runtime_error if a launch fails.
-  void enqueue_step();
 
   void upload(std::int64_t first, const ConstConservedFields& fields);
   void download(std::int64_t first, const ConservedFields& fields);
@@ -474,20 +445,6 @@ template <class ExecutionSpace>
 Stop GasSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every,
                                         const RowSink& rows, const Poll& poll) {
   return _loop.advance({target, pause_step, row_every}, DeviceSteps{*this, rows}, poll);
-}
-
-template <class ExecutionSpace>
-void GasSolver<ExecutionSpace>::enqueue_begin(double target) {
-  const RowSink no_rows;
-  DeviceSteps{*this, no_rows}.begin({target}, -1);
-  _loop.count_launch();
-}
-
-template <class ExecutionSpace>
-void GasSolver<ExecutionSpace>::enqueue_step() {
-  const RowSink no_rows;
-  DeviceSteps{*this, no_rows}.enqueue(_loop.status().variant, 1);
-  _loop.count_launch();
 }
 
 DROGUE_EXTERN_INSTANCES(class GasSolver)

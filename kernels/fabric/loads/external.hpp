@@ -19,13 +19,10 @@ struct External {
   Kokkos::View<double** [3], Kokkos::LayoutLeft, Memory> direction;  ///< (vertices, loads, 3), N
   ProgramsView<ExecutionSpace> pressure;                             ///< strengths of pressures, Pa
   Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;         ///< (vertices, pressures)
-  ListView<ExecutionSpace, double> pressure_values;                  ///< (vertices), Pa, set by the caller
   SlicedEllViews<ExecutionSpace, 3> surface;                         ///< rings; their values are not read
   SlicedEllViews<ExecutionSpace, 1> dashpots, bending;
 
-  [[nodiscard]] KOKKOS_FUNCTION bool has_pressure() const {
-    return pressure.extent(0) > 0 || pressure_values.extent(0) > 0;
-  }
+  [[nodiscard]] KOKKOS_FUNCTION bool has_pressure() const { return pressure.extent(0) > 0; }
 
   /// `sum`, N, and the timed loads on vertex i, at rest at `at_rest`, m, at time `t`, s.
   KOKKOS_INLINE_FUNCTION Vector3<double> with_timed_loads(Vector3<double> sum, int i,
@@ -42,7 +39,6 @@ struct External {
     double sum = 0.0;
     for (int k = 0; k < static_cast<int>(pressure.extent(0)); ++k)
       sum += weight(i, k) * device::evaluate(pressure(k), at_rest.x, at_rest.y, at_rest.z, t);
-    if (pressure_values.extent(0) > 0) sum += pressure_values(i);
     return sum;
   }
 };

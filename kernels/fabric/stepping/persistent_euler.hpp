@@ -82,8 +82,6 @@ struct PersistentEulerFunctor {
     store_points(next, member.team_rank(), own.x);
     // After the message, which other teams wait for.
     record_divergence(of.monitor, step + 1, own.vertex, own.x, own.v);
-    if constexpr (has_vertex_force<VertexForce>)
-      of.vertex_force.end_step(own.x, own.v, &own.inverse_mass, own.vertex, step + 1);
   }
 
   template <class Member>

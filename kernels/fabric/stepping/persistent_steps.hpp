@@ -199,11 +199,7 @@ struct PersistentSteps {
                  {{position.x, position.y, position.z}});
     store_points(points, member.team_rank(), position);
     // After the message, which other teams wait for.
-    if (stage == 3) {
-      record_divergence(monitor, steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
-      if constexpr (has_vertex_force<VertexForce>)
-        vertex_force.end_step(own.x, own.v, &own.inverse_mass, own.vertex, steps_before() + done / 4 + 1);
-    }
+    if (stage == 3) record_divergence(monitor, steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
   }
 
   /// Gets the positions of the halo that its teams put at the end of stage `done` and stores them in

@@ -78,8 +78,6 @@ struct RungeKuttaFunctor {
       const Vector3<R> end_x = end_position(dt, x_n, v_n, v2, v3, v_now),
                        end_v = end_velocity(dt, v_n, v2, v3, v_now, a);
       store_end(monitor, x, v, i, end_x, end_v);
-      if constexpr (has_vertex_force<VertexForce>)
-        vertex_force.end_step(end_x, end_v, &fabric.inverse_mass(i), i, monitor.steps(1) + 1);
       return;
     }
     if (stage == 1 && pack == 0) monitor.steps(1) = monitor.steps(0);
@@ -162,8 +160,6 @@ struct RungeKuttaHalfFunctor {
                  end_x = end_position(dt, load_points<double>(x, i), v_n, v2, v3, v4),
                  end_v = end_velocity(dt, v_n, v2, v3, v4, a4);
     store_end(monitor, x, v, i, end_x, end_v);
-    if constexpr (has_vertex_force<VertexForce>)
-      vertex_force.end_step(end_x, end_v, &fabric.inverse_mass(i), i, monitor.steps(1) + 1);
   }
 };
 
@@ -222,8 +218,8 @@ struct VerletFunctor {
     store_points(v, i, velocity);
   }
 
-  /// Both half kicks, in m/s, with a VertexForce, which is evaluated for each since `end_step` may change its
-  /// state.
+  /// Both half kicks, in m/s, with a VertexForce, which is evaluated for each since the first changes the
+  /// velocity.
   KOKKOS_FUNCTION void with_vertex_force(int pack, Vector3<R> velocity) const {
     if constexpr (has_vertex_force<VertexForce>) {
       const int i = pack * lanes;
@@ -238,7 +234,6 @@ struct VerletFunctor {
       if (ends) {
         kick();
         record_divergence(monitor, step, i, position, velocity);
-        vertex_force.end_step(position, velocity, inverse_mass, i, step);
       }
       if (begins) {
         kick();
@@ -282,8 +277,6 @@ struct SymplecticEulerFunctor {
     store_points(next, i, end);
     store_points(v, i, velocity);
     record_divergence(monitor, step + 1, i, end, velocity);
-    if constexpr (has_vertex_force<VertexForce>)
-      vertex_force.end_step(end, velocity, inverse_mass, i, step + 1);
     if (pack == 0) monitor.steps(1 - parity) = step + 1;
   }
 };
