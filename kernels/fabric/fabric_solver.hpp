@@ -193,7 +193,13 @@ class FabricSolver {
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  double fraction, bool with_dashpots) const {
-    return {_external, _dead.total, x, v, _fabric.load, stage_time(fraction), with_dashpots};
+    return {.external = _external,
+            .dead = _dead.total,
+            .x = x,
+            .v = v,
+            .out = _fabric.load,
+            .stage_time = stage_time(fraction),
+            .with_dashpots = with_dashpots};
   }
   /// Enqueues the evaluation of `_fabric.load`.
   void evaluate_loads(const Points& x, const Points& v, double fraction, bool with_dashpots) const {
@@ -459,7 +465,11 @@ void FabricSolver<ExecutionSpace, VertexForce>::apply_dirichlet(const Points& x,
                                                                 double fraction,
                                                                 bool checks_divergence) const {
   launch_each(space(), "drogue::fabric::dirichlet", static_cast<int>(_dirichlet->vertex.extent(0)),
-              DirichletFunctor<ExecutionSpace>{*_dirichlet, x, v, stage_time(fraction), checks_divergence});
+              DirichletFunctor<ExecutionSpace>{.prescribed = *_dirichlet,
+                                               .x = x,
+                                               .v = v,
+                                               .stage_time = stage_time(fraction),
+                                               .checks_divergence = checks_divergence});
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -467,15 +477,15 @@ template <ConstitutiveModel model, bool last>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_half(const char* label) const {
   launch_packs(space(), label, _padded,
                RungeKuttaHalfFunctor<ExecutionSpace, model, last, VertexForce>{
-                   _fabric,
-                   _x,
-                   _v,
-                   _next,
-                   _other,
-                   {_stage_velocity[0], _stage_velocity[1]},
-                   _monitor,
-                   _time.dt,
-                   vertex_force_term()});
+                   .fabric = _fabric,
+                   .x = _x,
+                   .v = _v,
+                   .third = _next,
+                   .fourth = _other,
+                   .velocity = {_stage_velocity[0], _stage_velocity[1]},
+                   .monitor = _monitor,
+                   .dt = _time.dt,
+                   .vertex_force = vertex_force_term()});
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -499,16 +509,16 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
       evaluate_loads(at[stage], stage == 0 ? _v : _stage_velocity[stage - 1], before[stage], _has_dashpots);
     launch_packs(space(), "drogue::fabric::rk4_stage", _padded,
                  RungeKuttaFunctor<ExecutionSpace, model, VertexForce>{
-                     _fabric,
-                     _x,
-                     _v,
-                     at[stage],
-                     next[stage],
-                     {_stage_velocity[0], _stage_velocity[1], _stage_velocity[2]},
-                     _monitor,
-                     _time.dt,
-                     stage,
-                     vertex_force_term()});
+                     .fabric = _fabric,
+                     .x = _x,
+                     .v = _v,
+                     .at = at[stage],
+                     .next = next[stage],
+                     .velocity = {_stage_velocity[0], _stage_velocity[1], _stage_velocity[2]},
+                     .monitor = _monitor,
+                     .dt = _time.dt,
+                     .stage = stage,
+                     .vertex_force = vertex_force_term()});
     if (moves_pins())
       apply_dirichlet(next[stage], stage == 3 ? _v : _stage_velocity[stage], after[stage], stage == 3);
   }
@@ -519,14 +529,28 @@ template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_verlet(bool ends, bool begins) {
   if (_has_load_kernel) evaluate_loads(_x, _v, 0.0, false);
   launch_packs(space(), "drogue::fabric::verlet", _padded,
-               VerletFunctor<ExecutionSpace, model, VertexForce>{
-                   _fabric, _x, _v, _next, _monitor, _parameters.damping, _time.dt, _parity, ends, begins,
-                   !_has_dashpots, vertex_force_term()});
+               VerletFunctor<ExecutionSpace, model, VertexForce>{.fabric = _fabric,
+                                                                 .x = _x,
+                                                                 .v = _v,
+                                                                 .next = _next,
+                                                                 .monitor = _monitor,
+                                                                 .damping = _parameters.damping,
+                                                                 .dt = _time.dt,
+                                                                 .parity = _parity,
+                                                                 .ends = ends,
+                                                                 .begins = begins,
+                                                                 .drifts = !_has_dashpots,
+                                                                 .vertex_force = vertex_force_term()});
   if (!begins) return;
   if (_has_dashpots) {
     launch_each(space(), "drogue::fabric::dashpot_damping", _vertices,
-                DashpotDampingFunctor<ExecutionSpace>{_fabric, _external.dashpots, _x, _v, _damped_v, _next,
-                                                      _time.dt});
+                DashpotDampingFunctor<ExecutionSpace>{.fabric = _fabric,
+                                                      .dashpots = _external.dashpots,
+                                                      .x = _x,
+                                                      .v = _v,
+                                                      .damped_v = _damped_v,
+                                                      .next = _next,
+                                                      .dt = _time.dt});
     std::swap(_v, _damped_v);
   }
   exchange_positions();
@@ -542,8 +566,15 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_symplectic_euler() {
     if (moves_pins()) apply_dirichlet(_next, _v, 1.0, false);
   launch_packs(
       space(), "drogue::fabric::symplectic_euler", _padded,
-      SymplecticEulerFunctor<ExecutionSpace, model, VertexForce>{
-          _fabric, _x, _v, _next, _monitor, _parameters.damping, _time.dt, _parity, vertex_force_term()});
+      SymplecticEulerFunctor<ExecutionSpace, model, VertexForce>{.fabric = _fabric,
+                                                                 .x = _x,
+                                                                 .v = _v,
+                                                                 .next = _next,
+                                                                 .monitor = _monitor,
+                                                                 .damping = _parameters.damping,
+                                                                 .dt = _time.dt,
+                                                                 .parity = _parity,
+                                                                 .vertex_force = vertex_force_term()});
   exchange_positions();
 }
 
@@ -564,8 +595,14 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_persistent_steps(std::in
     restore_addresses();  // after a single step of another kernel
     FabricViews<ExecutionSpace> fabric = _fabric;
     fabric.load = _dead.total;
-    const PersistentInputs<ExecutionSpace, VertexForce> inputs{
-        fabric, _x, _v, _monitor, _time, vertex_force_term(), _external, _has_load_kernel};
+    const PersistentInputs<ExecutionSpace, VertexForce> inputs{.fabric = fabric,
+                                                               .x = _x,
+                                                               .v = _v,
+                                                               .monitor = _monitor,
+                                                               .time = _time,
+                                                               .vertex_force = vertex_force_term(),
+                                                               .external = _external,
+                                                               .has_loads = _has_load_kernel};
     if constexpr (RelaxesVelocity<VertexForce>)
       launch_persistent_euler<model>(space(), *_persistent, inputs, _parameters.damping, steps,
                                      _loop.has_captured_steps());
@@ -655,7 +692,8 @@ void FabricSolver<ExecutionSpace, VertexForce>::restore_addresses() {
   std::swap(_x, _next);
   if (_damped_v.extent(0) > 0) std::swap(_v, _damped_v);
   launch_each(space(), "drogue::fabric::restore_addresses", _padded,
-              RestoreAddressesFunctor<ExecutionSpace>{_monitor, x, v, _x, _v});
+              RestoreAddressesFunctor<ExecutionSpace>{
+                  .monitor = _monitor, .from_x = x, .from_v = v, .x = _x, .v = _v});
   _parity = 0;
 }
 
@@ -684,8 +722,11 @@ void FabricSolver<ExecutionSpace, VertexForce>::synchronize() {
   if (_loop.has_captured_steps()) _time.step = stepping::completed_steps(space(), _monitor, _parity);
   if (!first) return;
   _time.step = first->step - 1;
-  _failure = StepFailure{_contact ? _contact->reason(first->step) : FailureReason::not_finite, first->index,
-                         first->step, _time.time(), _time.dt};
+  _failure = StepFailure{.reason = _contact ? _contact->reason(first->step) : FailureReason::not_finite,
+                         .index = first->index,
+                         .step = first->step,
+                         .time = _time.time(),
+                         .dt = _time.dt};
   _time.step = first->checkpoint_step;
 }
 

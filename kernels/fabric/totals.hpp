@@ -117,9 +117,15 @@ class TotalsEvaluator {
                   const PointsView<ExecutionSpace>& v, const PointsView<ExecutionSpace>& pull,
                   const SlicedEllViews<ExecutionSpace, 1>& bending) const {
     dispatch_model(material, [&]<ConstitutiveModel model>() {
-      Kokkos::parallel_for(
-          "drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels.front().extent(0)),
-          TotalsFunctor<ExecutionSpace, model>{fabric, x, v, pull, bending, _levels.front(), _vertices});
+      Kokkos::parallel_for("drogue::fabric::totals",
+                           Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels.front().extent(0)),
+                           TotalsFunctor<ExecutionSpace, model>{.fabric = fabric,
+                                                                .x = x,
+                                                                .v = v,
+                                                                .pull = pull,
+                                                                .bending = bending,
+                                                                .out = _levels.front(),
+                                                                .vertices = _vertices});
     });
     for (std::size_t level = 1; level < _levels.size(); ++level)
       Kokkos::parallel_for("drogue::fabric::sum",
@@ -127,7 +133,12 @@ class TotalsEvaluator {
                            SumFunctor<ExecutionSpace>{_levels[level - 1], _levels[level]});
     device::copy(space, _mirror, _levels.back());
     space.fence("drogue::fabric::totals");
-    Totals t{_mirror(0, 0), _mirror(0, 1), _mirror(0, 2), _mirror(0, 3), {}, {}, 0.0, 0.0};
+    Totals t{.kinetic = _mirror(0, 0),
+             .elastic = _mirror(0, 1),
+             .gravity = _mirror(0, 2),
+             .load = _mirror(0, 3),
+             .contact = 0.0,
+             .friction = 0.0};
     for (std::size_t axis = 0; axis < 3; ++axis)
       t.momentum[axis] = _mirror(0, 4 + axis), t.angular_momentum[axis] = _mirror(0, 7 + axis);
     return t;

@@ -120,9 +120,13 @@ struct VertexForceTerm {
       using Lanes = device::Access<R>;
       return Vector3<double>{Lanes::lane(v.x, lane), Lanes::lane(v.y, lane), Lanes::lane(v.z, lane)};
     };
-    return {one(position), one(velocity), one(force),
-            inverse_mass,  vertex,        stepping::stage_time(origin, steps, part),
-            origin.dt};
+    return {.position = one(position),
+            .velocity = one(velocity),
+            .force = one(force),
+            .inverse_mass = inverse_mass,
+            .vertex = vertex,
+            .time = stepping::stage_time(origin, steps, part),
+            .dt = origin.dt};
   }
 };
 

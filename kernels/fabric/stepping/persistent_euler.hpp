@@ -41,7 +41,7 @@ struct PersistentEulerFunctor {
                                   const TeamTable& next) const {
     const auto& of = pairs.of;
     const Vector3<double> zero{0.0, 0.0, 0.0};
-    OwnVertex own{-1, -1, zero, zero, zero, zero, zero, zero, 0.0, zero};
+    OwnVertex own;
     if (const int rank = member.team_rank(); rank < of.patches.team) {
       const int at = member.league_rank() * of.patches.team + rank;
       own.vertex = of.patches.vertex(at), own.message = of.patches.message(at);

@@ -33,12 +33,12 @@ struct PersistentPairsFunctor {
     const PairRow at = of.patches.row(row);
     const int next = at.slot + lane, before = next - slice, last = at.triangles == 2 ? next + slice : next;
     const double squared = slots.value(next, 0);
-    return {at.vertex + lane,
-            next - first_slot,
-            at.triangles,
-            {slots.neighbour(before), slots.neighbour(next), slots.neighbour(last)},
-            {stored_triangle(slots.value, slots.value(before, 0), squared, next),
-             stored_triangle(slots.value, squared, slots.value(last, 0), last)}};
+    return {.vertex = at.vertex + lane,
+            .pulls = next - first_slot,
+            .triangles = at.triangles,
+            .neighbour = {slots.neighbour(before), slots.neighbour(next), slots.neighbour(last)},
+            .rest = {stored_triangle(slots.value, slots.value(before, 0), squared, next),
+                     stored_triangle(slots.value, squared, slots.value(last, 0), last)}};
   }
 
   KOKKOS_FUNCTION void pull(const Pair& pair, const TeamTable& points, const TeamTable& pulls) const {

@@ -139,7 +139,14 @@ struct PersistentStepFunctor {
     std::uint64_t epoch = begun;
     for (std::int64_t done = 0;; ++done, ++epoch) {
       if (!step.run(member, tile, current,
-                    PersistentStepHooks<Member>{*this, member, tile, team, epoch, done, dt}, team.reduction))
+                    PersistentStepHooks<Member>{.self = *this,
+                                                .member = member,
+                                                .tile = tile,
+                                                .team = team,
+                                                .epoch = epoch,
+                                                .done = done,
+                                                .dt = dt},
+                    team.reduction))
         break;
       dt = team.trial.dt;
       current = (current + result_buffer()) % 3;
