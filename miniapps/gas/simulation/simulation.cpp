@@ -45,13 +45,19 @@ std::string precision_name(const gas::Parameters& parameters) {
 
 run::DatasetSpec field_spec(const std::string& name, std::int64_t cells) {
   const std::vector<std::uint64_t> shape = {static_cast<std::uint64_t>(cells)};
-  if (name == "rho") return {name, shape, "kg/m^3", "cell", "density"};
-  if (name == "u") return {name, shape, "m/s", "cell", "velocity"};
-  return {name, shape, "Pa", "cell", "pressure"};
+  if (name == "rho")
+    return {.name = name, .shape = shape, .units = "kg/m^3", .centering = "cell", .description = "density"};
+  if (name == "u")
+    return {.name = name, .shape = shape, .units = "m/s", .centering = "cell", .description = "velocity"};
+  return {.name = name, .shape = shape, .units = "Pa", .centering = "cell", .description = "pressure"};
 }
 
 run::DatasetSpec cell_centre_spec(std::int64_t cells) {
-  return {"x", {static_cast<std::uint64_t>(cells)}, "m", "cell", "cell centres"};
+  return {.name = "x",
+          .shape = {static_cast<std::uint64_t>(cells)},
+          .units = "m",
+          .centering = "cell",
+          .description = "cell centres"};
 }
 
 Simulation::Simulation(const GasScene& scene, const framework::SimulationSettings& settings)

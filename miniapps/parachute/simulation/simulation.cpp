@@ -28,12 +28,18 @@ CellField cell_field(const std::string& name) {
 
 run::DatasetSpec field_spec(const std::string& name, const std::array<int, 3>& cells) {
   std::vector<std::uint64_t> shape(cells.begin(), cells.end());
-  if (name == "pressure") return {name, shape, "Pa", "cell", "pressure"};
+  if (name == "pressure")
+    return {.name = name, .shape = shape, .units = "Pa", .centering = "cell", .description = "pressure"};
   if (name == "q_criterion")
-    return {name, shape, "1/s^2", "cell", "half of squared rotation rate less squared strain rate"};
+    return {.name = name,
+            .shape = shape,
+            .units = "1/s^2",
+            .centering = "cell",
+            .description = "half of squared rotation rate less squared strain rate"};
   shape.push_back(3);
-  if (name == "velocity") return {name, shape, "m/s", "cell", "velocity"};
-  return {name, shape, "1/s", "cell", "vorticity"};
+  if (name == "velocity")
+    return {.name = name, .shape = shape, .units = "m/s", .centering = "cell", .description = "velocity"};
+  return {.name = name, .shape = shape, .units = "1/s", .centering = "cell", .description = "vorticity"};
 }
 
 /// Flow with all sheets of a scene. Sheets whose motion is prescribed need no steps of their own.
