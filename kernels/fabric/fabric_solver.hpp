@@ -824,8 +824,8 @@ Totals FabricSolver<ExecutionSpace, VertexForce>::totals() {
   synchronize();
   FabricViews<ExecutionSpace> with_dead_loads = _fabric;
   with_dead_loads.load = _dead.total;
-  Totals totals =
-      _totals.evaluate(space(), _parameters.material, with_dead_loads, _x, _v, _dead.pull, _external.bending);
+  Totals totals = _totals.evaluate(space(), _parameters.material, with_dead_loads, _x, _v, _dead.rest_forces,
+                                   _external.bending);
   totals.elastic += _dead.rest_energy;
   if (!_contact) return totals;
   std::vector<ContactWork> work(static_cast<std::size_t>(_vertices));

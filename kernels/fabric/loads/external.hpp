@@ -60,8 +60,8 @@ KOKKOS_INLINE_FUNCTION Vector3<double> twice_area_vector(const Rings& rings, con
 
 /// Force of a dashpot, N, on the start of `edge`, m. It acts along the edge, so that the forces on both ends
 /// cancel and have no torque. `faster` is the velocity of the other end relative to this one, m/s.
-KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_pull(double dashpot, const Vector3<double>& edge,
-                                                    const Vector3<double>& faster) {
+KOKKOS_INLINE_FUNCTION Vector3<double> one_dashpot_force(double dashpot, const Vector3<double>& edge,
+                                                         const Vector3<double>& faster) {
   const double squared = dot(edge, edge);
   return (squared > 0.0 ? dashpot * dot(faster, edge) / squared : 0.0) * edge;
 }
@@ -84,7 +84,7 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlicedEllViews<Execut
         return Dashpot{dashpots.value(slot, 0), load_points<double>(x, j) - own,
                        load_points<double>(v, j) - velocity};
       },
-      [&](const Dashpot& of) { sum = sum + dashpot_pull(of.coefficient, of.edge, of.faster); });
+      [&](const Dashpot& of) { sum = sum + one_dashpot_force(of.coefficient, of.edge, of.faster); });
   return sum;
 }
 
