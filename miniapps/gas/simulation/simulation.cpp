@@ -18,16 +18,16 @@ double value_of(const Primitive& state, const std::string& field) {
   return field == "rho" ? state.rho : field == "u" ? state.u : state.p;
 }
 
-framework::Stop framework_stop(gas::Stop stop) {
+framework::StopReason framework_stop(gas::Stop stop) {
   switch (stop) {
     case gas::Stop::target:
-      return framework::Stop::target;
+      return framework::StopReason::target;
     case gas::Stop::pause:
-      return framework::Stop::pause;
+      return framework::StopReason::pause;
     case gas::Stop::interrupted:
-      return framework::Stop::interrupted;
+      return framework::StopReason::interrupted;
     default:
-      return framework::Stop::failed;
+      return framework::StopReason::failed;
   }
 }
 
@@ -88,8 +88,8 @@ framework::SimulationTime Simulation::now() {
   return {now.step, now.time};
 }
 
-framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                                    const framework::Poll& poll) {
+framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits,
+                                          const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
   _stop = _solver->advance(
       limits.target_time, limits.pause_step, limits.row_every,
@@ -97,9 +97,9 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
       [&](const gas::Status& status) {
         return poll({status.step, status.time});
       });
-  const framework::Stop stop = framework_stop(_stop);
+  const framework::StopReason stop = framework_stop(_stop);
   // The last good state of a failed run ends its history.
-  if (stop == framework::Stop::failed && limits.row_every > 0) rows(history_row(_solver->totals()));
+  if (stop == framework::StopReason::failed && limits.row_every > 0) rows(history_row(_solver->totals()));
   return stop;
 }
 

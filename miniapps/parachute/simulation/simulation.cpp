@@ -121,8 +121,8 @@ framework::SimulationTime Simulation::now() {
   return {progress.step, progress.time};
 }
 
-framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                                    const framework::Poll& poll) {
+framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits,
+                                          const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
   const auto forward = [&](const flow::Status& status) { return poll({status.step, status.time}); };
   const auto at_pause = [&](std::int64_t step) {
@@ -136,7 +136,7 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
   while (true) {
     const std::int64_t before = _solver->progress().step;
     std::int64_t pause = limits.pause_step;
-    if (before >= _images.next() && fails_by_image()) return framework::Stop::failed;
+    if (before >= _images.next() && fails_by_image()) return framework::StopReason::failed;
     if (_images.applies() && (pause < 0 || _images.next() < pause)) pause = _images.next();
     if (limits.row_every > 0) {
       const std::int64_t next_row = (before / limits.row_every + 1) * limits.row_every;
@@ -147,11 +147,12 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
     const bool failed = _stop == flow::Stop::failed || _stop == flow::Stop::max_steps;
     // The last good state of a failed run ends its history.
     if (limits.row_every > 0 && (failed || (step > before && step % limits.row_every == 0))) rows(row());
-    if (failed) return framework::Stop::failed;
+    if (failed) return framework::StopReason::failed;
     if (_stop == flow::Stop::target)
-      return _images.applies() && fails_by_image() ? framework::Stop::failed : framework::Stop::target;
-    if (_stop == flow::Stop::interrupted) return framework::Stop::interrupted;
-    if (at_pause(step)) return framework::Stop::pause;
+      return _images.applies() && fails_by_image() ? framework::StopReason::failed
+                                                   : framework::StopReason::target;
+    if (_stop == flow::Stop::interrupted) return framework::StopReason::interrupted;
+    if (at_pause(step)) return framework::StopReason::pause;
   }
 }
 
