@@ -318,13 +318,13 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
     throw std::invalid_argument("flow solver: an array of the state has the wrong length");
   const auto axis = static_cast<std::size_t>(index % 3);
   const bool has_low_side = extents(_parameters, field) != _parameters.cells && _ranks.place[axis] == 0;
-  return {_grid,
-          is_rate ? _rate : _velocity,
-          _predicted,
-          (index % 3) * _grid.component,
-          {shape[0], shape[1], shape[2]},
-          to_field,
-          is_rate && has_low_side ? index % 3 : -1};
+  return {.grid = _grid,
+          .field = is_rate ? _rate : _velocity,
+          .contiguous = _predicted,
+          .first = (index % 3) * _grid.component,
+          .extent = {shape[0], shape[1], shape[2]},
+          .to_field = to_field,
+          .bounded_axis = is_rate && has_low_side ? index % 3 : -1};
 }
 
 template <class ExecutionSpace>
@@ -360,9 +360,13 @@ void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> value
   if (values.size() != static_cast<std::size_t>(_grid.cells()) * static_cast<std::size_t>(components(field)))
     throw std::invalid_argument("flow solver: a field has the wrong length");
   if (field == CellField::pressure) solve_present_pressure(kinematic_viscosity());
-  launch_cells(
-      space(), "drogue::flow::sample", _grid.n,
-      SampleFunctor<ExecutionSpace>{_grid, _velocity, unknown(), _predicted, _parameters.density, field});
+  launch_cells(space(), "drogue::flow::sample", _grid.n,
+               SampleFunctor<ExecutionSpace>{.grid = _grid,
+                                             .velocity = _velocity,
+                                             .pressure = unknown(),
+                                             .samples = _predicted,
+                                             .density = _parameters.density,
+                                             .field = field});
   device::copy_out(space(), values.data(), _predicted, values.size());
   space().fence("drogue::flow::sample");
 }
@@ -502,8 +506,11 @@ void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
 template <class ExecutionSpace>
 StepFailure FlowSolver<ExecutionSpace>::failure() {
   const Control control = read_control();
-  StepFailure failure{
-      {FailureReason::time_step, -1, control.now.step + 1, control.now.time, control.trial.dt}, 0.0, 0.0};
+  StepFailure failure{{.reason = FailureReason::time_step,
+                       .index = -1,
+                       .step = control.now.step + 1,
+                       .time = control.now.time,
+                       .dt = control.trial.dt}};
   if (control.failed_side != 0) {
     failure.reason = FailureReason::side_velocity;
     failure.index = control.failed_side - 1;
@@ -529,8 +536,11 @@ struct FlowSolver<ExecutionSpace>::Steps {
 
   void begin(const stepping::AdvanceRequest& request, std::int64_t output_step) {
     Kokkos::parallel_for("drogue::flow::begin_advance", one_thread(solver.space()),
-                         BeginAdvanceFunctor<ExecutionSpace>{solver._control, solver._loop.status_view(),
-                                                             solver._constants, request, output_step});
+                         BeginAdvanceFunctor<ExecutionSpace>{.control = solver._control,
+                                                             .status = solver._loop.status_view(),
+                                                             .constants = solver._constants,
+                                                             .request = request,
+                                                             .output_step = output_step});
   }
   [[nodiscard]] bool holds_many_steps(int /*variant*/) const { return false; }
   void enqueue(int variant, std::int64_t /*max_steps*/) {
@@ -655,9 +665,13 @@ void FlowSolver<ExecutionSpace>::add_rates(double weight) {
   setup.weights = {0.0, 1.0, false};
   setup.force = Values();
   enqueue_rates(space(), setup, 1.0);
-  launch_cells(
-      space(), "drogue::flow::add_rates", _grid.n,
-      AddRatesFunctor<ExecutionSpace>{_grid, _boundary.conditions(), _velocity, _predicted, _rate, weight});
+  launch_cells(space(), "drogue::flow::add_rates", _grid.n,
+               AddRatesFunctor<ExecutionSpace>{.grid = _grid,
+                                               .boundary = _boundary.conditions(),
+                                               .velocity = _velocity,
+                                               .predicted = _predicted,
+                                               .rate = _rate,
+                                               .weight = weight});
 }
 
 template <class ExecutionSpace>
@@ -738,20 +752,20 @@ MomentumSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::momentum_setup(double 
   // round-off leaves of a velocity above 1e-19 m/s, so that results do not depend on the unit of velocity.
   // Its fourth power, a product of the weights, is a number.
   constexpr double smoothness_floor = 1e-72;
-  return {_grid,
-          _velocity,
-          _velocity,
-          _predicted,
-          _rate,
-          _force,
-          _eddy_acceleration,
-          _control,
-          nu,
-          {_acceleration[0], _acceleration[1], _acceleration[2]},
-          1.0 / _parameters.density,
-          smoothness_floor,
-          tile_rows(_parameters.block),
-          {}};
+  return {.grid = _grid,
+          .state = _velocity,
+          .stage = _velocity,
+          .out = _predicted,
+          .old_rate = _rate,
+          .force = _force,
+          .eddy = _eddy_acceleration,
+          .control = _control,
+          .nu = nu,
+          .acceleration = {_acceleration[0], _acceleration[1], _acceleration[2]},
+          .specific_volume = 1.0 / _parameters.density,
+          .epsilon = smoothness_floor,
+          .rows = tile_rows(_parameters.block),
+          .weights = {}};
 }
 
 template <class ExecutionSpace>
@@ -787,8 +801,12 @@ void FlowSolver<ExecutionSpace>::enqueue_eddy_viscosity(const ExecutionSpace& sp
   if (_parameters.turbulence == Turbulence::none) return;
   finish_ghosts(space, velocity);
   launch_cells(space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
-               EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, velocity, _eddy_cells,
-                                                    _eddy_viscosity, _control});
+               EddyViscosityFunctor<ExecutionSpace>{.grid = _grid,
+                                                    .model = _eddy_model,
+                                                    .velocity = velocity,
+                                                    .cells = _eddy_cells,
+                                                    .viscosity = _eddy_viscosity,
+                                                    .control = _control});
 }
 
 /// Predicted velocity of a momentum stage. `time_fraction`: of dt at which it has the values of the sides.
@@ -798,8 +816,12 @@ void FlowSolver<ExecutionSpace>::enqueue_rates(const ExecutionSpace& space,
                                                double time_fraction) const {
   if (_parameters.turbulence != Turbulence::none)
     launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
-                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
-                                                   _eddy_acceleration, _control});
+                 EddyStressFunctor<ExecutionSpace>{.grid = _grid,
+                                                   .velocity = setup.stage,
+                                                   .cells = _eddy_cells,
+                                                   .viscosity = _eddy_viscosity,
+                                                   .acceleration = _eddy_acceleration,
+                                                   .control = _control});
   enqueue_momentum(space, setup);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, _constants, {time_fraction, false});
   enqueue_net_inflow(space);
@@ -816,8 +838,14 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
   if (setup.stage.data() != _velocity.data()) enqueue_eddy_viscosity(space, setup.stage);
   enqueue_rates(space, setup, time_fraction);
   if (_diffusion) {
-    DiffusionSetup<ExecutionSpace> diffusion{
-        _grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity(), {}};
+    DiffusionSetup<ExecutionSpace> diffusion{.grid = _grid,
+                                             .boundary = _boundary.conditions(),
+                                             .velocity = _velocity,
+                                             .predicted = _predicted,
+                                             .pressure = _pressure,
+                                             .control = _control,
+                                             .nu = kinematic_viscosity(),
+                                             .pressure_below = {}};
     if (_halo) _halo->exchange_pressure(space, _pressure);
     copy_pressure_below(diffusion.pressure_below);
     _diffusion->enqueue(space, diffusion, _divergence, _pressure_increment);
@@ -834,20 +862,20 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
 /// Projection of the predicted velocity, without a result.
 template <class ExecutionSpace>
 ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(double fraction) const {
-  ProjectionSetup<ExecutionSpace> setup{_grid,
-                                        _boundary.conditions(),
-                                        _predicted,
-                                        Values(),
-                                        _divergence,
-                                        unknown(),
-                                        Values(),
-                                        _diffusion.has_value(),
-                                        _control,
-                                        kinematic_viscosity(),
-                                        fraction,
-                                        false,
-                                        tile_rows(_parameters.block),
-                                        {}};
+  ProjectionSetup<ExecutionSpace> setup{.grid = _grid,
+                                        .boundary = _boundary.conditions(),
+                                        .predicted = _predicted,
+                                        .velocity = Values(),
+                                        .divergence = _divergence,
+                                        .pressure = unknown(),
+                                        .total_pressure = Values(),
+                                        .is_increment = _diffusion.has_value(),
+                                        .control = _control,
+                                        .nu = kinematic_viscosity(),
+                                        .step_fraction = fraction,
+                                        .ends_step = false,
+                                        .rows = tile_rows(_parameters.block),
+                                        .pressure_below = {}};
   copy_pressure_below(setup.pressure_below);
   return setup;
 }
