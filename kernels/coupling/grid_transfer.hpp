@@ -197,9 +197,10 @@ void freeze_positions(const ExecutionSpace& space, const GridTransfer<ExecutionS
   require_points(transfer, x);
   require_points(transfer, v);
   dispatch_kernel(transfer.kernel, [&]<DeltaKernel kernel>() {
-    device::launch_each(space, "drogue::coupling::freeze_positions", transfer.points,
-                        FreezePositionsFunctor<ExecutionSpace, kernel, Positions, Velocities>{
-                            transfer, grid_axes(transfer.grid), x, v, time});
+    device::launch_each(
+        space, "drogue::coupling::freeze_positions", transfer.points,
+        FreezePositionsFunctor<ExecutionSpace, kernel, Positions, Velocities>{
+            .transfer = transfer, .axes = grid_axes(transfer.grid), .x = x, .v = v, .time = time});
   });
 }
 

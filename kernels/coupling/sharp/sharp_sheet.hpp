@@ -291,23 +291,23 @@ class SharpSheet {
                 const Vectors& force, double dt) const {
     const StaggeredGrid& grid = _transfer.grid;
     const int triangles = _surface.triangles();
-    const Views views{_surface,
-                      _transfer.positions,
-                      velocities,
-                      _law,
-                      _transfer.largest,
-                      _corner_force,
-                      constant(_before),
-                      constant(_acceleration),
-                      face_arrays(_transfer.window, _count),
-                      face_arrays(_transfer.window, _transfer.sums),
-                      face_arrays(_transfer.window, density),
-                      _closing.views(),
-                      face_arrays(_transfer.window, _foretold),
-                      grid_axes(grid),
-                      dt,
-                      1.0 / _density,
-                      summand_bound(3 * triangles)};
+    const Views views{.surface = _surface,
+                      .positions = _transfer.positions,
+                      .velocities = velocities,
+                      .law = _law,
+                      .largest = _transfer.largest,
+                      .corner_force = _corner_force,
+                      .velocity = constant(_before),
+                      .acceleration = constant(_acceleration),
+                      .count = face_arrays(_transfer.window, _count),
+                      .sums = face_arrays(_transfer.window, _transfer.sums),
+                      .density = face_arrays(_transfer.window, density),
+                      .closing = _closing.views(),
+                      .foretold = face_arrays(_transfer.window, _foretold),
+                      .axes = grid_axes(grid),
+                      .dt = dt,
+                      .inverse_density = 1.0 / _density,
+                      .summands = summand_bound(3 * triangles)};
     const auto launch = [&](const char* label, const auto& functor) {
       device::launch_each(space, label, triangles, functor);
     };
@@ -326,17 +326,18 @@ class SharpSheet {
   template <class View, class Control>
   void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
                 double dt, double filter, const Control& control) const {
-    EndSharpStepFunctor<ExecutionSpace, Control> end{constant(_before),
-                                                     constant(velocity),
-                                                     constant(density),
-                                                     face_arrays(_transfer.window, _acceleration),
-                                                     {},
-                                                     1.0 / dt,
-                                                     1.0 / _density,
-                                                     filter,
-                                                     control,
-                                                     face_arrays(_transfer.window, _foretold),
-                                                     _closing.views()};
+    EndSharpStepFunctor<ExecutionSpace, Control> end{
+        .before = constant(_before),
+        .after = constant(velocity),
+        .density = constant(density),
+        .acceleration = face_arrays(_transfer.window, _acceleration),
+        .faces = {},
+        .inverse_dt = 1.0 / dt,
+        .inverse_density = 1.0 / _density,
+        .filter = filter,
+        .control = control,
+        .foretold = face_arrays(_transfer.window, _foretold),
+        .closing = _closing.views()};
     launch_faces(space, "drogue::coupling::end_sharp_step", end);
   }
 

@@ -439,20 +439,32 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
              density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
   // Not before: the pressure of an output contains the forces of the last step.
   clear_spread(_space, _sheet.transfer(), density);
-  device::launch_each(
-      _space, "drogue::coupling::save_cloth", _fabric.vertices(),
-      SaveClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.state(), _sheet.acceleration(),
-                                       _sheet.defect(), _sheet.force(), _sheet.transfer().positions,
-                                       _saved_positions, _saved_velocities, _saved_acceleration,
-                                       _saved_defect, _saved_force, _saved_places});
+  device::launch_each(_space, "drogue::coupling::save_cloth", _fabric.vertices(),
+                      SaveClothFunctor<ExecutionSpace>{.control = _flow.control(),
+                                                       .saved_step = _saved_step,
+                                                       .cloth = _fabric.state(),
+                                                       .acceleration = _sheet.acceleration(),
+                                                       .defect = _sheet.defect(),
+                                                       .force = _sheet.force(),
+                                                       .places = _sheet.transfer().positions,
+                                                       .saved_positions = _saved_positions,
+                                                       .saved_velocities = _saved_velocities,
+                                                       .saved_acceleration = _saved_acceleration,
+                                                       .saved_defect = _saved_defect,
+                                                       .saved_force = _saved_force,
+                                                       .saved_places = _saved_places});
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
   _sheet.spread_forces(_space, _fabric.state(), density, dt);
   _strength.check(_space, _fabric.state().positions);
-  device::launch_each(
-      _space, "drogue::coupling::check_cloth", 1,
-      CheckClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.monitor(), _sheet.transfer(),
-                                        _reason, _strength.broken(), _strength.failed()});
+  device::launch_each(_space, "drogue::coupling::check_cloth", 1,
+                      CheckClothFunctor<ExecutionSpace>{.control = _flow.control(),
+                                                        .saved_step = _saved_step,
+                                                        .cloth = _fabric.monitor(),
+                                                        .transfer = _sheet.transfer(),
+                                                        .reason = _reason,
+                                                        .broken_line = _strength.broken(),
+                                                        .failed_line = _strength.failed()});
   _flow.enqueue_step();
   record_pulls();
   _sheet.end_step(_space, velocity, density, dt, is_first, _flow.control());

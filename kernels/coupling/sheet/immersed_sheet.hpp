@@ -187,18 +187,19 @@ class ImmersedSheet {
         _transfer(space, grid, parameters.kernel, _surface.vertices(), own_faces),
         _inset(space, cloth.mesh, grid, parameters.edge_inset),
         _rank_sum(group, rows(), 2),
-        _air{scalars("drogue::coupling::area"),
-             vectors("drogue::coupling::normal"),
-             vectors("drogue::coupling::compliance"),
-             vectors("drogue::coupling::velocity_before"),
-             vectors("drogue::coupling::acceleration"),
-             vectors("drogue::coupling::inverse_mass"),
-             vectors("drogue::coupling::local_velocity"),
-             scalars("drogue::coupling::impulse"),
-             Vectors("drogue::coupling::no_slip_impulse", has_no_slip(parameters) ? rows() : 0),
-             Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::porosity",
-                                                                             rows()),
-             Vectors()},
+        _air{.area = scalars("drogue::coupling::area"),
+             .normal = vectors("drogue::coupling::normal"),
+             .compliance = vectors("drogue::coupling::compliance"),
+             .before = vectors("drogue::coupling::velocity_before"),
+             .acceleration = vectors("drogue::coupling::acceleration"),
+             .inverse_mass = vectors("drogue::coupling::inverse_mass"),
+             .velocity = vectors("drogue::coupling::local_velocity"),
+             .impulse = scalars("drogue::coupling::impulse"),
+             .no_slip_impulse =
+                 Vectors("drogue::coupling::no_slip_impulse", has_no_slip(parameters) ? rows() : 0),
+             .law = Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>(
+                 "drogue::coupling::porosity", rows()),
+             .last_force = Vectors()},
         _filtered{_air.acceleration, Vectors(), _air.acceleration},
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
@@ -305,10 +306,16 @@ class ImmersedSheet {
     interpolate(space, _transfer, velocity, _after);
     interpolate(space, _transfer, density, _interpolated_force);
     _rank_sum(space, {_after, _interpolated_force});
-    device::launch_each(
-        space, "drogue::coupling::end_sheet_step", _transfer.points,
-        EndSheetStepFunctor<ExecutionSpace>{_air, _filtered, _after, _interpolated_force, _closing->views(),
-                                            1.0 / dt, 1.0 / _density, filter, _parameters.defect_filter});
+    device::launch_each(space, "drogue::coupling::end_sheet_step", _transfer.points,
+                        EndSheetStepFunctor<ExecutionSpace>{.air = _air,
+                                                            .filtered = _filtered,
+                                                            .after = _after,
+                                                            .interpolated_force = _interpolated_force,
+                                                            .closing = _closing->views(),
+                                                            .inverse_dt = 1.0 / dt,
+                                                            .inverse_density = 1.0 / _density,
+                                                            .filter = filter,
+                                                            .defect_filter = _parameters.defect_filter});
   }
 
   /// Enqueues the velocity of the flow, m/s, interpolated to where the vertices at their present positions

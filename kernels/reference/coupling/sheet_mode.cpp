@@ -37,8 +37,12 @@ SheetModeMatrix amplification(const SheetModeParameters& p) {
   SheetModeMatrix matrix{};
   for (std::size_t column = 0; column < 5; ++column) {
     const auto unit = [column](std::size_t k) { return k == column ? 1.0 : 0.0; };
-    const SheetMode image =
-        coupled_step({p.dt * unit(0), unit(1), unit(2), unit(3) / p.dt, unit(4) / p.dt}, p);
+    const SheetMode image = coupled_step({.displacement = p.dt * unit(0),
+                                          .velocity = unit(1),
+                                          .air = unit(2),
+                                          .acceleration = unit(3) / p.dt,
+                                          .defect = unit(4) / p.dt},
+                                         p);
     matrix[0][column] = image.displacement / p.dt;
     matrix[1][column] = image.velocity;
     matrix[2][column] = image.air;
