@@ -24,7 +24,7 @@ struct SharpSheetViews {
   FaceArrays<const double> velocity, acceleration;  ///< of the air, m/s and m/s^2
   FaceArrays<int> count;                            ///< crossings at each face; zero between steps
   FaceArrays<FixedPoint> sums;                      ///< impulses per area; zero between steps
-  FaceArrays<double> density;                       ///< force on the air, N/m^3
+  FaceArrays<double> force_density;                 ///< force on the air, N/m^3
   ClosingSheetViews<ExecutionSpace> closing;
   FaceArrays<double> foretold;  ///< force of closing sheets on the air, N/m^3; zero between steps
   GridAxes axes;
@@ -166,7 +166,7 @@ struct FlushSumsFunctor {
       device::relaxed_store(&s.count.at(d, at.face), 0);
       const FixedPoint taken = Kokkos::atomic_exchange(&s.sums.at(d, at.face), FixedPoint{0});
       if (taken != 0)
-        s.density.at(d, at.face) += unit * s.axes.axis[d].inverse_spacing * from_fixed_point(taken);
+        s.force_density.at(d, at.face) += unit * s.axes.axis[d].inverse_spacing * from_fixed_point(taken);
     });
   }
 };
@@ -209,7 +209,7 @@ struct SaveFacesFunctor {
 /// Updates the acceleration of the air at all faces without the force of the sheet, unless the flow failed.
 template <class ExecutionSpace, class Control>
 struct EndSharpStepFunctor {
-  FaceArrays<const double> before, after, density;
+  FaceArrays<const double> before, after, force_density;
   FaceArrays<double> acceleration;
   int faces[3][3];
   double inverse_dt, inverse_density, filter;
@@ -225,7 +225,7 @@ struct EndSharpStepFunctor {
       if (i >= faces[d][0] || j >= faces[d][1] || k >= faces[d][2]) continue;
       const FaceIndex face{index[d], index[cyclic_axis(d, 1)], index[cyclic_axis(d, 2)]};
       double present =
-          inverse_dt * (after.at(d, face) - before.at(d, face)) - inverse_density * density.at(d, face);
+          inverse_dt * (after.at(d, face) - before.at(d, face)) - inverse_density * force_density.at(d, face);
       if (closes) {
         present += inverse_density * foretold.at(d, face) - inverse_dt * closing.column(d);
         foretold.at(d, face) = 0.0;
@@ -283,11 +283,11 @@ class SharpSheet {
     launch_faces(space, "drogue::coupling::save_faces", save);
   }
 
-  /// Enqueues the forces of the sheet during dt, s: adds them to `density`, N/m^3, and stores those of the
-  /// vertices in `force`, N. `velocities`: of the vertices at the end of the step, m/s. Throws as
+  /// Enqueues the forces of the sheet during dt, s: adds them to `force_density`, N/m^3, and stores those of
+  /// the vertices in `force`, N. `velocities`: of the vertices at the end of the step, m/s. Throws as
   /// `begin_step`.
   template <class View>
-  void exchange(const ExecutionSpace& space, const Vectors& velocities, const FaceViews<View>& density,
+  void exchange(const ExecutionSpace& space, const Vectors& velocities, const FaceViews<View>& force_density,
                 const Vectors& force, double dt) const {
     const StaggeredGrid& grid = _transfer.grid;
     const int triangles = _surface.triangles();
@@ -301,7 +301,7 @@ class SharpSheet {
                       .acceleration = constant(_acceleration),
                       .count = face_arrays(_transfer.window, _count),
                       .sums = face_arrays(_transfer.window, _transfer.sums),
-                      .density = face_arrays(_transfer.window, density),
+                      .force_density = face_arrays(_transfer.window, force_density),
                       .closing = _closing.views(),
                       .foretold = face_arrays(_transfer.window, _foretold),
                       .axes = grid_axes(grid),
@@ -321,15 +321,16 @@ class SharpSheet {
   }
 
   /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, with weight
-  /// `filter` in the mean. `density`, N/m^3, holds the forces of the sheet alone; `control`: of the flow.
-  /// Throws as `begin_step`.
+  /// `filter` in the mean. `force_density`, N/m^3, holds the forces of the sheet alone; `control`: of the
+  /// flow. Throws as `begin_step`.
   template <class View, class Control>
-  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
-                double dt, double filter, const Control& control) const {
+  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity,
+                const FaceViews<View>& force_density, double dt, double filter,
+                const Control& control) const {
     EndSharpStepFunctor<ExecutionSpace, Control> end{
         .before = constant(_before),
         .after = constant(velocity),
-        .density = constant(density),
+        .force_density = constant(force_density),
         .acceleration = face_arrays(_transfer.window, _acceleration),
         .faces = {},
         .inverse_dt = 1.0 / dt,

@@ -275,12 +275,12 @@ class ImmersedSheet {
                         BeginSheetStepFunctor<ExecutionSpace>{_air});
   }
 
-  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `density`, N/m^3. `cloth`:
-  /// after its steps. Throws as `begin_step`.
+  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `force_density`, N/m^3.
+  /// `cloth`: after its steps. Throws as `begin_step`.
   template <class View>
   void spread_forces(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
-                     const FaceViews<View>& density, double dt) const {
-    if (_sharp) return _sharp->exchange(space, cloth.velocities, density, _force, dt);
+                     const FaceViews<View>& force_density, double dt) const {
+    if (_sharp) return _sharp->exchange(space, cloth.velocities, force_density, _force, dt);
     if (_air.is_explicit())
       device::launch_each(space, "drogue::coupling::impose_velocity", _transfer.points,
                           ImposeVelocityFunctor<ExecutionSpace>{_air, cloth.velocities, dt});
@@ -292,19 +292,20 @@ class ImmersedSheet {
     }
     device::launch_each(space, "drogue::coupling::sheet_force", _transfer.points,
                         SheetForceFunctor<ExecutionSpace>{_air, _force, 1.0 / dt});
-    spread(space, _transfer, _force, density);
+    spread(space, _transfer, _force, force_density);
   }
 
   /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, under the forces
-  /// of the sheet alone in `density`, N/m^3. `is_first`: no step precedes this one; `control`: of the flow.
-  /// Throws as `begin_step`.
+  /// of the sheet alone in `force_density`, N/m^3. `is_first`: no step precedes this one; `control`: of the
+  /// flow. Throws as `begin_step`.
   template <class View, class Control>
-  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
-                double dt, bool is_first, const Control& control) const {
+  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity,
+                const FaceViews<View>& force_density, double dt, bool is_first,
+                const Control& control) const {
     const double filter = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
-    if (_sharp) return _sharp->end_step(space, velocity, density, dt, filter, control);
+    if (_sharp) return _sharp->end_step(space, velocity, force_density, dt, filter, control);
     interpolate(space, _transfer, velocity, _after);
-    interpolate(space, _transfer, density, _interpolated_force);
+    interpolate(space, _transfer, force_density, _interpolated_force);
     _rank_sum(space, {_after, _interpolated_force});
     device::launch_each(space, "drogue::coupling::end_sheet_step", _transfer.points,
                         EndSheetStepFunctor<ExecutionSpace>{.air = _air,
