@@ -48,18 +48,20 @@ struct SharpSheetViews {
       const double air = velocity.at(d, at.face) + dt * acceleration.at(d, at.face);
       // Flow through the sheet is along its normal: its component along the axis is this part of it.
       const double part = Kokkos::fabs(along[d]) / length, sign = along[d] > 0.0 ? 1.0 : -1.0;
-      const double compliance = count.at(d, at.face) * inverse_density * axes.axis[d].inverse_spacing / part;
-      const double relative = moving - air - closing_change(vertex[0], d, count.at(d, at.face), compliance);
-      visit(at, sign * porous_impulse(law(vertex[0]), sign * relative / part, dt, compliance));
+      const double inverse_air_mass =
+          count.at(d, at.face) * inverse_density * axes.axis[d].inverse_spacing / part;
+      const double relative =
+          moving - air - closing_change(vertex[0], d, count.at(d, at.face), inverse_air_mass);
+      visit(at, sign * porous_impulse(law(vertex[0]), sign * relative / part, dt, inverse_air_mass));
     });
   }
 
   /// As for the vertices of an immersed sheet, at a face with a number of crossings. Where there are several,
   /// the filtered acceleration foretells what they change beside each other.
-  KOKKOS_FUNCTION double closing_change(int vertex, int d, int crossings, double compliance) const {
+  KOKKOS_FUNCTION double closing_change(int vertex, int d, int crossings, double inverse_air_mass) const {
     const int k = closing(vertex);
     if (k < 0 || closing.sheets(k).axis != d) return 0.0;
-    return closing.column(d) - (crossings == 1 ? compliance * closing.impulse(k) : 0.0);
+    return closing.column(d) - (crossings == 1 ? inverse_air_mass * closing.impulse(k) : 0.0);
   }
 
   /// Area of a face normal to an axis, m^2.

@@ -129,7 +129,7 @@ class CoupledSolver {
   CoupledSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
                 const linear::RankGroup& group = {})
       : _space(instance.space()),
-        _parameters(completed(parameters)),
+        _parameters(with_coupling_settings(parameters)),
         _group(group),
         _flow(instance, _parameters.flow, group),
         _sheet(_space, flow::coupling_grid(_flow.grid()), _parameters.fabric, _parameters.sheet,
@@ -191,7 +191,7 @@ class CoupledSolver {
   }
 
  private:
-  static Parameters completed(Parameters p) {
+  static Parameters with_coupling_settings(Parameters p) {
     if (!(p.flow.fixed_dt > 0.0 || p.flow.max_dt > 0.0))
       throw std::invalid_argument("coupled solver: either fixed_dt or max_dt must be positive");
     p.fabric.integrator = fabric::Integrator::symplectic_euler;

@@ -22,14 +22,14 @@
 namespace drogue::coupling {
 
 /// Change of the velocity beside vertex i that the foretold impulses of closing sheets make in the whole
-/// channel, less the part that the copy of the air, of inverse masses `response`, takes by itself, m/s.
+/// channel, less the part that the copy of the air, of inverse masses `inverse_air`, takes by itself, m/s.
 template <class ExecutionSpace>
 KOKKOS_FUNCTION spatial::Point closing_change(const ClosingSheetViews<ExecutionSpace>& closing,
-                                              const spatial::Point& response, int i) {
+                                              const spatial::Point& inverse_air, int i) {
   const int k = closing(i);
   if (k < 0) return {0.0, 0.0, 0.0};
   const int axis = closing.sheets(k).axis;
-  const double of_copy = dot(response, along_axis(axis, closing.impulse(k)));
+  const double of_copy = dot(inverse_air, along_axis(axis, closing.impulse(k)));
   return along_axis(axis, closing.column(axis) - of_copy);
 }
 
@@ -83,12 +83,13 @@ struct ClosingImpulseFunctor {
     const LocalAir<ExecutionSpace>& air = velocity.air;
     if (closing(i) < 0 || !(air.area(i) > 0.0)) return;
     const spatial::Point n = spatial::load_vector(air.normal, i),
-                         response = spatial::load_vector(air.compliance, i),
-                         w = velocity.at(i) - closing_change(closing, response, i);
+                         inverse_air = spatial::load_vector(air.inverse_air_mass, i),
+                         w = velocity.at(i) - closing_change(closing, inverse_air, i);
     if (air.is_no_slip(i))
-      spatial::store_vector(air.no_slip_impulse, i, no_slip_impulse(air.law(i), n, w, velocity.dt, response));
+      spatial::store_vector(air.no_slip_impulse, i,
+                            no_slip_impulse(air.law(i), n, w, velocity.dt, inverse_air));
     else
-      air.impulse(i) = porous_impulse(air.law(i), dot(w, n), velocity.dt, dot(n, product(response, n)));
+      air.impulse(i) = porous_impulse(air.law(i), dot(w, n), velocity.dt, dot(n, product(inverse_air, n)));
   }
 };
 
@@ -139,15 +140,16 @@ struct EndSheetStepFunctor {
   KOKKOS_FUNCTION void operator()(const int i) const {
     using spatial::load_vector;
     const spatial::Point by_sheet = inverse_density * load_vector(interpolated_force, i),
-                         present = inverse_dt * (load_vector(after, i) - load_vector(air.before, i) -
-                                                 closing_change(closing, load_vector(air.compliance, i), i)) -
-                                   by_sheet,
+                         present =
+                             inverse_dt * (load_vector(after, i) - load_vector(air.before, i) -
+                                           closing_change(closing, load_vector(air.inverse_air_mass, i), i)) -
+                             by_sheet,
                          mean = load_vector(filtered.mean, i);
     spatial::store_vector(filtered.mean, i, mean + filter * (present - mean));
     if (filtered.defect.extent(0) == 0) return;
     const spatial::Point impulse = air.is_no_slip(i) ? load_vector(air.no_slip_impulse, i)
                                                      : air.impulse(i) * load_vector(air.normal, i),
-                         of_copy = inverse_dt * product(load_vector(air.compliance, i), impulse),
+                         of_copy = inverse_dt * product(load_vector(air.inverse_air_mass, i), impulse),
                          defect = load_vector(filtered.defect, i);
     spatial::store_vector(filtered.defect, i, defect + defect_filter * (by_sheet - of_copy - defect));
     filtered(i);
@@ -189,10 +191,10 @@ class ImmersedSheet {
         _rank_sum(group, rows(), 2),
         _air{.area = scalars("drogue::coupling::area"),
              .normal = vectors("drogue::coupling::normal"),
-             .compliance = vectors("drogue::coupling::compliance"),
+             .inverse_air_mass = vectors("drogue::coupling::inverse_air_mass"),
              .before = vectors("drogue::coupling::velocity_before"),
              .acceleration = vectors("drogue::coupling::acceleration"),
-             .inverse_mass = vectors("drogue::coupling::inverse_mass"),
+             .inverse_cloth_mass = vectors("drogue::coupling::inverse_mass"),
              .velocity = vectors("drogue::coupling::local_velocity"),
              .impulse = scalars("drogue::coupling::impulse"),
              .no_slip_impulse =
@@ -268,9 +270,9 @@ class ImmersedSheet {
     if (_sharp) return _sharp->begin_step(space, velocity);
     fabric::vertex_geometry(space, _surface, _transfer.positions, _air.area, _air.normal);
     _inset(space, cloth, 0.5 * dt, _transfer.positions);
-    spread_row_sums(space, _transfer, _air.area, _density, _air.compliance);
+    spread_row_sums(space, _transfer, _air.area, _density, _air.inverse_air_mass);
     interpolate(space, _transfer, velocity, _air.before);
-    _rank_sum(space, {_air.compliance, _air.before});
+    _rank_sum(space, {_air.inverse_air_mass, _air.before});
     device::launch_each(space, "drogue::coupling::begin_sheet_step", _transfer.points,
                         BeginSheetStepFunctor<ExecutionSpace>{_air});
   }
@@ -372,7 +374,7 @@ class ImmersedSheet {
   [[nodiscard]] Vectors vectors(const std::string& label) const { return Vectors(label, rows()); }
 
   void copy_inverse_masses(const ExecutionSpace& space, const fabric::Parameters& cloth) const {
-    const auto mirror = Kokkos::create_mirror_view(_air.inverse_mass);
+    const auto mirror = Kokkos::create_mirror_view(_air.inverse_cloth_mass);
     for (std::size_t i = 0; i < rows(); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const bool is_pinned = !cloth.pinned.empty() && (cloth.pinned[i] >> axis & 1U) != 0U;
@@ -385,7 +387,7 @@ class ImmersedSheet {
         for (std::size_t axis = 0; axis < 3; ++axis)
           if (_parameters.method == CouplingMethod::sharp && mirror(static_cast<std::size_t>(i), axis) > 0.0)
             throw std::invalid_argument("immersed sheet: a sharp sheet needs prescribed motion");
-    Kokkos::deep_copy(space, _air.inverse_mass, mirror);
+    Kokkos::deep_copy(space, _air.inverse_cloth_mass, mirror);
     space.fence("drogue::coupling::immersed_sheet");
   }
 

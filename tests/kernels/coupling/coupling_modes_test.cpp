@@ -52,7 +52,7 @@ struct Piston {
     // Two vertices share the corners of the periodic box; those at its ends have half the area.
     std::vector<double> areas;
     for (const double of_vertex : c.p.fabric.mass) areas.push_back(of_vertex / mass);
-    p.compliance = p.spread =
+    p.inverse_air_mass = p.spread =
         reference::spread_row_sums(c.grid(), c.p.sheet.kernel, places, areas, c.p.flow.density)[middle][0];
     const double air_mass = c.p.flow.density * c.p.flow.high[0];
     p.response = 1.0 / air_mass;
@@ -173,7 +173,7 @@ struct SineSheet {
     for (flow::Boundary& side : box.boundary) side.kind = flow::BoundaryKind::periodic;
     static_cast<void>(reference::project(reference::FlowDomain(box), spread, 1.0));
     p.response = response_of(spread);
-    p.compliance =
+    p.inverse_air_mass =
         reference::spread_row_sums(grid, c.p.sheet.kernel, c.x, areas, c.p.flow.density)[antinode][0];
     for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i][0] += displacement * shape[i];
     CoupledRun run(c);
