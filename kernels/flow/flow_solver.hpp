@@ -190,7 +190,9 @@ class FlowSolver {
     for (std::size_t axis = 0; axis < 3; ++axis) pressure_below[axis] = _halo->pressure_below(axis);
   }
   /// Solution of the pressure equation: the pressure, or its increment.
-  [[nodiscard]] const Values& unknown() const { return _diffusion ? _pressure_increment : _divergence; }
+  [[nodiscard]] const Values& unknown() const {
+    return _diffusion ? _pressure_increment : _divergence_or_pressure;
+  }
   [[nodiscard]] double kinematic_viscosity() const { return _parameters.viscosity / _parameters.density; }
 
   const device::Instance<ExecutionSpace>* _instance;
@@ -207,10 +209,11 @@ class FlowSolver {
   std::array<double, 3> _frame_velocity{};  ///< m/s
   EddyModel _eddy_model{};
   EddyCells _eddy_cells{};
-  Values _velocity, _predicted, _rate, _force;
+  Values _velocity, _predicted, _force;
+  Values _rate_or_stage;  ///< AB2: rate of the step before, m/s^2; RK3: velocity of a stage, m/s
   /// Right-hand side of the pressure equation, 1/s^2; with explicit diffusion also its solution, m^2/s^2, so
   /// that the pressure changes with the velocity, in the correction.
-  Values _divergence;
+  Values _divergence_or_pressure;
   Values _pressure;
   Values _pressure_increment;                  ///< empty with explicit diffusion, which needs no increments
   Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
@@ -247,9 +250,9 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   const auto cells = static_cast<std::size_t>(_grid.cells());
   _velocity = field("drogue::flow::velocity");
   _predicted = field("drogue::flow::predicted_velocity");
-  _rate = field("drogue::flow::rate");
+  _rate_or_stage = field("drogue::flow::rate");
   if (parameters.external_force) _force = field("drogue::flow::force");
-  _divergence = Values("drogue::flow::divergence", cells);
+  _divergence_or_pressure = Values("drogue::flow::divergence", cells);
   _pressure = Values("drogue::flow::pressure", cells);
   const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
   if (is_implicit) {
@@ -319,7 +322,7 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
   const auto axis = static_cast<std::size_t>(index % 3);
   const bool has_low_side = extents(_parameters, field) != _parameters.cells && _ranks.place[axis] == 0;
   return {.grid = _grid,
-          .field = is_rate ? _rate : _velocity,
+          .field = is_rate ? _rate_or_stage : _velocity,
           .contiguous = _predicted,
           .first = (index % 3) * _grid.component,
           .extent = {shape[0], shape[1], shape[2]},
@@ -447,10 +450,10 @@ void FlowSolver<ExecutionSpace>::start() {
   Kokkos::deep_copy(space(), _pressure, 0.0);  // the first step has no pressure of a previous one
   control = read_control();
   control.trial.dt = 0.0;
-  control.now.velocity_rate = control.next_rate;
+  control.now.velocity_rate_bits = control.next_rate_bits;
   // No first step is admissible after a failure.
-  const auto no_rate = Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
-  control.now.rate = control.has_failed() ? no_rate : limiting_rate(control, _constants);
+  const auto no_rate_bits = Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
+  control.now.rate_bits = control.has_failed() ? no_rate_bits : limiting_rate_bits(control, _constants);
   if (const double longest = longest_first_dt(); std::isfinite(longest)) control.now.longest_dt = longest;
   control.forget_step();
   control.trial.stop = Stop::pause;
@@ -464,7 +467,7 @@ void FlowSolver<ExecutionSpace>::start() {
     if (solved.pressure_failed != 0) {
       control.pressure_failed = 1;
       control.pressure_residual = solved.pressure_residual;
-      control.now.rate = no_rate;
+      control.now.rate_bits = no_rate_bits;
       write_control(control);
     }
   }
@@ -523,7 +526,7 @@ StepFailure FlowSolver<ExecutionSpace>::failure() {
   } else if (control.pressure_failed != 0) {
     failure.reason = FailureReason::pressure_solver;
     failure.pressure_residual = control.pressure_residual;
-  } else if (!std::isfinite(Kokkos::bit_cast<double>(control.next_rate))) {
+  } else if (!std::isfinite(Kokkos::bit_cast<double>(control.next_rate_bits))) {
     failure.reason = FailureReason::not_finite;
   }
   return failure;
@@ -643,7 +646,8 @@ void FlowSolver<ExecutionSpace>::change_frame(const std::array<double, 3>& veloc
   set_frame(velocity);
   if (has_rates) add_rates(1.0 / dt);
   // An upper bound until the next step.
-  control.now.rate = Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(control.now.rate) + rate);
+  control.now.rate_bits =
+      Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(control.now.rate_bits) + rate);
   write_control(control);
 }
 
@@ -670,7 +674,7 @@ void FlowSolver<ExecutionSpace>::add_rates(double weight) {
                                                .boundary = _boundary.conditions(),
                                                .velocity = _velocity,
                                                .predicted = _predicted,
-                                               .rate = _rate,
+                                               .rate = _rate_or_stage,
                                                .weight = weight});
 }
 
@@ -756,7 +760,7 @@ MomentumSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::momentum_setup(double 
           .state = _velocity,
           .stage = _velocity,
           .out = _predicted,
-          .old_rate = _rate,
+          .old_rate = _rate_or_stage,
           .force = _force,
           .eddy = _eddy_acceleration,
           .control = _control,
@@ -779,10 +783,10 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
   } else {
     // Shu and Osher 1988, eq. (2.18). The first two stages are projected into the array of rates.
     setup.weights = {0.0, 1.0, false};
-    enqueue_stage(space, setup, _rate, 1.0, 1.0);
-    setup.stage = _rate;
+    enqueue_stage(space, setup, _rate_or_stage, 1.0, 1.0);
+    setup.stage = _rate_or_stage;
     setup.weights = {0.75, 0.25, false};
-    enqueue_stage(space, setup, _rate, 0.25, 0.5);
+    enqueue_stage(space, setup, _rate_or_stage, 0.25, 0.5);
     setup.weights = {1.0 / 3.0, 2.0 / 3.0, false};
     enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
   }
@@ -848,7 +852,7 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
                                              .pressure_below = {}};
     if (_halo) _halo->exchange_pressure(space, _pressure);
     copy_pressure_below(diffusion.pressure_below);
-    _diffusion->enqueue(space, diffusion, _divergence, _pressure_increment);
+    _diffusion->enqueue(space, diffusion, _divergence_or_pressure, _pressure_increment);
   }
   ProjectionSetup<ExecutionSpace> projection = projection_setup(fraction);
   projection.velocity = result;
@@ -866,7 +870,7 @@ ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(dou
                                         .boundary = _boundary.conditions(),
                                         .predicted = _predicted,
                                         .velocity = Values(),
-                                        .divergence = _divergence,
+                                        .divergence = _divergence_or_pressure,
                                         .pressure = unknown(),
                                         .total_pressure = Values(),
                                         .is_increment = _diffusion.has_value(),
@@ -886,7 +890,7 @@ void FlowSolver<ExecutionSpace>::enqueue_pressure(const ExecutionSpace& space,
                                                   const ProjectionSetup<ExecutionSpace>& setup) const {
   if (_halo) _halo->exchange_high_faces(space, _predicted);
   launch_divergence(space, setup);
-  if (!_pressure_equation->enqueue_solve(_divergence, unknown()))
+  if (!_pressure_equation->enqueue_solve(_divergence_or_pressure, unknown()))
     device::launch_each(space, "drogue::flow::pressure_failure", 1,
                         PressureFailureFunctor<ExecutionSpace>{_control, last_pressure_solve()->residual});
 }

@@ -100,7 +100,7 @@ struct CorrectionFunctor {
         const double rate = correct(i, j, k, dt);
         largest = rate > largest || !(rate == rate) ? rate : largest;
       }
-    if (setup.ends_step) device::raise_to_team_maximum(member, control.next_rate, largest);
+    if (setup.ends_step) device::raise_to_team_maximum(member, control.next_rate_bits, largest);
   }
 
  private:

@@ -23,8 +23,8 @@ void visit(Progress& progress, const Number& number, const Integer& integer) {
   number("last_dt", progress.last_dt);
   number("dt_min", progress.dt_min);
   number("dt_max", progress.dt_max);
-  integer("rate_bits", progress.rate);
-  integer("velocity_rate_bits", progress.velocity_rate);
+  integer("rate_bits", progress.rate_bits);
+  integer("velocity_rate_bits", progress.velocity_rate_bits);
   number("longest_dt", progress.longest_dt);
 }
 
