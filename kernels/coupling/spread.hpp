@@ -64,7 +64,7 @@ struct SpreadFunctor : Base {
     };
     // The centre receives the remainder, so that the parts add up to the rounded force.
     std::int64_t remainder = to_fixed_point(scaled);
-    const FaceStencil<Base::delta_kernel> stencil = this->stencil(at);
+    const FaceStencil<Base::delta_function> stencil = this->stencil(at);
     stencil.for_each_face([&](const FaceIndex& face, double weight, bool is_centre) {
       if (is_centre) return;
       const std::int64_t part = to_fixed_point(weight * scaled);

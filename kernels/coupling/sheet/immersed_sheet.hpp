@@ -186,7 +186,7 @@ class ImmersedSheet {
       : _parameters((check_parameters(parameters, density), parameters)),
         _density(density),
         _surface(space, cloth.mesh),
-        _transfer(space, grid, parameters.kernel, _surface.vertices(), own_faces),
+        _transfer(space, grid, parameters.delta, _surface.vertices(), own_faces),
         _inset(space, cloth.mesh, grid, parameters.edge_inset),
         _rank_sum(group, rows(), 2),
         _air{.area = scalars("drogue::coupling::area"),
