@@ -259,7 +259,11 @@ bool Simulation::meets_image() {
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
   _coupled->download_cloth(positions, velocities);
   const flow::Progress now = _solver->progress();
-  _met_image = _images.look({now.step, now.time, now.last_dt, positions, velocities});
+  _met_image = _images.look({.step = now.step,
+                             .time = now.time,
+                             .dt = now.last_dt,
+                             .positions = positions,
+                             .velocities = velocities});
   return _met_image.has_value();
 }
 

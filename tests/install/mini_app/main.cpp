@@ -39,15 +39,15 @@ struct Heat final : framework::Simulation {
     writer.write("u", 0, _u);
   }
   framework::SimulationTime now() override { return _now; }
-  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                          const framework::Poll& poll) override {
+  framework::StopReason advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                const framework::Poll& poll) override {
     while (_now.time < limits.target_time) {
-      if (!poll(_now)) return framework::Stop::interrupted;
+      if (!poll(_now)) return framework::StopReason::interrupted;
       step(limits.target_time);
       if (limits.row_every > 0 && _now.step % limits.row_every == 0) rows(row());
-      if (_now.step == limits.pause_step) return framework::Stop::pause;
+      if (_now.step == limits.pause_step) return framework::StopReason::pause;
     }
-    return framework::Stop::target;
+    return framework::StopReason::target;
   }
   std::vector<run::Column> history_columns() const override { return {{"u_0", ""}}; }
   framework::HistoryRow row() override { return {_now.time, {_u[0]}}; }

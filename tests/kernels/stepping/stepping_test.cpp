@@ -410,14 +410,6 @@ TEST(StepMonitor, FailuresAreOrderedByStepThenIndex) {
   EXPECT_LT(failure, no_failure);
 }
 
-TEST(TimeState, CountsTheStepsToTheNearestTime) {
-  const TimeState time{1000, 0.1, 990, 7.5};  // at 8.5 s
-  EXPECT_EQ(time.steps_to(9.04), 5);
-  EXPECT_EQ(time.steps_to(9.06), 6);
-  EXPECT_EQ(time.steps_to(8.5), 0);
-  EXPECT_EQ(time.steps_to(8.0), 0);
-}
-
 TEST(TimeState, IsReproducedByARestart) {
   const TimeState time{1000, 0.1, 990, 7.5};
   EXPECT_EQ(time.time(), 7.5 + 10 * 0.1);
