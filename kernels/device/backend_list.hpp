@@ -39,8 +39,8 @@ class Cuda;
 #define DROGUE_EXTERN_CUDA(...)
 #endif
 
-// Declares the instances of a class template that a source of a folder instances/ compiles for each backend. The
-// second argument is a template of its second argument, if it has one.
+// Declares the instances of a class template that a source of a folder instances/ compiles for each backend.
+// The second argument is a template of its second argument, if it has one.
 #define DROGUE_EXTERN_INSTANCES(...) \
   DROGUE_EXTERN_SERIAL(__VA_ARGS__)  \
   DROGUE_EXTERN_OPENMP(__VA_ARGS__)  \
