@@ -3,6 +3,7 @@
 #include "kernels/coupling/grid_transfer.hpp"
 #include "kernels/coupling/sharp/crossings.hpp"
 #include "kernels/coupling/sheet/closing_sheets.hpp"
+#include "kernels/device/backend_list.hpp"
 #include "kernels/device/relaxed_access.hpp"
 #include "kernels/fabric/surface/surface.hpp"
 #include "kernels/stepping/status.hpp"
@@ -389,5 +390,7 @@ class SharpSheet {
   Faces<double> _before, _acceleration, _foretold;
   ClosingSheets<ExecutionSpace> _closing;
 };
+
+DROGUE_EXTERN_INSTANCES(class SharpSheet)
 
 }  // namespace drogue::coupling

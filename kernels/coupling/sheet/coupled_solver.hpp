@@ -21,6 +21,10 @@
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
 
+namespace drogue::fabric {
+DROGUE_EXTERN_INSTANCES(class FabricSolver, coupling::AirRelaxation)
+}  // namespace drogue::fabric
+
 namespace drogue::coupling {
 
 /// Step of the flow at whose beginning the cloth was saved.

@@ -16,6 +16,7 @@
 #include "kernels/coupling/sheet/local_air.hpp"
 #include "kernels/coupling/sheet/parameters.hpp"
 #include "kernels/coupling/spread.hpp"
+#include "kernels/device/backend_list.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/surface/surface.hpp"
 
@@ -415,5 +416,7 @@ class ImmersedSheet {
   std::optional<ClosingSheets<ExecutionSpace>> _closing;  ///< never empty
   std::optional<SharpSheet<ExecutionSpace>> _sharp;
 };
+
+DROGUE_EXTERN_INSTANCES(class ImmersedSheet)
 
 }  // namespace drogue::coupling

@@ -224,6 +224,7 @@ TEST(GridTransfer, InterpolationMatchesTheOracleInsideAndOutsideOfTheGrid) {
     }
 }
 
+// ctest-label: smoke
 TEST(GridTransfer, SpreadingMatchesTheOracleInsideAndOutsideOfTheGrid) {
   for (const StaggeredGrid& grid : all_grids())
     for (const DeltaFunction delta : deltas) {

@@ -178,6 +178,7 @@ class Decay {
   Outputs _ring{"outputs", output_capacity};
 };
 
+// ctest-label: smoke
 TEST(StepLoop, MeetsTargetsExactly) {
   Decay decay;
   for (const double target : {0.1, 0.137, 1.0}) {
