@@ -195,6 +195,16 @@ TEST(FlowScene, SheetsInImplicitDiffusionBoundTheTimeStep) {
   EXPECT_TRUE(notices("run.dt=0.0006").empty());
 }
 
+TEST(FlowScene, NotesForcesOfAStartThatTheDefectHolds) {
+  const std::string body = "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1}]",
+                    implicit = "flow.diffusion=crank-nicolson", defect = "coupling.defect_filter=0.1";
+  const auto notes = [](const std::vector<std::string>& sets) { return read_text(least, sets).notices; };
+  ASSERT_EQ(notes({body, implicit, defect}).size(), 1U);
+  EXPECT_TRUE(contains(notes({body, implicit, defect})[0], "coupling.defect_filter: with"));
+  EXPECT_TRUE(notes({body, implicit}).empty());
+  EXPECT_TRUE(notes({body, defect}).empty());
+}
+
 TEST(FlowScene, NotesTheSchemeWhoseEnergyGrows) {
   const auto notes = [](const std::vector<std::string>& sets) {
     return read_text(least, sets).notices.size();
