@@ -238,7 +238,7 @@ class Drives(parachute_program.FlowTest):
             steps = [after - before for before, after in zip(rows["time"], rows["time"][1:])]
             impulse[scheme] = sum(dt * force for dt, force in zip(steps, rows["body_0_force_x"][1:]))
         self.assertAlmostEqual(1, impulse[SCHEMES[0]] / impulse[SCHEMES[2]], delta=0.02)
-        noted = self.start(self.write(VISCOUS), *QUIET, "--check", sets=[flow(SCHEMES[0]), "run.dt=0.004"])
+        noted = self.start(self.write(VISCOUS), "--check", sets=[flow(SCHEMES[0]), "run.dt=0.004"])
         self.assertEqual(0, noted.returncode)
         self.assertIn("run.dt = 0.004 s: viscosity spreads", noted.stderr)
 
