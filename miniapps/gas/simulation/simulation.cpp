@@ -97,7 +97,7 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
   return stop;
 }
 
-std::vector<run::Column> Simulation::history_columns() const {
+std::vector<run::Column> history_columns() {
   return {{"step", ""},
           {"dt", "s"},
           {"mass", "kg/m^2"},
