@@ -21,7 +21,7 @@ filter = 0.5
 end_time = 0.1
 max_dt = 0.01
 [verify]
-force = [{ body = 0, axis = "x", value = 1, tolerance = 1 }]
+history = [{ column = "body_0_force_x", statistic = "last", value = 1, tolerance = 1 }]
 """
 
 # Replaced line, its new text, the line in the error, and words of the message.
@@ -60,8 +60,8 @@ BAD_LINES = [
     (12, "lengths = [0.4, 0.9]", 12, ["body[0]", "along z", "cross its image", "at most 0.8 m"]),
     (13, "edge_length = 0.1", 13, ["body[0].edge_length", "0.1", "0.0714"]),
     (13, "edge_length = 1e-4", 13, ["body[0].edge_length", "vertices", "2^20"]),
-    (21, 'force = [{ body = 1, axis = "x", value = 1, tolerance = 1 }]', 21, ["verify.force[0].body = 1", "number of bodies is 1"]),
-    (21, 'force = [{ body = 0, axis = "x", value = 0, tolerance = 1 }]', 21, ["verify.force[0].value", "relative"]),
+    (21, 'history = [{ column = "body_1_force_x", statistic = "last", value = 1, tolerance = 1 }]', 21,
+     ['verify.history[0].column = "body_1_force_x" is no column', 'did you mean "body_0_force_x"?']),
 ]
 
 ROUND = """\

@@ -452,7 +452,8 @@ class BadFlows(parachute_program.FlowTest):
 
     def test_rejects_coupling_without_bodies(self):
         self.assertIn("[[body]]", self.refusal("coupling.filter=0.5"))
-        self.assertIn("number of bodies is 0", self.refusal("verify.force=[{body=0,axis='x',value=1,tolerance=1}]"))
+        force = parachute_program.statistic("body_0_force_x", "last", 1, 1)
+        self.assertIn('"body_0_force_x" is no column', self.refusal(f"verify.history=[{force}]"))
 
     def test_rejects_contradicting_assignments(self):
         for sets, blamed, words in bad_flows.BAD_SETS:

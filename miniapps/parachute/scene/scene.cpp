@@ -83,8 +83,7 @@ std::string FlowScene::lack_of_airspeed(std::size_t canopy) const {
       static_cast<std::size_t>(canopies[canopy].payload.shared.value_or(static_cast<int>(canopy)));
   const bool moves = !is_drum && !(canopies[owner].has_lines() && canopies[owner].payload.fixed);
   if (moves || *constant != std::array<double, 3>{}) return "";
-  const std::string name = "canopy[" + std::to_string(is_drum ? canopy : owner) + "]";
-  return "which is 0: fluid.velocity is 0 and " + name +
+  return "which is 0: fluid.velocity is 0 and canopy[" + std::to_string(is_drum ? canopy : owner) + "]" +
          (is_drum ? ".kind is \"drum\", whose rim rests" : ".payload.fixed is true");
 }
 
