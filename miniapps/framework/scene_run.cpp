@@ -97,7 +97,10 @@ class SceneRun {
     if (_result.exit_code != ExitCode::ok) return;
     {
       const ScopedStopwatch stopwatch(_result.timing.verify_s);
+      if (const std::vector<HistoryCheck> checks = scene->history_checks(); !checks.empty())
+        add_history_checks(checks, run::read_history(_directory.file("history.csv")), _result);
       _result.exit_code = simulation->verify(&_directory, _result);
+      if (_result.exit_code == ExitCode::interrupted) _result.checks.clear();  // it lacks others
     }
     if (!_options.quiet)
       for (const std::string& warning : _result.warnings) print_notice(_app.program(), warning);

@@ -16,6 +16,7 @@
 #include "common/run/result_document.hpp"
 #include "common/run/run_directory.hpp"
 #include "kernels/device/backend.hpp"
+#include "miniapps/framework/history_checks.hpp"
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
@@ -154,6 +155,9 @@ class Scene {
 
   /// Sentences on what a user may not have meant, which a run and `--check` print unless they are quiet.
   [[nodiscard]] virtual std::vector<std::string> notices() const { return {}; }
+
+  /// Checks of history.csv.
+  [[nodiscard]] virtual std::vector<HistoryCheck> history_checks() const { return {}; }
 
   /// Text that `--check` prints; may be empty.
   [[nodiscard]] virtual std::string check_report() const { return {}; }

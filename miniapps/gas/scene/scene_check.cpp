@@ -10,6 +10,7 @@
 #include "kernels/reference/gas/exact_riemann.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/gas/scene/scene_survey.hpp"
+#include "miniapps/gas/simulation/simulation.hpp"
 
 namespace drogue::gas_app {
 namespace {
@@ -195,6 +196,8 @@ void complete_and_check(const Table& root, GasScene& scene) {
   check_regions(root, scene);
   framework::complete_output(root, scene.output, {"rho", "u", "p"}, {scene.end_time, "run.end_time"});
   complete_verify(root, scene);
+  framework::require_measurable(root, scene.verify.history, scene.output, {scene.end_time, "run.end_time"},
+                                history_columns());
   check_initial(root, scene);
 }
 

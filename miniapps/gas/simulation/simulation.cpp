@@ -103,7 +103,7 @@ framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits
   return stop;
 }
 
-std::vector<run::Column> Simulation::history_columns() const {
+std::vector<run::Column> history_columns() {
   return {{"step", ""},
           {"dt", "s"},
           {"mass", "kg/m^2"},

@@ -1,7 +1,7 @@
 #include "miniapps/parachute/simulation/sheet_output.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <cmath>
 #include <sstream>
 
 #include "kernels/mesh/edges.hpp"
@@ -78,45 +78,32 @@ void add_vertices(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, 
 
 }  // namespace
 
-void append_measure_columns(const FlowScene& scene, std::vector<run::Column>& columns) {
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
-    const std::string name = "canopy_" + std::to_string(i) + "_";
-    const auto add_vector = [&](const char* quantity, const char* unit) {
-      for (const char* axis : axis_names) columns.push_back({name + quantity + "_" + axis, unit});
-    };
-    if (scene.has_fluid()) add_vector("force", "N");
-    add_vector("line_force", "N");
-    add_vector("payload", "m");
-    add_vector("payload_velocity", "m/s");
-    columns.push_back({name + "projected_area", "m^2"});
-    if (scene.has_fluid()) columns.push_back({name + "leak", "m^3/s"});
-    columns.push_back({name + "largest_strain", ""});
-    columns.push_back({name + "inversion", ""});
-  }
-}
-
-std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets& sheets,
-                                            const SheetState& state, const Vector& origin,
-                                            const Vector& velocity, framework::HistoryRow& row) {
-  std::vector<CanopyMeasures> canopies;
+void append_measures(const FlowScene& scene, const Sheets& sheets, const SheetState& state,
+                     const Vector& origin, const Vector& velocity, framework::HistoryRow& row) {
+  const Vector stream = scene.stream().value_or(Vector{});
   const auto append = [&row](const Vector& vector) {
     row.values.insert(row.values.end(), vector.begin(), vector.end());
   };
   for (std::size_t i = 0; i < sheets.canopies.size(); ++i) {
-    const std::optional<double> release = scene.canopies[i].payload.release;
-    CanopyMeasures& one = canopies.emplace_back(
-        measure(sheets.canopies[i], sheets.fabric, state, release && row.time > *release));
+    const Canopy& canopy = scene.canopies[i];
+    CanopyMeasures one = measure(sheets.canopies[i], sheets.fabric, state,
+                                 canopy.payload.release && row.time > *canopy.payload.release);
+    Vector relative = stream;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       one.payload[axis] += origin[axis];
       one.velocity[axis] += velocity[axis];
+      relative[axis] -= one.velocity[axis];
     }
     if (scene.has_fluid()) append(one.force);
     for (const Vector& vector : {one.line_force, one.payload, one.velocity}) append(vector);
     row.values.push_back(one.projected_area);
     if (scene.has_fluid()) row.values.push_back(one.leak);
+    if (scene.lack_of_airspeed(i).empty())
+      row.values.insert(row.values.end(), {std::hypot(relative[0], relative[1], relative[2]),
+                                           drag_coefficient(one.force, relative, scene.parameters.density,
+                                                            canopy.nominal_area())});
     row.values.insert(row.values.end(), {one.largest_strain, one.inversion});
   }
-  return canopies;
 }
 
 double count_intersections(const FlowScene& scene, const Sheets& sheets, std::span<const Vector> positions,

@@ -75,7 +75,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
       _images(scene, _sheets),
       _grids(grids_beside_canopies(scene, _sheets)),
       _statistics(scene.parameters.watches_extremes),
-      _record(scene, scene.has_sheets()) {
+      _peaks(scene.canopies.size(), scene.has_sheets()) {
   if (settings.communicator != nullptr) {
     if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
       throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
@@ -92,7 +92,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     _solver = flow::create_solver(settings.backend, scene.parameters);
   }
   for (const Body& body : scene.bodies) _inside.emplace_back(body, scene.parameters);
-  if (_coupled != nullptr) _record.watch(*_coupled, _sheets);
+  if (_coupled != nullptr) _peaks.watch(*_coupled, _sheets);
   if (_shared != nullptr) return;
   for (Snapshot& snapshot : _snapshots)
     for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));
@@ -154,30 +154,6 @@ framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits
     if (_stop == flow::Stop::interrupted) return framework::StopReason::interrupted;
     if (at_pause(step)) return framework::StopReason::pause;
   }
-}
-
-std::vector<run::Column> Simulation::history_columns() const {
-  std::vector<run::Column> columns = {{"step", ""},
-                                      {"dt", "s"},
-                                      {"kinetic_energy", "J"},
-                                      {"enstrophy", "m^3/s^2"},
-                                      {"dissipation", "W"},
-                                      {"momentum_x", "kg m/s"},
-                                      {"momentum_y", "kg m/s"},
-                                      {"momentum_z", "kg m/s"},
-                                      {"max_speed", "m/s"},
-                                      {"divergence_rms", "1/s"},
-                                      {"divergence_max", "1/s"}};
-  for (std::size_t side = 0; side < 6; ++side)
-    if (!is_periodic(_scene.parameters, side))
-      columns.push_back({std::string("outflow_") + side_names[side], "m^3/s"});
-  for (int body = 0; body < static_cast<int>(_scene.bodies.size()); ++body)
-    for (int axis = 0; axis < 3; ++axis) columns.push_back({force_column(body, axis), "N"});
-  append_outside_columns(columns);
-  append_displacement_columns(columns);
-  append_canopy_columns(columns);
-  append_flag_columns(columns);
-  return columns;
 }
 
 framework::HistoryRow Simulation::row() {

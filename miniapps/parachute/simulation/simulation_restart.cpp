@@ -46,7 +46,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
     writer.array("face_acceleration", faces.size());
     writer.write("face_acceleration", 0, faces);
   }
-  _record.write(writer, *_coupled);
+  _peaks.write(writer, *_coupled);
   const coupling::BlockProgress& block = state.block;
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
@@ -74,8 +74,7 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   if (!state.defect.empty()) read("defect", state.defect);
   if (_scene.is_explicit()) read("sheet_force", state.forces);
   if (!state.face_acceleration.empty()) reader.read("face_acceleration", 0, state.face_acceleration);
-  const auto [step, time] = now();
-  _record.read(reader, step, time, *_coupled);
+  _peaks.read(reader, *_coupled);
   state.block = {.dt = reader.number("block_dt"),
                  .substeps = reader.integer("block_substeps"),
                  .end = reader.integer("block_end"),
