@@ -31,6 +31,7 @@ Json checks_json(const std::vector<Check>& checks) {
                     {"value", number(check.value)},
                     {"tolerance", number(check.tolerance)},
                     {"passed", check.passed}});
+    if (check.measurement) json.back()["measured"] = number(check.measurement->value);
     if (check.rows) json.back()["rows"] = *check.rows;
   }
   return json;
@@ -143,6 +144,20 @@ bool ResultDocument::add_check(const std::string& name, double value, double tol
   const bool passed = std::abs(value) <= tolerance;  // false for NaN
   checks.push_back({name, value, tolerance, passed, measurement});
   return passed;
+}
+
+void ResultDocument::add_deviation(const std::string& name, double quantity, double expected,
+                                   double tolerance) {
+  if (expected == 0.0) return add_distance(name, quantity, expected, tolerance);
+  const double margin = std::abs(expected) * tolerance;
+  add_check(name, std::abs(quantity / expected - 1.0), tolerance,
+            Measurement{quantity, expected - margin, expected + margin});
+}
+
+void ResultDocument::add_distance(const std::string& name, double quantity, double expected,
+                                  double tolerance) {
+  add_check(name, std::abs(quantity - expected), tolerance,
+            Measurement{quantity, expected - tolerance, expected + tolerance});
 }
 
 void ResultDocument::state_rows(std::size_t rows, double period) {

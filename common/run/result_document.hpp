@@ -26,7 +26,7 @@ struct Check {
   double value = 0.0;
   double tolerance = 0.0;
   bool passed = false;
-  /// Quantity whose deviation from a target is `value`. The summary of a run has it, result.json has not.
+  /// Quantity whose deviation from a target is `value`.
   std::optional<Measurement> measurement = {};
   std::optional<std::int64_t> rows = {};  ///< of history.csv from which it is computed, if from some
 
@@ -116,6 +116,13 @@ struct ResultDocument {
   /// Adds a check. Returns true if it passed; NaN fails.
   bool add_check(const std::string& name, double value, double tolerance,
                  const std::optional<Measurement>& measurement = {});
+
+  /// Adds a check of the deviation of a quantity from an expected value, in any one unit: relative to that
+  /// value, or itself if that is 0.
+  void add_deviation(const std::string& name, double quantity, double expected, double tolerance);
+
+  /// Adds a check of the distance between a quantity and an expected value; all three have any one unit.
+  void add_distance(const std::string& name, double quantity, double expected, double tolerance);
 
   /// States from how many rows of history.csv the last check is computed, and warns of few. `period`: rows in
   /// a period of an oscillation, or 0.

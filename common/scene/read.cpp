@@ -87,9 +87,12 @@ class Reader {
   static constexpr std::pair<std::string_view, std::string_view> renamed_keys[] = {{"bar", "tolerance"}};
 
   std::string unknown(const Table& table, const std::string& name) const {
-    std::string text = "unknown key " + toml_string(table.path_of(name)) + "; ";
-    for (const std::string& path : all_paths(_root)) {
-      if (path.ends_with("." + name)) return text + "did you mean \"" + path + "\"?";
+    const std::string path = toml_string(table.path_of(name));
+    if (const auto found = table._former.find(name); found != table._former.end())
+      return path + " is now " + found->second;
+    std::string text = "unknown key " + path + "; ";
+    for (const std::string& other : all_paths(_root)) {
+      if (other.ends_with("." + name)) return text + "did you mean \"" + other + "\"?";
     }
     std::vector<std::string> valid;
     for (const auto& key : table._keys) valid.push_back(key->_name);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -84,6 +85,9 @@ class Table {
   /// Key that has been declared. Throws std::out_of_range for another name.
   [[nodiscard]] Key& at(const std::string& name);
 
+  /// Names a former key, which is refused with the words that replace it.
+  void former(const std::string& name, const std::string& replacement) { _former[name] = replacement; }
+
   /// Requires exactly one of the keys `names`.
   Table& exactly_one_of(std::vector<std::string> names);
 
@@ -108,6 +112,7 @@ class Table {
   std::string _origin;
   std::vector<std::unique_ptr<Key>> _keys;
   std::vector<std::string> _alternatives;
+  std::map<std::string, std::string> _former;
   std::shared_ptr<void> _keep;  ///< the default value a prototype is bound to
 };
 

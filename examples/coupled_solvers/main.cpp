@@ -71,7 +71,7 @@ int run(int steps) {
   fabric::FabricSolver<ExecutionSpace> fabric(space, cloth(dt));
   const int vertices = fabric.vertices();
   const coupling::GridTransfer<ExecutionSpace> transfer(space, flow::coupling_grid(flow.grid()),
-                                                        coupling::DeltaKernel::cbs43, vertices);
+                                                        coupling::DeltaFunction::cbs43, vertices);
   const fabric::PointsView<ExecutionSpace> beside("example::air", n * n);
   const fabric::PointsView<ExecutionSpace> force("example::force_on_air", n * n);
   const auto [positions, velocities] = fabric.state();

@@ -48,14 +48,14 @@ struct Heat final : Simulation {
     writer.write("u", 0, download());
   }
   SimulationTime now() override { return _now; }
-  Stop advance(const AdvanceLimits& limits, const RowSink& rows, const Poll& poll) override {
+  StopReason advance(const AdvanceLimits& limits, const RowSink& rows, const Poll& poll) override {
     while (_now.time < limits.target_time) {
-      if (!poll(_now)) return Stop::interrupted;
+      if (!poll(_now)) return StopReason::interrupted;
       enqueue_step(limits.target_time);
       if (limits.row_every > 0 && _now.step % limits.row_every == 0) rows(row());
-      if (_now.step == limits.pause_step) return Stop::pause;
+      if (_now.step == limits.pause_step) return StopReason::pause;
     }
-    return Stop::target;
+    return StopReason::target;
   }
   std::vector<run::Column> history_columns() const override { return {{"u_0", "K"}}; }
   HistoryRow row() override { return {_now.time, {download()[0]}}; }

@@ -16,6 +16,7 @@
 #include "common/run/result_document.hpp"
 #include "common/run/run_directory.hpp"
 #include "kernels/device/backend.hpp"
+#include "miniapps/framework/history_checks.hpp"
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
@@ -36,7 +37,7 @@ struct HistoryRow {
 };
 
 /// Reason for which `Simulation::advance` returned.
-enum class Stop {
+enum class StopReason {
   target,       ///< the target time is reached
   pause,        ///< the pause step is reached
   interrupted,  ///< the poll requested the end
@@ -87,7 +88,7 @@ class Simulation {
 
   /// Takes steps until a limit is reached, and passes a row to `rows` every `limits.row_every` steps. Calls
   /// `poll` at least ten times per second.
-  virtual Stop advance(const AdvanceLimits& limits, const RowSink& rows, const Poll& poll) = 0;
+  virtual StopReason advance(const AdvanceLimits& limits, const RowSink& rows, const Poll& poll) = 0;
 
   /// Called at a target time, once its outputs are written: plans the steps to the next target. Returns false
   /// if the run cannot continue; `failure_text` then explains.
@@ -154,6 +155,9 @@ class Scene {
 
   /// Sentences on what a user may not have meant, which a run and `--check` print unless they are quiet.
   [[nodiscard]] virtual std::vector<std::string> notices() const { return {}; }
+
+  /// Checks of history.csv.
+  [[nodiscard]] virtual std::vector<HistoryCheck> history_checks() const { return {}; }
 
   /// Text that `--check` prints; may be empty.
   [[nodiscard]] virtual std::string check_report() const { return {}; }

@@ -74,6 +74,10 @@ class TypedScene : public Scene {
     if constexpr (requires { _content.notices; }) return _content.notices;
     return {};
   }
+  [[nodiscard]] std::vector<HistoryCheck> history_checks() const override {
+    if constexpr (requires { _content.verify.history; }) return _content.verify.history;
+    return {};
+  }
   [[nodiscard]] std::unique_ptr<Simulation> create(const SimulationSettings& settings) const override {
     return std::make_unique<Run>(_content, settings);
   }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs a scene of drogue-parachute with a body on several grids and prints the forces that its [verify] names.
+"""Runs a scene of drogue-parachute with a body on several grids and prints what its [[verify.history]] measures.
 
     scripts/studies/measure_drag.py SCENE --ratio 1,1.5,2 [--bin build/host/bin] [--out out/drag] [-- ARGUMENT...]
 
@@ -42,9 +42,8 @@ def assignments(scene, ratio):
 
 def refuse(scene, ratios):
     """Ends the program with a sentence if the scene cannot be run on grids of these ratios."""
-    verify = scene.get("verify", {})
-    if "max_dt" not in scene["run"] or not (verify.get("mean_force") or verify.get("frequency")):
-        sys.exit("measure_drag.py: the scene needs run.max_dt and a [[verify.mean_force]] or [[verify.frequency]].")
+    if "max_dt" not in scene["run"] or not scene.get("verify", {}).get("history"):
+        sys.exit("measure_drag.py: the scene needs run.max_dt and a [[verify.history]].")
     for ratio in ratios:
         for n in scene["grid"]["cells"]:
             if n > 1 and (ratio <= 0 or ratio * n != round(ratio * n)):
@@ -67,7 +66,8 @@ def main():
                               *arguments], check=False)
         if run.returncode not in (0, 5):  # a check may fail: its value is the point
             return run.returncode
-        rows.append((ratio, json.loads((out / "result.json").read_text(encoding="utf-8"))["forces"]))
+        checks = json.loads((out / "result.json").read_text(encoding="utf-8"))["checks"]
+        rows.append((ratio, {check["name"]: check["measured"] for check in checks if "measured" in check}))
         print(f"ratio {ratio:g}:", ", ".join(f"{name} {value:.4f}" for name, value in rows[-1][1].items()), flush=True)
     if len(rows) > 1:
         (coarse, of_coarse), (fine, of_fine) = rows[-2:]

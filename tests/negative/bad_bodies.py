@@ -21,7 +21,7 @@ filter = 0.5
 end_time = 0.1
 max_dt = 0.01
 [verify]
-force = [{ body = 0, axis = "x", value = 1, tolerance = 1 }]
+history = [{ column = "body_0_force_x", statistic = "last", value = 1, tolerance = 1 }]
 """
 
 # Replaced line, its new text, the line in the error, and words of the message.
@@ -60,8 +60,8 @@ BAD_LINES = [
     (12, "lengths = [0.4, 0.9]", 12, ["body[0]", "along z", "cross its image", "at most 0.8 m"]),
     (13, "edge_length = 0.1", 13, ["body[0].edge_length", "0.1", "0.0714"]),
     (13, "edge_length = 1e-4", 13, ["body[0].edge_length", "vertices", "2^20"]),
-    (21, 'force = [{ body = 1, axis = "x", value = 1, tolerance = 1 }]', 21, ["verify.force[0].body = 1", "number of bodies is 1"]),
-    (21, 'force = [{ body = 0, axis = "x", value = 0, tolerance = 1 }]', 21, ["verify.force[0].value", "relative"]),
+    (21, 'history = [{ column = "body_1_force_x", statistic = "last", value = 1, tolerance = 1 }]', 21,
+     ['verify.history[0].column = "body_1_force_x" is no column', 'did you mean "body_0_force_x"?']),
 ]
 
 ROUND = """\
@@ -102,8 +102,10 @@ max_dt = 0.01
 [output]
 history_every = 1
 [verify]
-mean_force = [{ body = 0, axis = "x", from = 1, reference = 0.1, value = 1, tolerance = 1 }]
-frequency = [{ body = 1, axis = "y", from = 1, value = 1, tolerance = 1 }]
+history = [
+  { column = "body_0_force_x", statistic = "mean", from = 1, reference = 0.1, value = 1, tolerance = 1 },
+  { column = "body_1_force_y", statistic = "frequency", from = 1, value = 1, tolerance = 1 },
+]
 """
 
 # As above, for ROUND.
@@ -153,12 +155,13 @@ BAD_ROUND_LINES = [
     # two dimensions
     (5, "cells = [16, 16, 1]", 9, ["body[0].kind", "one cell along z"]),
     # checks
-    (36, "history_every = 0", 38, ["verify.mean_force[0]", "output.history_every"]),
-    (38, 'mean_force = [{ body = 3, axis = "x", value = 1, tolerance = 1 }]', 38, ["verify.mean_force[0].body = 3", "number of bodies is 3"]),
-    (38, 'mean_force = [{ body = 0, axis = "x", from = 2, value = 1, tolerance = 1 }]', 38, ["verify.mean_force[0].from", "run.end_time"]),
-    (38, 'mean_force = [{ body = 0, axis = "x", reference = 0, value = 1, tolerance = 1 }]', 38, ["verify.mean_force[0].reference", "> 0"]),
-    (39, 'frequency = [{ body = 1, axis = "y", value = 0, tolerance = 1 }]', 39, ["verify.frequency[0].value", "relative"]),
-    (39, 'frequency = [{ body = 1, axis = "y", from = -1, value = 1, tolerance = 1 }]', 39, ["verify.frequency[0].from", ">= 0"]),
+    (36, "history_every = 0", 38, ["verify.history[0]", "output.history_every"]),
+    (39, '{ column = "body_3_force_x", statistic = "mean", value = 1, tolerance = 1 },', 39,
+     ['verify.history[0].column = "body_3_force_x" is no column', 'did you mean "body_0_force_x"?']),
+    (39, '{ column = "body_0_force_x", statistic = "mean", from = 2, value = 1, tolerance = 1 },', 39, ["verify.history[0].from", "run.end_time"]),
+    (39, '{ column = "body_0_force_x", statistic = "mean", reference = 0, value = 1, tolerance = 1 },', 39, ["verify.history[0].reference", "> 0"]),
+    (40, '{ column = "body_1_force_y", statistic = "frequency", value = 0, tolerance = 1 },', 40, ["verify.history[1].value", "positive"]),
+    (40, '{ column = "body_1_force_y", statistic = "frequency", from = -1, value = 1, tolerance = 1 },', 40, ["verify.history[1].from", ">= 0"]),
 ]
 
 PISTON = """\
@@ -183,11 +186,18 @@ max_dt = 0.01
 [output]
 history_every = 1
 [verify]
-[[verify.oscillation]]
+[[verify.history]]
 column = "body_0_displacement"
+statistic = "frequency"
 from = 0.5
-frequency = { value = 0.87, tolerance = 0.1 }
-amplitude = { value = 0.03, tolerance = 0.1 }
+value = 0.87
+tolerance = 0.1
+[[verify.history]]
+column = "body_0_displacement"
+statistic = "amplitude"
+from = 0.5
+value = 0.03
+tolerance = 0.1
 """
 
 # As above, for PISTON.
@@ -201,12 +211,18 @@ BAD_PISTON_LINES = [
     (6, 'boundary = { x = "slip", y = "periodic", z = "periodic" }', 13, ["body[0].mount", "periodic sides", "along x"]),
     (11, "lengths = [0.8, 0.7]", 11, ["body[0].lengths", "close the channel", "0.8 m wide along z"]),
     (15, 'method = "explicit"', 15, ["coupling.method", "body[0] moves all of the fluid, 1.25", "0.1"]),
-    (20, "history_every = 0", 22, ["verify.oscillation[0]", "output.history_every"]),
-    (23, 'column = "body_0_displacment"', 23, ["verify.oscillation[0].column", 'did you mean "body_0_displacement"?']),
-    (23, 'column = "kinetic_energy"', 23, ["verify.oscillation[0].column", "place"]),
-    (23, "", 22, ['missing key "verify.oscillation[0].column"']),
-    (24, "from = 2", 24, ["verify.oscillation[0].from", "run.end_time"]),
-    (25, "frequency = { value = 0, tolerance = 0.1 }", 25, ["verify.oscillation[0].frequency.value", "positive"]),
-    (26, "amplitude = { value = -1, tolerance = 0.1 }", 26, ["verify.oscillation[0].amplitude.value", "positive"]),
-    (26, "amplitude = { value = 1 }", 26, ['missing key "verify.oscillation[0].amplitude.tolerance"']),
+    (20, "history_every = 0", 22, ["verify.history[0]", "output.history_every"]),
+    (23, 'column = "body_0_displacment"', 23, ["verify.history[0].column", 'did you mean "body_0_displacement"?']),
+    (23, 'column = "time"', 23, ["verify.history[0].column", "no column"]),
+    (23, "", 22, ['missing key "verify.history[0].column"']),
+    (24, 'statistic = "median"', 24, ["verify.history[0].statistic", '"mean"']),
+    (24, "", 22, ['missing key "verify.history[0].statistic"']),
+    (25, "from = 2", 25, ["verify.history[0].from", "run.end_time"]),
+    (25, "from = 0.5\nto = 0.5", 26, ["verify.history[0].to", "from"]),
+    (25, "from = 0.5\nto = 2.1", 26, ["verify.history[0].to", "run.end_time"]),
+    (26, "value = 0", 26, ["verify.history[0].value", "positive"]),
+    (27, "tolerance = -1", 27, ["verify.history[0].tolerance", ">= 0"]),
+    (32, "value = -1", 32, ["verify.history[1].value", "negative"]),
+    (32, "", 28, ['missing key "verify.history[1].value"']),
+    (33, "", 28, ['missing key "verify.history[1].tolerance"']),
 ]

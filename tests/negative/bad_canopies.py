@@ -39,8 +39,8 @@ max_dt = 0.01
 [output]
 fields = ["position", "von_mises"]
 [verify]
-drag = [{ canopy = 0, from = 0.05, to = 0.1, value = 1, tolerance = 1 }]
-terminal_speed = [{ canopy = 0, from = 0.05, to = 0.1, value = 5, tolerance = 1 }]
+history = [{ column = "canopy_0_drag_coefficient", statistic = "mean", from = 0.05, to = 0.1, value = 1, tolerance = 1 },
+  { column = "canopy_0_airspeed", statistic = "mean", from = 0.05, to = 0.1, value = 5, tolerance = 1 }]
 peak_force = [{ canopy = 1, force = [1, 100], time = [0.01, 0.1] }]
 force_balance = 1e-14
 """
@@ -162,30 +162,31 @@ BAD_LINES = [
     (28, "edge_length = 0.07\nmembrane_modulus = 3e4", 29, ["canopy[1].membrane_modulus", "canopy[0]"]),
     (28, "edge_length = 0.07\npoisson = 0.2", 29, ["canopy[1].poisson", "canopy[0]"]),
     # checks
-    (39, "drag = [{ canopy = 2, from = 0.05, to = 0.1, value = 1, tolerance = 1 }]", 39,
-     ["verify.drag[0].canopy = 2", "number of canopies is 2"]),
-    (39, "drag = [{ from = 0.05, to = 0.2, value = 1, tolerance = 1 }]", 39, ["verify.drag[0].to", "run.end_time"]),
-    (39, "drag = [{ from = 0.05, to = 0.05, value = 1, tolerance = 1 }]", 39, ["verify.drag[0].to", "from"]),
-    (39, "drag = [{ from = 0.05, to = 0.1, value = 0, tolerance = 1 }]", 39, ["verify.drag[0].value", "relative"]),
-    (3, 'velocity = [0, 0, "5+t"]', 39, ["verify.drag[0]", "fluid.velocity"]),
-    (40, "terminal_speed = [{ canopy = 2, from = 0, to = 0.1, value = 1, tolerance = 1 }]", 40,
-     ["verify.terminal_speed[0].canopy = 2"]),
-    (39, "projected_area = [{ canopy = 2, from = 0.05, to = 0.1, value = 1, tolerance = 1 }]", 39,
-     ["verify.projected_area[0].canopy = 2"]),
-    (39, "leak = [{ canopy = 2, from = 0.05, to = 0.1, tolerance = 1 }]", 39, ["verify.leak[0].canopy = 2"]),
-    (39, "leak = [{ from = 0.05, to = 0.2, tolerance = 1 }]", 39, ["verify.leak[0].to", "run.end_time"]),
-    (39, "leak = [{ from = 0.05, to = 0.1 }]", 39, ["verify.leak[0].tolerance"]),
-    (39, "leak = [{ from = 0.05, to = 0.1, tolerance = -1 }]", 39, ["verify.leak[0].tolerance"]),
-    (39, "leak = [{ from = 0.05, to = 0.1, tolerance = 1, rms_tolerance = -1 }]", 39, ["verify.leak[0].rms_tolerance", ">= 0"]),
+    (39, 'history = [{ column = "canopy_2_drag_coefficient", statistic = "mean", from = 0.05, to = 0.1, value = 1, tolerance = 1 },', 39,
+     ['verify.history[0].column = "canopy_2_drag_coefficient" is no column', 'did you mean "canopy_0_drag_coefficient"?']),
+    (39, 'history = [{ column = "canopy_0_drag_coefficient", statistic = "mean", from = 0.05, to = 0.2, value = 1, tolerance = 1 },', 39,
+     ["verify.history[0].to", "run.end_time"]),
+    (39, 'history = [{ column = "canopy_0_drag_coefficient", statistic = "mean", from = 0.05, to = 0.05, value = 1, tolerance = 1 },', 39,
+     ["verify.history[0].to", "from"]),
+    (3, 'velocity = [0, 0, "5+t"]', 39, ["verify.history[0]", "a fluid.velocity that does not vary"]),
+    (40, '{ column = "canopy_2_airspeed", statistic = "mean", from = 0, to = 0.1, value = 1, tolerance = 1 }]', 40, ["verify.history[1].column"]),
+    (40, '{ column = "canopy_2_projected_area", statistic = "mean", from = 0, to = 0.1, value = 1, tolerance = 1 }]', 40,
+     ["verify.history[1].column"]),
+    (42, "leak = [{ canopy = 2, from = 0.05, to = 0.1, tolerance = 1 }]", 42, ["verify.leak[0].canopy = 2", "number of canopies is 2"]),
+    (42, "leak = [{ from = 0.05, to = 0.2, tolerance = 1 }]", 42, ["verify.leak[0].to", "run.end_time"]),
+    (42, "leak = [{ from = 0.05, to = 0.05, tolerance = 1 }]", 42, ["verify.leak[0].to", "from"]),
+    (42, "leak = [{ from = 0.05, to = 0.1 }]", 42, ["verify.leak[0].tolerance"]),
+    (42, "leak = [{ from = 0.05, to = 0.1, tolerance = -1 }]", 42, ["verify.leak[0].tolerance"]),
+    (42, "leak = [{ from = 0.05, to = 0.1, tolerance = 1, rms_tolerance = -1 }]", 42, ["verify.leak[0].rms_tolerance", ">= 0"]),
     # The payload is fixed.
-    (3, "velocity = [0, 0, 0]", 39, ["verify.drag[0] is relative to the speed", "fluid.velocity is 0", "canopy[0].payload.fixed"]),
+    (3, "velocity = [0, 0, 0]", 39, ["verify.history[0] is relative to the speed", "fluid.velocity is 0", "canopy[0].payload.fixed"]),
     (42, "intersections = 0", 42, ["verify.intersections", "coupling.contact"]),
     (41, "peak_force = [{ canopy = 2, force = [1, 100] }]", 41, ["verify.peak_force[0].canopy = 2"]),
     (41, "peak_force = [{ canopy = 1, force = [100, 1] }]", 41, ["verify.peak_force[0].force"]),
     (41, "peak_force = [{ canopy = 1, force = [1, 100], time = [0.1, 0.01] }]", 41,
      ["verify.peak_force[0].time", "smaller"]),
     (37, 'fields = ["positions"]', 37, ["output.fields", "position"]),
-    (37, 'fields = ["position"]\nhistory_every = 0', 40, ["verify.drag[0]", "history_every"]),
+    (37, 'fields = ["position"]\nhistory_every = 0', 40, ["verify.history[0]", "history_every"]),
 ]
 
 DRUM = """\
@@ -214,9 +215,11 @@ dt = 0.001
 [output]
 history_every = 1
 [verify]
-[[verify.oscillation]]
+[[verify.history]]
 column = "canopy_0_payload_z"
-frequency = { value = 17.1, tolerance = 1 }
+statistic = "frequency"
+value = 17.1
+tolerance = 1
 """
 
 # As above, for DRUM.
@@ -229,5 +232,5 @@ BAD_DRUM_LINES = [
     (17, 'shape = "partly-closed"', 17, ["canopy[0].shape", "drum"]),
     (17, "lines = { length = 1 }", 17, ["canopy[0].lines", "drum"]),
     (17, "payload = { mass = 1 }", 17, ["canopy[0].payload", "drum"]),
-    (27, 'column = "canopy_1_payload_z"', 27, ["verify.oscillation[0].column", 'did you mean "canopy_0_payload_z"?']),
+    (27, 'column = "canopy_1_payload_z"', 27, ["verify.history[0].column", 'did you mean "canopy_0_payload_z"?']),
 ]

@@ -26,9 +26,11 @@ max_dt = 0.02
 [output]
 history_every = 1
 [verify]
-[[verify.oscillation]]
+[[verify.history]]
 column = "flag_0_tip_y"
-frequency = { value = 0.3, tolerance = 1 }
+statistic = "frequency"
+value = 0.3
+tolerance = 1
 """
 
 # The same in three dimensions: it ends within the domain, and its trailing edge has nine vertices.
@@ -58,5 +60,5 @@ BAD_LINES = [
     (19, 'method = "explicit"', 19, ["coupling.method", "[[flag]]"]),
     (19, "gravity = [0, -1e4, 0]", 19, ["coupling.gravity: 1e+04 m/s^2", "an edge of flag[0]", "at most 2.13e+03 m/s^2"]),
     (19, "contact = true", 19, ["coupling.contact", "[[canopy]]"]),
-    (27, 'column = "flag_0_tip_z"', 27, ["verify.oscillation[0].column", 'did you mean "flag_0_tip_']),
+    (27, 'column = "flag_0_tip_z"', 27, ["verify.history[0].column", 'did you mean "flag_0_tip_']),
 ]

@@ -14,9 +14,11 @@ domain = [[-3.0, 3.0], [-3.0, 3.0], [-4.0, 6.0]]
 boundary = {{ x = "slip", y = "slip", z = ["inflow", "outflow"] }}
 {canopies}
 [verify]
-drag = [{{ canopy = 0, from = 1.0, to = 2.0, value = 0.5, tolerance = 0.2 }}]
+history = [
+  {{ column = "canopy_0_drag_coefficient", statistic = "mean", from = 1.0, to = 2.0, reference = 1.0, value = 0.5, tolerance = 0.2 }},
+  {{ column = "canopy_0_airspeed", statistic = "mean", from = 1.0, to = 2.0, reference = 1.0, value = 3.0, tolerance = 0.1 }},
+]
 peak_force = [{{ canopy = 0, force = [40.0, 80.0], time = [0.5, 1.5] }}]
-terminal_speed = [{{ canopy = 0, from = 1.0, to = 2.0, value = 3.0, tolerance = 0.1 }}]
 """
 CANOPY = """[[canopy]]
 kind = "flat-circular"
@@ -139,7 +141,8 @@ def write_bodies(folder):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "scene.toml").write_text(
         'app = "parachute"\n[[body]]\nkind = "cylinder"\n[[body]]\nkind = "sphere"\n[verify]\n'
-        'mean_force = [{ body = 0, axis = "x", from = 2.0, reference = 2.0, value = 1.4, tolerance = 0.1 }]\n'
+        'history = [{ column = "body_0_force_x", statistic = "mean", from = 2.0, reference = 2.0, value = 1.4, tolerance = 0.1 },\n'
+        '{ column = "body_1_force_x", statistic = "max", from = 2.0, reference = 1.0, value = 3.0, tolerance = 0.1 }]\n'
     )
     time = [0.0, 1.0, 2.0, 3.0, 4.0]
     write_history(folder / "history.csv", {

@@ -23,7 +23,7 @@ from plot.flow.quantities import quantities
 from plot.parachute.canopies import Canopies, has_canopies, plane_through_canopy
 from plot.parachute.canopies_history import canopies_history_figure, drag_coefficient, nominal_area, relative_velocity
 from plot.parachute.canopy_figure import CanopyFigure, View, canopy_figure
-from plot.parachute.forces_history import forces_history_figure, mean_from
+from plot.parachute.forces_history import forces_history_figure, mean_between
 from plot.parachute.time_figure import Panel
 from plot.run_directory import read_run
 from synthetic_canopies import GORES, write_bodies, write_canopies, write_cloth_drop, write_drum, write_springs_and_flags
@@ -282,14 +282,14 @@ class CanopyPictures(unittest.TestCase):
     def test_shows_the_most_telling_check_in_the_heading(self):
         run = read_run(write_canopies(self.folder / "run"))
         check = {"value": 0.03, "tolerance": 0.1, "passed": True}
-        run.result["checks"] = [check | {"name": name} for name in ("divergence", "drag_0", "force_balance")]
+        run.result["checks"] = [check | {"name": name} for name in ("divergence", "canopy_0_drag_coefficient_mean", "force_balance")]
         (title,) = [text.get_text() for text in canopy_figure(self.view(run), run.snapshots[2]).texts if "t =" in text.get_text()]
-        self.assertIn(", drag off by 0.03 (tolerance 0.1)", title)
+        self.assertIn(", canopy drag coefficient mean off by 0.03 (tolerance 0.1)", title)
 
     def test_says_in_every_heading_which_check_failed_most(self):
         run = read_run(write_canopies(self.folder / "run", payload_speed=1.0))
         failed = {"name": "divergence", "value": 2e-6, "tolerance": 1e-9, "passed": False}
-        run.result["checks"] = [{"name": "drag_0", "value": 0.03, "tolerance": 0.1, "passed": True}, failed,
+        run.result["checks"] = [{"name": "canopy_0_drag_coefficient_mean", "value": 0.03, "tolerance": 0.1, "passed": True}, failed,
                                 failed | {"name": "momentum", "value": 2e-9}]  # fmt: skip
         words = ", FAILED: divergence 2e-06 (tolerance 1e-09)"
         for figure in (canopy_figure(self.view(run), run.snapshots[2]), canopies_history_figure(run)):
@@ -399,7 +399,8 @@ class CanopyPictures(unittest.TestCase):
 
     def test_mean_is_that_of_trapezoidal_rule(self):
         time, values = np.array([0, 1, 2, 4.0]), np.array([9, 1, 2, 3.0])
-        self.assertAlmostEqual((1.5 + 2 * 2.5) / 3, mean_from(time, values, 1.0))
+        self.assertAlmostEqual((1.5 + 2 * 2.5) / 3, mean_between(time, values, 1.0, 4.0))
+        self.assertAlmostEqual(1.5, mean_between(time, values, 1.0, 3.0))
 
     def test_history_without_canopies_or_second_row_is_not_drawn(self):
         run = write_canopies(self.folder / "run")

@@ -174,6 +174,12 @@ history_every = 10
 """
 
 
+def statistic(column, name, value, tolerance, **more):
+    """Element of `verify.history` for `--set`; `from_` is its `from`."""
+    keys = {"column": f"'{column}'", "statistic": f"'{name}'", "value": value, "tolerance": tolerance, **more}
+    return "{" + ",".join(f"{key.rstrip('_')}={text}" for key, text in keys.items()) + "}"
+
+
 class FlowTest(gas_program.GasTest):
     """Test case whose programs run in an empty temporary folder."""
 
@@ -183,6 +189,10 @@ class FlowTest(gas_program.GasTest):
         path = self.folder / name
         path.write_text(text, encoding="utf-8")
         return path
+
+    def measured(self, name):
+        """Quantity of a check in the run directory `out`."""
+        return next(check["measured"] for check in self.result("out")["checks"] if check["name"] == name)
 
     def fields(self, directory):
         return Hdf5File(PROGRAM, self.folder / directory / "fields.h5")

@@ -27,8 +27,8 @@ std::vector<stepping::MotionInterval> with_short_first_steps(
   std::vector<stepping::MotionInterval> result;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     stepping::MotionInterval part = intervals[i];
-    // The nearest power of two, since another end of the run changes the first rate a little; it is infinite at
-    // rest.
+    // The nearest power of two, since another end of the run changes the first rate a little; it is infinite
+    // at rest.
     const double time = std::exp2(std::round(std::log2(cfl / part.rate)));
     if ((i == 0 || part.begins_with != 0) && time < settling_steps * part.longest) {
       result.push_back({part.begin, time / settling_steps, part.rate, part.begins_with});

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/gas/parameters.hpp"
+#include "miniapps/framework/history_checks.hpp"
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
@@ -65,6 +66,7 @@ struct Verify {
   std::map<std::string, double> tolerances;  ///< by name: l1_density ... linf_pressure
   std::optional<Target> max_density;         ///< maximum over all cells at the end, kg/m^3
   std::optional<double> conservation;        ///< tolerance of the relative change of mass, momentum, energy
+  std::vector<framework::HistoryCheck> history;
 };
 
 struct GasScene {
@@ -76,6 +78,7 @@ struct GasScene {
   double end_time = 0.0;  ///< s
   Output output;
   Verify verify;
+  std::vector<std::string> notices;  ///< `framework::Scene::notices`
 };
 
 /// Source of the numerical scheme. `--seed-mode` replaces the scene's scheme by the baseline of [Shi].

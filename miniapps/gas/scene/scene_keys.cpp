@@ -185,6 +185,7 @@ void declare_verify(Table& table, Verify& verify) {
              "Largest relative change of mass, momentum and energy that passes, net of the fluxes through "
              "the ends")
       .at_least(0.0);
+  framework::declare_history_checks(table, verify.history);
 }
 
 }  // namespace

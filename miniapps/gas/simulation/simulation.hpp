@@ -18,6 +18,9 @@ struct LimiterCounts {
 /// Sets the group `limiter` of result.json. Does not throw.
 void set_limiter_metrics(const LimiterCounts& counts, run::Metrics& metrics);
 
+/// Columns of history.csv after the time.
+[[nodiscard]] std::vector<run::Column> history_columns();
+
 /// A scene on a solver. Functions as of `framework::Simulation`.
 class Simulation final : public framework::Simulation {
  public:
@@ -30,9 +33,11 @@ class Simulation final : public framework::Simulation {
   void restore(const run::RestartReader& reader) override;
   void write_restart(run::RestartWriter& writer) override;
   [[nodiscard]] framework::SimulationTime now() override;
-  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                          const framework::Poll& poll) override;
-  [[nodiscard]] std::vector<run::Column> history_columns() const override;
+  framework::StopReason advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                const framework::Poll& poll) override;
+  [[nodiscard]] std::vector<run::Column> history_columns() const override {
+    return gas_app::history_columns();
+  }
   [[nodiscard]] framework::HistoryRow row() override;
   [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
   void write_mesh(run::FieldSink& fields) const override;

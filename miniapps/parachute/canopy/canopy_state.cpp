@@ -188,6 +188,14 @@ CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
   return result;
 }
 
+double drag_coefficient(const Vector& force, const Vector& velocity, double density, double area) {
+  const double speed = std::hypot(velocity[0], velocity[1], velocity[2]),
+               pressure = 0.5 * density * speed * speed;
+  double along = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) along += force[axis] * velocity[axis];
+  return along == 0.0 ? 0.0 : along / (speed * pressure * area);
+}
+
 std::vector<fabric::Pull> pulls_on_payloads(const Sheets& sheets) {
   std::vector<fabric::Pull> pulls;
   for (const CanopyRows& rows : sheets.canopies) {

@@ -46,6 +46,11 @@ struct CanopyMeasures {
 [[nodiscard]] CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
                                      const SheetState& state, bool released);
 
+/// Drag coefficient 2 F / (rho U^2 S) of a force, N, whose component along U, the velocity of the fluid
+/// relative to the payload, m/s, is F; rho: density, kg/m^3; S: area, m^2. 0 if F is 0. Does not throw.
+[[nodiscard]] double drag_coefficient(const fabric::Vector& force, const fabric::Vector& velocity,
+                                      double density, double area);
+
 /// Lines that pull on the payload of each canopy, whose force is `CanopyMeasures::line_force`; none of a
 /// sheet without payload. Throws only std::bad_alloc.
 [[nodiscard]] std::vector<fabric::Pull> pulls_on_payloads(const Sheets& sheets);

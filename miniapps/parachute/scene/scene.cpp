@@ -42,8 +42,6 @@ const std::vector<std::string>& field_names() {
 
 bool is_canopy_field(const std::string& name) { return name == "position" || name == "von_mises"; }
 
-std::string displacement_column(std::size_t body) { return "body_" + std::to_string(body) + "_displacement"; }
-
 FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
                           SchemeSource source) {
   return framework::read_scene<FlowScene>(
@@ -64,6 +62,29 @@ double FlowScene::largest_added_mass_ratio() const {
   double largest = 0.0;
   for (const Canopy& canopy : canopies) largest = std::max(largest, added_mass_ratio(canopy));
   return largest;
+}
+
+std::optional<std::array<double, 3>> FlowScene::stream() const {
+  std::array<double, 3> stream{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double> component = SpaceTimeFunction(velocity[axis]).constant();
+    if (!component) return std::nullopt;
+    stream[axis] = *component;
+  }
+  return stream;
+}
+
+std::string FlowScene::lack_of_airspeed(std::size_t canopy) const {
+  if (!has_fluid()) return "which needs [fluid]";
+  const std::optional<std::array<double, 3>> constant = stream();
+  if (!constant) return "which needs a fluid.velocity that does not vary";
+  const bool is_drum = canopies[canopy].kind == CanopyKind::drum;
+  const auto owner =
+      static_cast<std::size_t>(canopies[canopy].payload.shared.value_or(static_cast<int>(canopy)));
+  const bool moves = !is_drum && !(canopies[owner].has_lines() && canopies[owner].payload.fixed);
+  if (moves || *constant != std::array<double, 3>{}) return "";
+  return "which is 0: fluid.velocity is 0 and canopy[" + std::to_string(is_drum ? canopy : owner) + "]" +
+         (is_drum ? ".kind is \"drum\", whose rim rests" : ".payload.fixed is true");
 }
 
 bool FlowScene::has_free_sheets() const {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "kernels/flow/parameters.hpp"
+#include "miniapps/framework/history_checks.hpp"
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
@@ -50,12 +51,6 @@ struct ExactSolution {
   std::string pressure;
 };
 
-/// Known value and the tolerance of the relative error.
-struct Target {
-  double value = 0.0;
-  double tolerance = 0.0;
-};
-
 /// Extreme velocity along a line, m/s, and optionally its coordinate, m.
 struct Extremum {
   double value = 0.0;
@@ -73,26 +68,6 @@ struct Profile {
   std::optional<Extremum> minimum, maximum;
 };
 
-/// Flow rate out of the domain through a side, m^3/s.
-struct FlowRate {
-  int side = 0;
-  Target target;
-};
-
-/// Component of the force of the fluid on a body at the end, N.
-struct BodyForce {
-  int body = 0;
-  int axis = 0;
-  Target target;
-};
-
-/// Mean of a quantity of a canopy over an interval of time.
-struct CanopyMean {
-  int canopy = 0;
-  double from = 0.0, to = 0.0;  ///< s
-  Target target;
-};
-
 /// Leak of a canopy over an interval of time, relative to the means of speed and projected area.
 struct CanopyLeak {
   int canopy = 0;
@@ -108,26 +83,10 @@ struct CanopyPeak {
   std::optional<std::array<double, 2>> time;
 };
 
-/// Quantity of the rows of the history from a time on, computed from the force of the fluid on a body.
-struct ForceWindow {
-  int body = 0;
-  int axis = 0;
-  double from = 0.0;       ///< s
-  double reference = 1.0;  ///< N or s
-  Target target;
-};
-
-/// Oscillation of a column of history.csv from a time on.
-struct Oscillation {
-  std::string column;
-  double from = 0.0;                ///< s
-  std::optional<Target> frequency;  ///< 1/s
-  std::optional<Target> amplitude;  ///< in the unit of the column
-};
-
 /// Largest rate at which the kinetic energy falls, W, and optionally its time, s.
 struct DissipationPeak {
-  Target target;
+  double value = 0.0;
+  double tolerance = 0.0;  ///< relative
   std::optional<double> time, time_tolerance;
 };
 
@@ -149,26 +108,24 @@ struct Verify {
   std::map<std::string, double> tolerances;                     ///< by name: l1_velocity ... linf_pressure
   std::optional<double> divergence;                             ///< 1/s
   std::optional<double> momentum, energy_growth, speed_growth;  ///< relative
-  std::optional<Target> kinetic_energy;                         ///< at the end, J
   std::optional<DissipationPeak> dissipation_peak;
   std::vector<Curve> kinetic_energy_curves, dissipation_curves;  ///< J, W
-  std::vector<FlowRate> flow_rates;
-  std::vector<BodyForce> forces;
-  std::vector<CanopyMean> drags;            ///< drag coefficients with the nominal area
-  std::vector<CanopyMean> terminal_speeds;  ///< of the fluid relative to the payload, m/s
-  std::vector<CanopyMean> projected_areas;  ///< m^2
   std::vector<CanopyLeak> leaks;
   std::vector<CanopyPeak> peak_forces;
-  std::optional<double> force_balance;   ///< relative
-  std::optional<double> intersections;   ///< number
-  std::optional<double> energy_drift;    ///< of a cloth drop, relative
-  std::vector<ForceWindow> mean_forces;  ///< over the reference, N
-  std::vector<ForceWindow> frequencies;  ///< of the force, times the reference, s
+  std::optional<double> force_balance;  ///< relative
+  std::optional<double> intersections;  ///< number
+  std::optional<double> energy_drift;   ///< of a cloth drop, relative
   std::vector<Profile> profiles;
-  std::vector<Oscillation> oscillations;
+  std::vector<framework::HistoryCheck> history;
 
   /// True if a check needs `flow::Extremes`. Does not throw.
   [[nodiscard]] bool needs_extremes() const { return energy_growth || speed_growth || dissipation_peak; }
+
+  /// True if a check other than `history` is computed from rows. Does not throw.
+  [[nodiscard]] bool needs_rows() const {
+    return !kinetic_energy_curves.empty() || !dissipation_curves.empty() || !leaks.empty() || force_balance ||
+           intersections || energy_drift;
+  }
 };
 
 /// Solver parameters for air at 15 degrees Celsius: 1.225 kg/m^3, 1.8e-5 Pa s. Does not throw.
@@ -215,6 +172,11 @@ struct FlowScene {
   [[nodiscard]] bool has_fluid() const { return fluid.has_value(); }
   /// True if a sheet moves by the forces of the fluid. Does not throw.
   [[nodiscard]] bool has_free_sheets() const;
+  /// Velocity of the fluid far upstream, m/s; none if it varies. Throws only std::bad_alloc.
+  [[nodiscard]] std::optional<std::array<double, 3>> stream() const;
+  /// Clause on why the fluid far upstream has no speed relative to a canopy, or one that is 0 all the time;
+  /// empty if it has one. Throws only std::bad_alloc.
+  [[nodiscard]] std::string lack_of_airspeed(std::size_t canopy) const;
   [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty() || !flags.empty(); }
   /// Courant number, the default one if none is given. Does not throw.
   [[nodiscard]] double cfl() const {
@@ -227,9 +189,6 @@ struct FlowScene {
     return initial[0].empty() ? velocity : initial;
   }
 };
-
-/// Column of history.csv with the displacement of a plate on a spring. Throws only std::bad_alloc.
-std::string displacement_column(std::size_t body);
 
 /// Fields of fields.h5: velocity, pressure, vorticity, q_criterion; of canopies position, von_mises. Does not
 /// throw.

@@ -4,18 +4,9 @@
 namespace drogue::parachute_app {
 namespace {
 
-using scene::Choices;
 using scene::Table;
 
 const std::vector<std::string> verified_place_and_time = {"x", "y", "z", "t"};
-
-const Choices<int> side_choices = {{"x_low", 0},  {"x_high", 1}, {"y_low", 2},
-                                   {"y_high", 3}, {"z_low", 4},  {"z_high", 5}};
-
-void declare_target(Table& table, Target& target, const std::string& unit, const std::string& tolerance) {
-  table.value("value", scene::real_codec(target.value), "Expected value").unit(unit).required();
-  table.value("tolerance", scene::real_codec(target.tolerance), tolerance).at_least(0.0).required();
-}
 
 void declare_exact(Table& table, ExactSolution& exact) {
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -99,20 +90,35 @@ void declare_curve(Table& table, Curve& curve, const std::string& unit, const st
       .required();
 }
 
-/// Canopy and interval of a `CanopyMean` or a `CanopyLeak`.
-template <class Interval>
-void declare_interval(Table& table, Interval& mean) {
-  table.value("canopy", scene::integer_codec(mean.canopy), "Number of the [[canopy]], from 0").range(0, 1e6);
-  table.value("from", scene::real_codec(mean.from), "Begin of the interval")
+void declare_leak(Table& table, CanopyLeak& leak) {
+  table.value("canopy", scene::integer_codec(leak.canopy), "Number of the [[canopy]], from 0").range(0, 1e6);
+  table.value("from", scene::real_codec(leak.from), "Begin of the interval")
       .unit("s")
       .at_least(0.0)
       .required();
-  table.value("to", scene::real_codec(mean.to), "End of the interval").unit("s").above(0.0).required();
+  table.value("to", scene::real_codec(leak.to), "End of the interval").unit("s").above(0.0).required();
+  table
+      .value("tolerance", scene::real_codec(leak.tolerance),
+             "Largest ratio of the mean that passes; what flows in and out of a canopy that breathes cancels")
+      .at_least(0.0)
+      .required();
+  table
+      .value("rms_tolerance", scene::real_codec(leak.rms_tolerance),
+             "Largest ratio of the root mean square that passes")
+      .at_least(0.0);
 }
 
-void declare_canopy_mean(Table& table, CanopyMean& mean, const std::string& unit) {
-  declare_interval(table, mean);
-  declare_target(table, mean.target, unit, "Largest relative deviation that passes");
+void declare_dissipation_peak(Table& table, DissipationPeak& peak) {
+  table.value("value", scene::real_codec(peak.value), "Expected value").unit("W").required();
+  table.value("tolerance", scene::real_codec(peak.tolerance), "Largest relative deviation that passes")
+      .at_least(0.0)
+      .required();
+  table.value("time", scene::real_codec(peak.time), "Expected time").unit("s");
+  table.value("time_tolerance", scene::real_codec(peak.time_tolerance), "Largest deviation of it that passes")
+      .unit("s")
+      .at_least(0.0)
+      .when([&peak] { return peak.time.has_value(); }, "with time", "time")
+      .required();
 }
 
 void declare_peak_force(Table& table, CanopyPeak& peak) {
@@ -126,31 +132,9 @@ void declare_peak_force(Table& table, CanopyPeak& peak) {
 }
 
 void declare_canopy_checks(Table& table, Verify& verify) {
-  table.tables(
-      "drag", verify.drags, [](Table& drag, CanopyMean& value) { declare_canopy_mean(drag, value, "1"); },
-      "Mean drag coefficients 2 F / (rho U^2 S0) of canopies over rows, S0 the area of the flat cloth");
-  table.tables(
-      "terminal_speed", verify.terminal_speeds,
-      [](Table& speed, CanopyMean& value) { declare_canopy_mean(speed, value, "m/s"); },
-      "Mean speeds of the fluid far upstream relative to payloads over rows of the history");
-  table.tables(
-      "projected_area", verify.projected_areas,
-      [](Table& area, CanopyMean& value) { declare_canopy_mean(area, value, "m^2"); },
-      "Mean areas of the shadows of canopies along z over rows of the history");
-  table.tables(
-      "leak", verify.leaks,
-      [](Table& leak, CanopyLeak& value) {
-        declare_interval(leak, value);
-        leak.value("tolerance", scene::real_codec(value.tolerance),
-                   "Largest ratio of the mean that passes; what flows in and out of a canopy that breathes "
-                   "cancels")
-            .at_least(0.0)
-            .required();
-        leak.value("rms_tolerance", scene::real_codec(value.rms_tolerance),
-                   "Largest ratio of the root mean square that passes")
-            .at_least(0.0);
-      },
-      "Mean flow through canopies over mean speed far upstream and mean projected area, means over rows");
+  table.tables("leak", verify.leaks, declare_leak,
+               "Mean flow through canopies over mean speed far upstream and mean projected area, means over "
+               "rows");
   table.tables("peak_force", verify.peak_forces, declare_peak_force,
                "Largest forces of the lines on payloads after any step");
   table
@@ -165,45 +149,22 @@ void declare_canopy_checks(Table& table, Verify& verify) {
       .at_least(0.0);
 }
 
-void declare_component(Table& table, int& body, int& axis) {
-  table.value("body", scene::integer_codec(body), "Number of the [[body]], from 0").range(0, 1e6).required();
-  table.value("axis", scene::choice_codec(axis, axis_choices), "Component").required();
-}
-
-/// `unit`: of the reference.
-void declare_window(Table& table, ForceWindow& window, const std::string& reference,
-                    const std::string& unit) {
-  declare_component(table, window.body, window.axis);
-  table
-      .value("from", scene::real_codec(window.from),
-             "Time of the first row of the history that counts; the last one counts always")
-      .unit("s")
-      .at_least(0.0);
-  table.value("reference", scene::real_codec(window.reference), reference).unit(unit).above(0.0);
-  declare_target(table, window.target, "", "Largest relative deviation that passes");
-}
-
-void declare_oscillation(Table& table, Oscillation& oscillation) {
-  table
-      .value(
-          "column", scene::text_codec(oscillation.column),
-          "Column of history.csv: the displacement of a body with a mount, or a coordinate of the payload of "
-          "a canopy or of the tip of a flag, such as canopy_0_payload_z")
-      .required();
-  table
-      .value("from", scene::real_codec(oscillation.from),
-             "Time of the first row of the history that counts; the last one counts always")
-      .unit("s")
-      .at_least(0.0);
-  const std::string deviation = "Largest relative deviation that passes";
-  table.optional_table(
-      "frequency", oscillation.frequency,
-      [deviation](Table& target, Target& value) { declare_target(target, value, "1/s", deviation); },
-      "The frequency at which the column crosses its mean upwards");
-  table.optional_table(
-      "amplitude", oscillation.amplitude,
-      [deviation](Table& target, Target& value) { declare_target(target, value, "m", deviation); },
-      "Half of the difference of the largest and the least value, each by a parabola through three rows");
+/// Names keys of earlier versions, which were statistics of columns.
+void declare_former_keys(Table& table) {
+  const auto former = [&table](const char* name, const char* column, const char* statistic,
+                               const char* more = "") {
+    table.former(name, std::string("[[verify.history]] with column = \"") + column + "\", statistic = \"" +
+                           statistic + "\"" + more);
+  };
+  former("kinetic_energy", "kinetic_energy", "last");
+  former("flow_rate", "outflow_x_low", "last");
+  former("force", "body_0_force_x", "last");
+  former("mean_force", "body_0_force_x", "mean");
+  former("frequency", "body_0_force_x", "frequency", " and the inverse of the former reference");
+  former("oscillation", "flag_0_tip_y", "frequency", " or \"amplitude\"");
+  former("drag", "canopy_0_drag_coefficient", "mean");
+  former("terminal_speed", "canopy_0_airspeed", "mean");
+  former("projected_area", "canopy_0_projected_area", "mean");
 }
 
 }  // namespace
@@ -231,24 +192,8 @@ void declare_verify(Table& table, FlowScene& scene) {
       .value("speed_growth", scene::real_codec(verify.speed_growth),
              "Largest speed after any step over the initial one, less 1, that passes")
       .at_least(0.0);
-  const std::string deviation = "Largest relative deviation that passes";
-  table.optional_table(
-      "kinetic_energy", verify.kinetic_energy,
-      [deviation](Table& target, Target& value) { declare_target(target, value, "J", deviation); },
-      "The kinetic energy at the end");
-  table.optional_table(
-      "dissipation_peak", verify.dissipation_peak,
-      [deviation](Table& peak, DissipationPeak& value) {
-        declare_target(peak, value.target, "W", deviation);
-        peak.value("time", scene::real_codec(value.time), "Expected time").unit("s");
-        peak.value("time_tolerance", scene::real_codec(value.time_tolerance),
-                   "Largest deviation of it that passes")
-            .unit("s")
-            .at_least(0.0)
-            .when([&value] { return value.time.has_value(); }, "with time", "time")
-            .required();
-      },
-      "The largest rate at which the kinetic energy falls in a step");
+  table.optional_table("dissipation_peak", verify.dissipation_peak, declare_dissipation_peak,
+                       "The largest rate at which the kinetic energy falls in a step");
   table.tables(
       "kinetic_energy_curve", verify.kinetic_energy_curves,
       [](Table& curve, Curve& value) { declare_curve(curve, value, "J", "kinetic energies"); },
@@ -259,45 +204,11 @@ void declare_verify(Table& table, FlowScene& scene) {
         declare_curve(curve, value, "W", "rates at which the kinetic energy falls");
       },
       "Rates at which the kinetic energy falls, by the derivative of that interpolation");
-  table.tables(
-      "flow_rate", verify.flow_rates,
-      [deviation](Table& rate, FlowRate& value) {
-        rate.value("side", scene::choice_codec(value.side, side_choices), "Side of the domain").required();
-        declare_target(rate, value.target, "m^3/s", deviation);
-      },
-      "Flow rates out of the domain through sides at the end");
-  table.tables(
-      "force", verify.forces,
-      [deviation](Table& force, BodyForce& value) {
-        declare_component(force, value.body, value.axis);
-        declare_target(force, value.target, "N", deviation);
-      },
-      "Forces of the fluid on bodies at the end");
-  table.tables(
-      "mean_force", verify.mean_forces,
-      [](Table& window, ForceWindow& value) {
-        declare_window(window, value,
-                       "Force that the mean is divided by: half of density, squared speed and area for the "
-                       "drag coefficient",
-                       "N");
-      },
-      "Means of the forces of the fluid on bodies over the rows of the history from a time on");
-  table.tables(
-      "frequency", verify.frequencies,
-      [](Table& window, ForceWindow& value) {
-        declare_window(window, value,
-                       "Time that the frequency is multiplied by: width over speed for the Strouhal number",
-                       "s");
-      },
-      "Frequencies at which forces of the fluid on bodies cross their mean upwards in rows of the history");
-  table.tables("oscillation", verify.oscillations, declare_oscillation,
-               "Frequencies and amplitudes of places of sheets in rows of the history");
   declare_canopy_checks(table, verify);
   table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
   for (const char* of_fluid :
-       {"exact", "divergence", "momentum", "energy_growth", "speed_growth", "kinetic_energy",
-        "dissipation_peak", "kinetic_energy_curve", "dissipation_curve", "flow_rate", "force", "mean_force",
-        "frequency", "drag", "terminal_speed", "leak", "force_balance", "profile"})
+       {"exact", "divergence", "momentum", "energy_growth", "speed_growth", "dissipation_peak",
+        "kinetic_energy_curve", "dissipation_curve", "leak", "force_balance", "profile"})
     table.at(of_fluid).when(with_fluid(scene), fluid_condition, "");
   table
       .value("energy_drift", scene::real_codec(verify.energy_drift),
@@ -305,6 +216,8 @@ void declare_verify(Table& table, FlowScene& scene) {
              "passes, relative to the largest sum of the first two")
       .at_least(0.0)
       .when([&scene] { return !scene.has_fluid(); }, "without [fluid]", "");
+  framework::declare_history_checks(table, verify.history);
+  declare_former_keys(table);
 }
 
 }  // namespace drogue::parachute_app

@@ -48,7 +48,7 @@ ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::Simula
       _sheets(cloth_sheets(scene)),
       _cuts(_sheets.cuts, _sheets.fabric),
       // It takes a kernel of each step.
-      _record(scene, !scene.verify.peak_forces.empty()) {
+      _peaks(scene.canopies.size(), !scene.verify.peak_forces.empty()) {
   if (settings.communicator != nullptr)
     throw Failure(ExitCode::usage, "scenes without [fluid] run on one rank");
   _solver = fabric::create_solver(settings.backend, fabric_parameters(scene, _sheets));
@@ -57,7 +57,7 @@ ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::Simula
 void ClothSimulation::start() {
   const ScopedStopwatch stopwatch(_h2d_s);
   _solver->upload(_sheets.positions, std::vector<Vector>(_sheets.positions.size()));
-  _record.watch(*_solver, _sheets);
+  _peaks.watch(*_solver, _sheets);
   allocate_buffers();
 }
 
@@ -120,29 +120,29 @@ bool ClothSimulation::take_steps(std::int64_t steps) {
   return !_failure;
 }
 
-framework::Stop ClothSimulation::advance(const framework::AdvanceLimits& limits,
-                                         const framework::RowSink& rows, const framework::Poll& poll) {
+framework::StopReason ClothSimulation::advance(const framework::AdvanceLimits& limits,
+                                               const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
   // The last good state of a failed run ends its history.
   const auto fail_with_row = [&](std::int64_t step) {
     if (limits.row_every > 0 && step % limits.row_every != 0) rows(row());
-    return framework::Stop::failed;
+    return framework::StopReason::failed;
   };
   while (true) {
     const auto [step, time] = now();
-    if (time >= limits.target_time) return framework::Stop::target;
-    if (!poll({step, time})) return framework::Stop::interrupted;
+    if (time >= limits.target_time) return framework::StopReason::target;
+    if (!poll({step, time})) return framework::StopReason::interrupted;
     if (step >= _scene.parameters.max_steps) return fail_with_row(step);
     // A run that continues may have other outputs.
     if ((step >= _block.end || _block.time > limits.target_time) && !plan(limits.target_time))
       return fail_with_row(step);
     if (!take_steps(steps_to_event(limits))) {
       return_to_checkpoint();
-      return framework::Stop::failed;
+      return framework::StopReason::failed;
     }
     const std::int64_t after = _solver->time_state().step;
     if (limits.row_every > 0 && after % limits.row_every == 0) rows(row());
-    if (after == limits.pause_step) return framework::Stop::pause;
+    if (after == limits.pause_step) return framework::StopReason::pause;
   }
 }
 
@@ -155,17 +155,6 @@ void ClothSimulation::return_to_checkpoint() {
   _block.end = now.step;
   _block.time = now.time();
   if (_cuts.restart_at(now.time())) _solver->set_line_stiffness(_cuts.stiffness());
-}
-
-std::vector<run::Column> ClothSimulation::history_columns() const {
-  std::vector<run::Column> columns = {{"step", ""}, {"dt", "s"}};
-  append_measure_columns(_scene, columns);
-  columns.insert(columns.end(), {{"cloth_kinetic_energy", "J"},
-                                 {"cloth_elastic_energy", "J"},
-                                 {"potential_energy", "J"},
-                                 {"energy", "J"}});
-  if (_scene.verify.intersections) columns.push_back({"intersections", ""});
-  return columns;
 }
 
 SheetState ClothSimulation::sheet_state() {
@@ -183,15 +172,11 @@ framework::HistoryRow ClothSimulation::row() {
   framework::HistoryRow row = {time, {static_cast<double>(step), _solver->time_state().dt}};
   if (step == 0) row.values.back() = 0.0;
   const SheetState state = sheet_state();
-  const std::vector<CanopyMeasures> canopies = append_measures(_scene, _sheets, state, {}, {}, row);
+  append_measures(_scene, _sheets, state, {}, {}, row);
   const fabric::Totals totals = _solver->totals();
   row.values.insert(row.values.end(), {totals.kinetic, totals.elastic, totals.gravity, totals.energy()});
-  double intersections = 0.0;
-  if (_scene.verify.intersections) {
-    intersections = count_intersections(_scene, _sheets, state.positions, time);
-    row.values.push_back(intersections);
-  }
-  _record.add(step, time, canopies, 0.0, intersections);
+  if (_scene.verify.intersections)
+    row.values.push_back(count_intersections(_scene, _sheets, state.positions, time));
   return row;
 }
 
@@ -248,10 +233,10 @@ run::ResultDocument::WallTimes ClothSimulation::phases() const {
 }
 
 ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
-  _record.update_peaks(*_solver);
-  check_canopies(_scene.verify, _record, result);
-  check_oscillations(_scene.verify, directory, result);
-  check_energy_drift(_scene, directory, result);
+  _peaks.update(*_solver);
+  const run::History rows = checked_rows(_scene.verify, directory);
+  check_canopies(_scene.verify, _peaks, rows, result);
+  check_energy_drift(_scene, rows, result);
   return ExitCode::ok;
 }
 
@@ -280,7 +265,7 @@ void ClothSimulation::write_restart(run::RestartWriter& writer) {
     writer.array(name, 3 * vectors->size());
     writer.write(name, 0, {vectors->front().data(), 3 * vectors->size()});
   }
-  _record.write(writer, *_solver);
+  _peaks.write(writer, *_solver);
 }
 
 void ClothSimulation::restore(const run::RestartReader& reader) {
@@ -294,10 +279,9 @@ void ClothSimulation::restore(const run::RestartReader& reader) {
   reader.read("velocity", 0, {velocities.front().data(), 3 * velocities.size()});
   _solver->set_time_state(clock);
   _solver->upload(positions, velocities);
-  _record.watch(*_solver, _sheets);
-  const auto [step, time] = now();
-  _record.read(reader, step, time, *_solver);
-  if (_cuts.restart_at(time)) _solver->set_line_stiffness(_cuts.stiffness());
+  _peaks.watch(*_solver, _sheets);
+  _peaks.read(reader, *_solver);
+  if (_cuts.restart_at(now().time)) _solver->set_line_stiffness(_cuts.stiffness());
   allocate_buffers();
 }
 

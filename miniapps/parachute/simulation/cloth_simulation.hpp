@@ -8,7 +8,8 @@
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
-#include "miniapps/parachute/verify/canopy_record.hpp"
+#include "miniapps/parachute/simulation/history_columns.hpp"
+#include "miniapps/parachute/verify/peak_pulls.hpp"
 
 namespace drogue::parachute_app {
 
@@ -30,9 +31,11 @@ class ClothSimulation final : public framework::Simulation {
   void restore(const run::RestartReader& reader) override;
   void write_restart(run::RestartWriter& writer) override;
   [[nodiscard]] framework::SimulationTime now() override;
-  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                          const framework::Poll& poll) override;
-  [[nodiscard]] std::vector<run::Column> history_columns() const override;
+  framework::StopReason advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                const framework::Poll& poll) override;
+  [[nodiscard]] std::vector<run::Column> history_columns() const override {
+    return parachute_app::history_columns(_scene);
+  }
   [[nodiscard]] framework::HistoryRow row() override;
   [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
   void write_mesh(run::FieldSink& fields) const override;
@@ -64,7 +67,7 @@ class ClothSimulation final : public framework::Simulation {
   Sheets _sheets;
   coupling::LineCuts _cuts;
   std::unique_ptr<fabric::Solver> _solver;
-  CanopyRecord _record;
+  PeakPulls _peaks;
   Block _block;
   std::optional<fabric::StepFailure> _failure;
   double _stable_dt = 0.0;  ///< s, at the begin of the block

@@ -1,7 +1,7 @@
 #include "miniapps/parachute/simulation/sheet_output.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <cmath>
 #include <sstream>
 
 #include "kernels/mesh/edges.hpp"
@@ -39,7 +39,12 @@ std::vector<std::array<int, n>> elements_between(const std::vector<std::array<in
 void add_triangles(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
                    run::FieldSink& fields) {
   const auto triangles = elements_between(mesh.triangles, begin, end);
-  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
+  fields.add_mesh({.name = "triangles",
+                   .shape = {triangles.size(), 3},
+                   .units = "1",
+                   .centering = "face",
+                   .description = "vertices of every triangle",
+                   .grid = grid},
                   source_of(triangles));
 }
 
@@ -47,14 +52,24 @@ void add_triangles(const fabric::Mesh& mesh, std::size_t begin, std::size_t end,
 void add_edges(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
                run::FieldSink& fields) {
   const auto edges = elements_between(mesh::edges_of(mesh), begin, end);
-  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line", grid},
+  fields.add_mesh({.name = "edges",
+                   .shape = {edges.size(), 2},
+                   .units = "1",
+                   .centering = "edge",
+                   .description = "vertices of every edge and line",
+                   .grid = grid},
                   source_of(edges));
 }
 
 /// Adds the vertices at rest in a range. Add them last: they complete fields.xdmf.
 void add_vertices(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
                   run::FieldSink& fields) {
-  fields.add_mesh({"vertices", {end - begin, 3}, "m", "vertex", "vertices at rest", grid},
+  fields.add_mesh({.name = "vertices",
+                   .shape = {end - begin, 3},
+                   .units = "m",
+                   .centering = "vertex",
+                   .description = "vertices at rest",
+                   .grid = grid},
                   [&](std::uint64_t from, std::span<double> values) {
                     for (std::size_t k = 0; k < values.size(); ++k)
                       values[k] = mesh.rest[begin + (from + k) / 3][(from + k) % 3];
@@ -63,45 +78,32 @@ void add_vertices(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, 
 
 }  // namespace
 
-void append_measure_columns(const FlowScene& scene, std::vector<run::Column>& columns) {
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
-    const std::string name = "canopy_" + std::to_string(i) + "_";
-    const auto add_vector = [&](const char* quantity, const char* unit) {
-      for (const char* axis : axis_names) columns.push_back({name + quantity + "_" + axis, unit});
-    };
-    if (scene.has_fluid()) add_vector("force", "N");
-    add_vector("line_force", "N");
-    add_vector("payload", "m");
-    add_vector("payload_velocity", "m/s");
-    columns.push_back({name + "projected_area", "m^2"});
-    if (scene.has_fluid()) columns.push_back({name + "leak", "m^3/s"});
-    columns.push_back({name + "largest_strain", ""});
-    columns.push_back({name + "inversion", ""});
-  }
-}
-
-std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets& sheets,
-                                            const SheetState& state, const Vector& origin,
-                                            const Vector& velocity, framework::HistoryRow& row) {
-  std::vector<CanopyMeasures> canopies;
+void append_measures(const FlowScene& scene, const Sheets& sheets, const SheetState& state,
+                     const Vector& origin, const Vector& velocity, framework::HistoryRow& row) {
+  const Vector stream = scene.stream().value_or(Vector{});
   const auto append = [&row](const Vector& vector) {
     row.values.insert(row.values.end(), vector.begin(), vector.end());
   };
   for (std::size_t i = 0; i < sheets.canopies.size(); ++i) {
-    const std::optional<double> release = scene.canopies[i].payload.release;
-    CanopyMeasures& one = canopies.emplace_back(
-        measure(sheets.canopies[i], sheets.fabric, state, release && row.time > *release));
+    const Canopy& canopy = scene.canopies[i];
+    CanopyMeasures one = measure(sheets.canopies[i], sheets.fabric, state,
+                                 canopy.payload.release && row.time > *canopy.payload.release);
+    Vector relative = stream;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       one.payload[axis] += origin[axis];
       one.velocity[axis] += velocity[axis];
+      relative[axis] -= one.velocity[axis];
     }
     if (scene.has_fluid()) append(one.force);
     for (const Vector& vector : {one.line_force, one.payload, one.velocity}) append(vector);
     row.values.push_back(one.projected_area);
     if (scene.has_fluid()) row.values.push_back(one.leak);
+    if (scene.lack_of_airspeed(i).empty())
+      row.values.insert(row.values.end(), {std::hypot(relative[0], relative[1], relative[2]),
+                                           drag_coefficient(one.force, relative, scene.parameters.density,
+                                                            canopy.nominal_area())});
     row.values.insert(row.values.end(), {one.largest_strain, one.inversion});
   }
-  return canopies;
 }
 
 double count_intersections(const FlowScene& scene, const Sheets& sheets, std::span<const Vector> positions,
@@ -120,10 +122,18 @@ double count_intersections(const FlowScene& scene, const Sheets& sheets, std::sp
 run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name) {
   const CanopyRows& first = sheets.canopies.front();
   if (name == "position")
-    return {name,    {sheets.positions.size() - first.begin, 3}, "m", "vertex", "positions of the vertices",
-            "canopy"};
-  return {name,   {sheets.fabric.mesh.triangles.size() - first.triangles_begin},      "N/m",
-          "face", "von Mises stress of the triangles, Cauchy stress times thickness", "canopy"};
+    return {.name = name,
+            .shape = {sheets.positions.size() - first.begin, 3},
+            .units = "m",
+            .centering = "vertex",
+            .description = "positions of the vertices",
+            .grid = "canopy"};
+  return {.name = name,
+          .shape = {sheets.fabric.mesh.triangles.size() - first.triangles_begin},
+          .units = "N/m",
+          .centering = "face",
+          .description = "von Mises stress of the triangles, Cauchy stress times thickness",
+          .grid = "canopy"};
 }
 
 void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
@@ -133,9 +143,13 @@ void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
   const std::string grid = "canopy";
   add_triangles(mesh, first, end, grid, fields);
   add_edges(mesh, first, end, grid, fields);
-  fields.add_mesh(
-      {"strings", {strings.size(), 2}, "1", "edge", "vertices of every reinforcement and line", grid},
-      source_of(strings));
+  fields.add_mesh({.name = "strings",
+                   .shape = {strings.size(), 2},
+                   .units = "1",
+                   .centering = "edge",
+                   .description = "vertices of every reinforcement and line",
+                   .grid = grid},
+                  source_of(strings));
   add_vertices(mesh, first, end, grid, fields);
 }
 
@@ -163,7 +177,12 @@ std::vector<SheetGrid> grids_beside_canopies(const FlowScene& scene, const Sheet
 }
 
 run::DatasetSpec position_spec(const SheetGrid& grid) {
-  return {"position", {grid.end - grid.begin, 3}, "m", "vertex", "positions of the vertices", grid.name};
+  return {.name = "position",
+          .shape = {grid.end - grid.begin, 3},
+          .units = "m",
+          .centering = "vertex",
+          .description = "positions of the vertices",
+          .grid = grid.name};
 }
 
 void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSink& fields) {
@@ -172,7 +191,13 @@ void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSin
   add_edges(mesh, grid.begin, grid.end, grid.name, fields);
   // A grid of triangles has strings too.
   const std::vector<std::array<int, 2>> strings;
-  fields.add_mesh({"strings", {0, 2}, "1", "edge", "vertices of every line", grid.name}, source_of(strings));
+  fields.add_mesh({.name = "strings",
+                   .shape = {0, 2},
+                   .units = "1",
+                   .centering = "edge",
+                   .description = "vertices of every line",
+                   .grid = grid.name},
+                  source_of(strings));
   add_vertices(mesh, grid.begin, grid.end, grid.name, fields);
 }
 

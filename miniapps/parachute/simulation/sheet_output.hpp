@@ -13,14 +13,11 @@
 
 namespace drogue::parachute_app {
 
-/// Columns of history.csv with the measures of all canopies. Throws only std::bad_alloc.
-void append_measure_columns(const FlowScene& scene, std::vector<run::Column>& columns);
-
-/// Appends the values of these columns, and returns the measures. The frame of `state` has its origin at
-/// `origin`, m, and moves at `velocity`, m/s. Throws only std::bad_alloc.
-std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets& sheets,
-                                            const SheetState& state, const fabric::Vector& origin,
-                                            const fabric::Vector& velocity, framework::HistoryRow& row);
+/// Appends the measures of all canopies in the order of `history_columns`. The frame of `state` has its
+/// origin at `origin`, m, and moves at `velocity`, m/s. Throws only std::bad_alloc.
+void append_measures(const FlowScene& scene, const Sheets& sheets, const SheetState& state,
+                     const fabric::Vector& origin, const fabric::Vector& velocity,
+                     framework::HistoryRow& row);
 
 /// Number of intersections of sheets and lines that are not cut at a time, s, with sheets and with their
 /// images beyond periodic sides. Throws only std::bad_alloc.

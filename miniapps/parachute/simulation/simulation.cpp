@@ -28,12 +28,18 @@ CellField cell_field(const std::string& name) {
 
 run::DatasetSpec field_spec(const std::string& name, const std::array<int, 3>& cells) {
   std::vector<std::uint64_t> shape(cells.begin(), cells.end());
-  if (name == "pressure") return {name, shape, "Pa", "cell", "pressure"};
+  if (name == "pressure")
+    return {.name = name, .shape = shape, .units = "Pa", .centering = "cell", .description = "pressure"};
   if (name == "q_criterion")
-    return {name, shape, "1/s^2", "cell", "half of squared rotation rate less squared strain rate"};
+    return {.name = name,
+            .shape = shape,
+            .units = "1/s^2",
+            .centering = "cell",
+            .description = "half of squared rotation rate less squared strain rate"};
   shape.push_back(3);
-  if (name == "velocity") return {name, shape, "m/s", "cell", "velocity"};
-  return {name, shape, "1/s", "cell", "vorticity"};
+  if (name == "velocity")
+    return {.name = name, .shape = shape, .units = "m/s", .centering = "cell", .description = "velocity"};
+  return {.name = name, .shape = shape, .units = "1/s", .centering = "cell", .description = "vorticity"};
 }
 
 /// Flow with all sheets of a scene. Sheets whose motion is prescribed need no steps of their own.
@@ -69,7 +75,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
       _images(scene, _sheets),
       _grids(grids_beside_canopies(scene, _sheets)),
       _statistics(scene.parameters.watches_extremes),
-      _record(scene, scene.has_sheets()) {
+      _peaks(scene.canopies.size(), scene.has_sheets()) {
   if (settings.communicator != nullptr) {
     if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
       throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
@@ -86,7 +92,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     _solver = flow::create_solver(settings.backend, scene.parameters);
   }
   for (const Body& body : scene.bodies) _inside.emplace_back(body, scene.parameters);
-  if (_coupled != nullptr) _record.watch(*_coupled, _sheets);
+  if (_coupled != nullptr) _peaks.watch(*_coupled, _sheets);
   if (_shared != nullptr) return;
   for (Snapshot& snapshot : _snapshots)
     for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));
@@ -115,8 +121,8 @@ framework::SimulationTime Simulation::now() {
   return {progress.step, progress.time};
 }
 
-framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                                    const framework::Poll& poll) {
+framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits,
+                                          const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
   const auto forward = [&](const flow::Status& status) { return poll({status.step, status.time}); };
   const auto at_pause = [&](std::int64_t step) {
@@ -130,7 +136,7 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
   while (true) {
     const std::int64_t before = _solver->progress().step;
     std::int64_t pause = limits.pause_step;
-    if (before >= _images.next() && fails_by_image()) return framework::Stop::failed;
+    if (before >= _images.next() && fails_by_image()) return framework::StopReason::failed;
     if (_images.applies() && (pause < 0 || _images.next() < pause)) pause = _images.next();
     if (limits.row_every > 0) {
       const std::int64_t next_row = (before / limits.row_every + 1) * limits.row_every;
@@ -141,36 +147,13 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
     const bool failed = _stop == flow::Stop::failed || _stop == flow::Stop::max_steps;
     // The last good state of a failed run ends its history.
     if (limits.row_every > 0 && (failed || (step > before && step % limits.row_every == 0))) rows(row());
-    if (failed) return framework::Stop::failed;
+    if (failed) return framework::StopReason::failed;
     if (_stop == flow::Stop::target)
-      return _images.applies() && fails_by_image() ? framework::Stop::failed : framework::Stop::target;
-    if (_stop == flow::Stop::interrupted) return framework::Stop::interrupted;
-    if (at_pause(step)) return framework::Stop::pause;
+      return _images.applies() && fails_by_image() ? framework::StopReason::failed
+                                                   : framework::StopReason::target;
+    if (_stop == flow::Stop::interrupted) return framework::StopReason::interrupted;
+    if (at_pause(step)) return framework::StopReason::pause;
   }
-}
-
-std::vector<run::Column> Simulation::history_columns() const {
-  std::vector<run::Column> columns = {{"step", ""},
-                                      {"dt", "s"},
-                                      {"kinetic_energy", "J"},
-                                      {"enstrophy", "m^3/s^2"},
-                                      {"dissipation", "W"},
-                                      {"momentum_x", "kg m/s"},
-                                      {"momentum_y", "kg m/s"},
-                                      {"momentum_z", "kg m/s"},
-                                      {"max_speed", "m/s"},
-                                      {"divergence_rms", "1/s"},
-                                      {"divergence_max", "1/s"}};
-  for (std::size_t side = 0; side < 6; ++side)
-    if (!is_periodic(_scene.parameters, side))
-      columns.push_back({std::string("outflow_") + side_names[side], "m^3/s"});
-  for (int body = 0; body < static_cast<int>(_scene.bodies.size()); ++body)
-    for (int axis = 0; axis < 3; ++axis) columns.push_back({force_column(body, axis), "N"});
-  append_outside_columns(columns);
-  append_displacement_columns(columns);
-  append_canopy_columns(columns);
-  append_flag_columns(columns);
-  return columns;
 }
 
 framework::HistoryRow Simulation::row() {

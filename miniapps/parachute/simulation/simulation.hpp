@@ -10,8 +10,9 @@
 #include "miniapps/parachute/canopy/image_watch.hpp"
 #include "miniapps/parachute/parallel/rank_solver.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
+#include "miniapps/parachute/simulation/history_columns.hpp"
 #include "miniapps/parachute/simulation/sheet_output.hpp"
-#include "miniapps/parachute/verify/canopy_record.hpp"
+#include "miniapps/parachute/verify/peak_pulls.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
 
 namespace drogue::parachute_app {
@@ -28,9 +29,11 @@ class Simulation final : public framework::Simulation {
   void restore(const run::RestartReader& reader) override;
   void write_restart(run::RestartWriter& writer) override;
   [[nodiscard]] framework::SimulationTime now() override;
-  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                          const framework::Poll& poll) override;
-  [[nodiscard]] std::vector<run::Column> history_columns() const override;
+  framework::StopReason advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                const framework::Poll& poll) override;
+  [[nodiscard]] std::vector<run::Column> history_columns() const override {
+    return parachute_app::history_columns(_scene);
+  }
   [[nodiscard]] framework::HistoryRow row() override;
   [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
   void write_mesh(run::FieldSink& fields) const override;
@@ -59,22 +62,12 @@ class Simulation final : public framework::Simulation {
   void sample_fields(Snapshot& snapshot);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
-  void check_forces(run::ResultDocument& result);
-  void check_curves(const run::RunDirectory* directory, run::ResultDocument& result) const;
-  void check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const;
-  [[nodiscard]] static std::string force_column(int body, int axis) {
-    return "body_" + std::to_string(body) + "_force_" + axis_names[static_cast<std::size_t>(axis)];
-  }
   [[nodiscard]] std::vector<fabric::Vector> body_forces();
   [[nodiscard]] SheetState sheet_state();
-  void append_outside_columns(std::vector<run::Column>& columns) const;
   void append_outside_forces(const std::vector<fabric::Vector>& forces, double dt,
                              framework::HistoryRow& row);
-  void append_displacement_columns(std::vector<run::Column>& columns) const;
   void append_displacements(framework::HistoryRow& row);
-  void append_flag_columns(std::vector<run::Column>& columns) const;
   void append_flag_values(framework::HistoryRow& row);
-  void append_canopy_columns(std::vector<run::Column>& columns) const;
   void append_canopy_values(framework::HistoryRow& row);
   void sample_flow_field(flow::CellField field, std::span<double> values);
   void require_converged_pressure(flow::CellField field);
@@ -106,7 +99,7 @@ class Simulation final : public framework::Simulation {
   coupling::Solver* _coupled = nullptr;   ///< `_solver` with bodies or canopies
   std::unique_ptr<flow::Solver> _solver;
   RunStatistics _statistics;
-  CanopyRecord _record;
+  PeakPulls _peaks;
   /// Used in turn: one is written while the other is filled. Empty on several ranks.
   std::array<Snapshot, 2> _snapshots;
   std::size_t _next_snapshot = 0;

@@ -23,8 +23,8 @@ void visit(Progress& progress, const Number& number, const Integer& integer) {
   number("last_dt", progress.last_dt);
   number("dt_min", progress.dt_min);
   number("dt_max", progress.dt_max);
-  integer("rate_bits", progress.rate);
-  integer("velocity_rate_bits", progress.velocity_rate);
+  integer("rate_bits", progress.rate_bits);
+  integer("velocity_rate_bits", progress.velocity_rate_bits);
   number("longest_dt", progress.longest_dt);
 }
 
@@ -46,7 +46,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
     writer.array("face_acceleration", faces.size());
     writer.write("face_acceleration", 0, faces);
   }
-  _record.write(writer, *_coupled);
+  _peaks.write(writer, *_coupled);
   const coupling::BlockProgress& block = state.block;
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
@@ -74,11 +74,13 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   if (!state.defect.empty()) read("defect", state.defect);
   if (_scene.is_explicit()) read("sheet_force", state.forces);
   if (!state.face_acceleration.empty()) reader.read("face_acceleration", 0, state.face_acceleration);
-  const auto [step, time] = now();
-  _record.read(reader, step, time, *_coupled);
-  state.block = {reader.number("block_dt"),     reader.integer("block_substeps"),
-                 reader.integer("block_end"),   reader.integer("block_cloth_step"),
-                 reader.integer("block_since"), reader.number("block_start")};
+  _peaks.read(reader, *_coupled);
+  state.block = {.dt = reader.number("block_dt"),
+                 .substeps = reader.integer("block_substeps"),
+                 .end = reader.integer("block_end"),
+                 .cloth_step = reader.integer("block_cloth_step"),
+                 .since = reader.integer("block_since"),
+                 .start = reader.number("block_start")};
   if (_scene.frame == Frame::follow) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       state.frame.velocity[axis] = reader.number(std::string("frame_velocity_") + axis_names[axis]);

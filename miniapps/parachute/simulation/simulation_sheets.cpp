@@ -50,13 +50,6 @@ std::vector<Vector> Simulation::body_forces() {
   return sums;
 }
 
-void Simulation::append_outside_columns(std::vector<run::Column>& columns) const {
-  for (std::size_t i = 0; i < _inside.size(); ++i)
-    for (const char* axis : axis_names)
-      if (_inside[i].moves())
-        columns.push_back({"body_" + std::to_string(i) + "_outside_force_" + axis, "N"});
-}
-
 /// Forces of the fluid outside of closed bodies that move: those of all fluid, in the last step of dt, s,
 /// without the inertia of the fluid inside.
 void Simulation::append_outside_forces(const std::vector<Vector>& forces, double dt,
@@ -66,11 +59,6 @@ void Simulation::append_outside_forces(const std::vector<Vector>& forces, double
     const Vector inertia = _inside[i].inertia(row.time, dt);
     for (std::size_t axis = 0; axis < 3; ++axis) row.values.push_back(forces[i][axis] + inertia[axis]);
   }
-}
-
-void Simulation::append_displacement_columns(std::vector<run::Column>& columns) const {
-  for (std::size_t i = 0; i < _scene.bodies.size(); ++i)
-    if (_scene.bodies[i].mount) columns.push_back({displacement_column(i), "m"});
 }
 
 /// Mean displacements of plates on springs along their normals.
@@ -90,20 +78,6 @@ void Simulation::append_displacements(framework::HistoryRow& row) {
   }
 }
 
-void Simulation::append_canopy_columns(std::vector<run::Column>& columns) const {
-  if (_scene.canopies.empty()) return;
-  append_measure_columns(_scene, columns);
-  columns.insert(columns.end(),
-                 {{"cloth_kinetic_energy", "J"}, {"cloth_elastic_energy", "J"}, {"force_balance", ""}});
-  if (_scene.verify.intersections) columns.push_back({"intersections", ""});
-  if (_scene.frame != Frame::follow) return;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!_scene.open_axes()[axis]) continue;
-    columns.push_back({std::string("frame_velocity_") + axis_names[axis], "m/s"});
-    columns.push_back({std::string("frame_position_") + axis_names[axis], "m"});
-  }
-}
-
 void Simulation::append_canopy_values(framework::HistoryRow& row) {
   if (_scene.canopies.empty()) return;
   SheetState state = sheet_state();
@@ -111,8 +85,7 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
   _coupled->air_velocity(state.air);
   const coupling::FrameMotion frame = _coupled->frame();
   const Vector origin = frame.position(row.time);
-  const std::vector<CanopyMeasures> canopies =
-      append_measures(_scene, _sheets, state, origin, frame.velocity, row);
+  append_measures(_scene, _sheets, state, origin, frame.velocity, row);
   const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
   fabric::Totals totals = _coupled->cloth_totals();
   // The vertices of moving bodies have a mass without meaning.
@@ -120,22 +93,11 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
     for (const double v : state.velocities[i]) totals.kinetic -= 0.5 * _sheets.fabric.mass[i] * v * v;
   row.values.insert(row.values.end(), {kinetic_energy_at_rest(totals, frame.velocity, _sheets.fabric.mass),
                                        totals.elastic, balance});
-  double intersections = 0.0;
-  if (_scene.verify.intersections) {
-    intersections = count_intersections(_scene, _sheets, state.positions, row.time);
-    row.values.push_back(intersections);
-  }
+  if (_scene.verify.intersections)
+    row.values.push_back(count_intersections(_scene, _sheets, state.positions, row.time));
   if (_scene.frame == Frame::follow)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (_scene.open_axes()[axis]) row.values.insert(row.values.end(), {frame.velocity[axis], origin[axis]});
-  _record.add(_solver->progress().step, row.time, canopies, balance, intersections);
-}
-
-void Simulation::append_flag_columns(std::vector<run::Column>& columns) const {
-  for (std::size_t i = 0; i < _scene.flags.size(); ++i)
-    for (const auto& [quantity, unit] : {std::pair{"force", "N"}, std::pair{"tip", "m"}})
-      for (const char* axis : {"x", "y"})
-        columns.push_back({"flag_" + std::to_string(i) + "_" + quantity + "_" + axis, unit});
 }
 
 /// Forces of the fluid on flags in the last step, and the places of their tips.

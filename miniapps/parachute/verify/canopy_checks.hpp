@@ -1,23 +1,26 @@
 #pragma once
 
-#include "miniapps/framework/simulation.hpp"
-#include "miniapps/parachute/verify/canopy_record.hpp"
+#include "common/run/history_reader.hpp"
+#include "common/run/result_document.hpp"
+#include "common/run/run_directory.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
+#include "miniapps/parachute/verify/peak_pulls.hpp"
 
 namespace drogue::parachute_app {
 
-/// Checks of canopies in the rows of a run. Throws only std::bad_alloc.
-void check_canopies(const Verify& wanted, const CanopyRecord& record, run::ResultDocument& result);
+/// The history.csv of a run if one of the checks here and of curves is of its rows, else nothing. Throws
+/// `Failure` (io_error).
+[[nodiscard]] run::History checked_rows(const Verify& wanted, const run::RunDirectory* directory);
 
-/// Checks of the oscillations of columns of history.csv. Throws `Failure` (io_error).
-void check_oscillations(const Verify& wanted, const run::RunDirectory* directory,
-                        run::ResultDocument& result);
+/// Checks of canopies. Throws only std::bad_alloc.
+void check_canopies(const Verify& wanted, const PeakPulls& peaks, const run::History& history,
+                    run::ResultDocument& result);
 
 /// Strain below which energies of cloth are round-off: that of a cloth drop at rest is compared with the
 /// elastic energy of its cloth at this strain along one direction.
 inline constexpr double least_strain = 1e-6;
 
-/// Check of the energy of a cloth drop in history.csv. Throws `Failure` (io_error).
-void check_energy_drift(const FlowScene& scene, const run::RunDirectory* directory,
-                        run::ResultDocument& result);
+/// Check of the energy of a cloth drop. Throws only std::bad_alloc.
+void check_energy_drift(const FlowScene& scene, const run::History& history, run::ResultDocument& result);
 
 }  // namespace drogue::parachute_app

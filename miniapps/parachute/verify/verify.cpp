@@ -1,16 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/run/history_reader.hpp"
 #include "common/run/statistics.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 #include "miniapps/parachute/verify/canopy_checks.hpp"
-#include "miniapps/parachute/verify/force_history.hpp"
 #include "miniapps/parachute/verify/profile.hpp"
 #include "miniapps/parachute/verify/row_interpolation.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
-#include "miniapps/parachute/verify/target.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -57,6 +54,24 @@ double volume_of(const flow::Parameters& p) {
   double volume = 1.0;
   for (std::size_t axis = 0; axis < 3; ++axis) volume *= p.high[axis] - p.low[axis];
   return volume;
+}
+
+void check_curves(const Verify& wanted, const run::History& history, run::ResultDocument& result) {
+  if (wanted.kinetic_energy_curves.empty() && wanted.dissipation_curves.empty()) return;
+  const std::vector<double>&time = history.at("time"), &energy = history.at("kinetic_energy");
+  const auto check = [&](const std::string& name, const std::vector<Curve>& curves, const auto& measure) {
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      double largest = 0.0;
+      for (const auto& [at, value] : curves[i].points)
+        largest = run::maximum_or_nan(largest, std::abs(measure(interpolate_rows(time, energy, at)) - value));
+      result.add_check(name + "_" + std::to_string(i), largest / curves[i].scale(), curves[i].tolerance);
+      result.state_rows(time.size());
+    }
+  };
+  check("kinetic_energy_curve", wanted.kinetic_energy_curves,
+        [](const InterpolatedRow& row) { return row.value; });
+  check("dissipation_curve", wanted.dissipation_curves,
+        [](const InterpolatedRow& row) { return -row.derivative; });
 }
 
 }  // namespace
@@ -113,75 +128,11 @@ void Simulation::check_totals(run::ResultDocument& result) {
     result.add_check("energy_growth", _statistics.energy_growth(), *wanted.energy_growth);
   if (wanted.speed_growth)
     result.add_check("speed_growth", std::max(_statistics.speed_growth(), 0.0), *wanted.speed_growth);
-  if (wanted.kinetic_energy)
-    check_target(result, "kinetic_energy", totals.kinetic_energy, *wanted.kinetic_energy);
-  if (wanted.dissipation_peak) {
-    const DissipationPeak& peak = *wanted.dissipation_peak;
-    check_target(result, "dissipation_peak", _statistics.peak_dissipation(), peak.target);
-    if (peak.time)
-      check_distance(result, "dissipation_peak_time", _statistics.peak_time(), *peak.time,
-                     *peak.time_tolerance);
-  }
-  for (std::size_t i = 0; i < wanted.flow_rates.size(); ++i) {
-    const FlowRate& rate = wanted.flow_rates[i];
-    check_target(result, "flow_rate_" + std::to_string(i), totals.outflow[rate.side], rate.target);
-  }
-}
-
-void Simulation::check_forces(run::ResultDocument& result) {
-  const std::vector<BodyForce>& wanted = _scene.verify.forces;
-  if (wanted.empty()) return;
-  const std::vector<fabric::Vector> forces = body_forces();
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const double force =
-        forces[static_cast<std::size_t>(wanted[i].body)][static_cast<std::size_t>(wanted[i].axis)];
-    check_target(result, "force_" + std::to_string(i), force, wanted[i].target);
-  }
-}
-
-void Simulation::check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const {
-  const Verify& wanted = _scene.verify;
-  if (wanted.mean_forces.empty() && wanted.frequencies.empty()) return;
-  const run::History history = run::read_history(directory->file("history.csv"));
-  const std::vector<double>& time = history.at("time");
-  const auto check = [&](const std::string& name, const std::vector<ForceWindow>& windows,
-                         const auto& measure) {
-    for (std::size_t i = 0; i < windows.size(); ++i) {
-      const ForceWindow& window = windows[i];
-      const double value = measure(history.at(force_column(window.body, window.axis)), window);
-      result.metrics.set("forces", name + "_" + std::to_string(i), value);
-      check_target(result, name + "_" + std::to_string(i), value, window.target);
-      const double period =
-          name == "frequency" ? rows_in_period(time, window.from, value / window.reference) : 0.0;
-      result.state_rows(rows_from(time, window.from), period);
-    }
-  };
-  check("mean_force", wanted.mean_forces, [&](const std::vector<double>& force, const ForceWindow& window) {
-    return mean_from(time, force, window.from) / window.reference;
-  });
-  check("frequency", wanted.frequencies, [&](const std::vector<double>& force, const ForceWindow& window) {
-    return frequency_from(time, force, window.from) * window.reference;
-  });
-}
-
-void Simulation::check_curves(const run::RunDirectory* directory, run::ResultDocument& result) const {
-  const Verify& wanted = _scene.verify;
-  if (wanted.kinetic_energy_curves.empty() && wanted.dissipation_curves.empty()) return;
-  const run::History history = run::read_history(directory->file("history.csv"));
-  const std::vector<double>&time = history.at("time"), &energy = history.at("kinetic_energy");
-  const auto check = [&](const std::string& name, const std::vector<Curve>& curves, const auto& measure) {
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-      double largest = 0.0;
-      for (const auto& [at, value] : curves[i].points)
-        largest = run::maximum_or_nan(largest, std::abs(measure(interpolate_rows(time, energy, at)) - value));
-      result.add_check(name + "_" + std::to_string(i), largest / curves[i].scale(), curves[i].tolerance);
-      result.state_rows(time.size());
-    }
-  };
-  check("kinetic_energy_curve", wanted.kinetic_energy_curves,
-        [](const InterpolatedRow& row) { return row.value; });
-  check("dissipation_curve", wanted.dissipation_curves,
-        [](const InterpolatedRow& row) { return -row.derivative; });
+  if (!wanted.dissipation_peak) return;
+  const DissipationPeak& peak = *wanted.dissipation_peak;
+  result.add_deviation("dissipation_peak", _statistics.peak_dissipation(), peak.value, peak.tolerance);
+  if (peak.time)
+    result.add_distance("dissipation_peak_time", _statistics.peak_time(), *peak.time, *peak.time_tolerance);
 }
 
 void Simulation::check_profiles(run::ResultDocument& result) {
@@ -199,8 +150,8 @@ void Simulation::check_profiles(run::ResultDocument& result) {
     const auto check = [&](const std::string& which, const std::optional<Extremum>& wanted, double sign) {
       if (!wanted) return;
       const auto [where, value] = line.maximum(sign);
-      check_distance(result, name + which, value, wanted->value, wanted->tolerance);
-      if (wanted->at) check_distance(result, name + which + "_at", where, *wanted->at, *wanted->at_tolerance);
+      result.add_distance(name + which, value, wanted->value, wanted->tolerance);
+      if (wanted->at) result.add_distance(name + which + "_at", where, *wanted->at, *wanted->at_tolerance);
     };
     check("_minimum", profile.minimum, -1.0);
     check("_maximum", profile.maximum, 1.0);
@@ -214,16 +165,11 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
     for (const auto& [name, tolerance] : wanted.tolerances)
       result.add_check(name, result.errors.at(name), tolerance);
   }
-  const bool needs_totals = wanted.divergence || wanted.momentum || wanted.energy_growth ||
-                            wanted.speed_growth || wanted.kinetic_energy || wanted.dissipation_peak ||
-                            !wanted.flow_rates.empty();
-  if (needs_totals) check_totals(result);
-  check_forces(result);
-  if (_coupled != nullptr) _record.update_peaks(*_coupled);
-  check_canopies(wanted, _record, result);
-  check_curves(directory, result);
-  check_force_history(directory, result);
-  check_oscillations(wanted, directory, result);
+  if (wanted.divergence || wanted.momentum || wanted.needs_extremes()) check_totals(result);
+  if (_coupled != nullptr) _peaks.update(*_coupled);
+  const run::History rows = checked_rows(wanted, directory);
+  check_canopies(wanted, _peaks, rows, result);
+  check_curves(wanted, rows, result);
   check_profiles(result);
   return ExitCode::ok;
 }

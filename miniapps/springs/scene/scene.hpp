@@ -10,6 +10,7 @@
 #include "kernels/fabric/parameters.hpp"
 #include "kernels/mesh/generators.hpp"
 #include "kernels/stepping/motion_interval.hpp"
+#include "miniapps/framework/history_checks.hpp"
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
@@ -168,6 +169,7 @@ struct Verify {
   std::optional<Frequency> frequency;
   std::optional<FrontSpeed> front_speed;
   std::vector<FinalValue> values;
+  std::vector<framework::HistoryCheck> history;
 };
 
 struct SpringsScene {

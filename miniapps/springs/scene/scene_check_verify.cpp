@@ -5,6 +5,7 @@
 #include "miniapps/springs/scene/expressions.hpp"
 #include "miniapps/springs/scene/scene_check.hpp"
 #include "miniapps/springs/simulation/energy_balance.hpp"
+#include "miniapps/springs/simulation/history.hpp"
 #include "miniapps/springs/verify/probe.hpp"
 #include "miniapps/springs/verify/verify.hpp"
 
@@ -119,6 +120,8 @@ void check_frequency(const Table& root, const SpringsScene& scene) {
 
 void check_verify(const Table& root, const SpringsScene& scene) {
   const Verify& verify = scene.verify;
+  framework::require_measurable(root, verify.history, scene.output, {scene.time.end_time, "time.end_time"},
+                                history_columns(scene));
   const MeshSource& source = scene.source;
   const bool has_rows = scene.output.history_every > 0;
   const std::string rows = "rows of history.csv: output.history_every > 0";

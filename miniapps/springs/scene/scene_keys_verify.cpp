@@ -125,6 +125,7 @@ void declare_verify(Table& table, Verify& verify) {
             .required();
       },
       "Values that the final state must have");
+  framework::declare_history_checks(table, verify.history);
 }
 
 }  // namespace drogue::springs_app

@@ -1,12 +1,14 @@
 """Figure of the history of canopies: forces, drag coefficient, projected area, payload, and energies of the cloth."""
 
+import re
+
 import numpy as np
 
 from .. import style
 from ..expression import evaluate
 from ..failure import Failure
 from ..run_directory import Run
-from .time_figure import Band, Panel, time_figure
+from .time_figure import Band, Panel, expected_means, time_figure
 
 
 def _vector(run: Run, canopy: int, quantity: str) -> np.ndarray:
@@ -57,15 +59,10 @@ def _has_lines(run: Run, canopy: int) -> bool:
     return run.scene["canopy"][canopy].get("kind") not in ("sheet", "drum")
 
 
-def _checks(run: Run, key: str) -> list[Band]:
-    """Bands of relative deviations from a value over an interval of time."""
+def _checks(run: Run, quantity: str) -> list[Band]:
+    """Bands of the means of a quantity of canopies over intervals of time."""
     return [
-        Band(
-            (check["from"], check["to"]),
-            tuple(check["value"] * (1 + sign * check["tolerance"]) for sign in (-1, 1)),
-            check["value"],
-        )
-        for check in run.scene.get("verify", {}).get(key, [])
+        band for column, _, band in expected_means(run) if re.fullmatch(rf"canopy_\d+_{quantity}", column)
     ]
 
 
@@ -104,7 +101,7 @@ def _panels(run: Run) -> list[Panel]:
         # The flow past a sheet or drum changes its direction as they move.
         drags = {label("", k): drag_coefficient(run, k) for k in canopies if _has_lines(run, k)}
         if drags:
-            panels += [Panel("drag coefficient", drags, _checks(run, "drag"))]
+            panels += [Panel("drag coefficient", drags, _checks(run, "drag_coefficient"))]
     elif line_forces:
         panels += [Panel("force of the lines on the payload (N)", line_forces, peaks)]
     panels += [
@@ -132,7 +129,7 @@ def _panels(run: Run) -> list[Panel]:
                     for k in free
                     if has_fluid
                 },
-                _checks(run, "terminal_speed"),
+                _checks(run, "airspeed"),
             ),
             Panel(
                 f"height of the {what}, z (m)", {label("", k): history(f"canopy_{k}_payload_z") for k in free}

@@ -6,15 +6,16 @@ import numpy as np
 
 from .. import style
 from ..run_directory import Run
-from .time_figure import Band, Panel, time_figure
+from .time_figure import Panel, expected_means, time_figure
 
 _ABSENT = 1e-6  # of the largest component: below it a component is round-off
 _START = 0.1  # part of the run whose forces need not be in the picture: those of a start from rest
 
 
-def mean_from(time: np.ndarray, values: np.ndarray, start: float) -> float:
-    """Mean of the rows from `start`, s, on by the trapezoidal rule."""
-    time, values = time[time >= start], values[time >= start]
+def mean_between(time: np.ndarray, values: np.ndarray, start: float, end: float) -> float:
+    """Mean of the rows from `start` to `end`, s, by the trapezoidal rule."""
+    inside = (time >= start) & (time <= end)
+    time, values = time[inside], values[inside]
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(time)) / np.ptp(time))
 
 
@@ -25,15 +26,14 @@ def _panel(run: Run, body: int, time: np.ndarray) -> Panel:
     largest = max(sizes.values())
     curves = {axis: values for axis, values in forces.items() if sizes[axis] > _ABSENT * largest or not largest}
     bands, means = [], []
-    for check in run.scene.get("verify", {}).get("mean_force", []):
-        if check["body"] != body or np.count_nonzero(time >= check["from"]) < 2:
+    for column, check, band in expected_means(run):
+        found = re.fullmatch(rf"body_{body}_force_([xyz])", column)
+        if not found or np.count_nonzero((time >= band.times[0]) & (time <= band.times[1])) < 2:
             continue
-        expected = check["value"] * check["reference"]
-        ends = tuple(sorted(expected * (1 + sign * check["tolerance"]) for sign in (-1, 1)))
-        bands.append(Band((check["from"], time[-1]), ends, expected))
-        mean = mean_from(time, forces[check["axis"]], check["from"]) / check["reference"]
+        bands.append(band)
+        mean = mean_between(time, forces[found[1]], *band.times) / check["reference"]
         means.append(
-            f"mean along {check['axis']} / {check['reference']:.3g} N = {mean:.3g}, expected {check['value']:.3g}"
+            f"mean along {found[1]} / {check['reference']:.3g} N = {mean:.3g}, expected {check['value']:.3g}"
         )
     kind = run.scene.get("body", [{}] * (body + 1))[body].get("kind", "body")
     title = "\n".join([style.axis_label(f"force on {kind} {body}", "N"), *means])

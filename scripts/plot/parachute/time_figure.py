@@ -24,6 +24,19 @@ class Band:
     expected: float | None = None
 
 
+def expected_means(run: Run) -> list[tuple[str, dict, Band]]:
+    """Column, check and band of each mean that `verify.history` of the scene expects, in the unit of the column."""
+    found = []
+    for check in run.scene.get("verify", {}).get("history", []):
+        if check["statistic"] != "mean":
+            continue
+        expected = check["value"] * check["reference"]
+        margin = check["tolerance"] * (abs(expected) or check["reference"])
+        times = (check["from"], check.get("to", run.history["time"].values[-1]))
+        found.append((check["column"], check, Band(times, (expected - margin, expected + margin), expected)))
+    return found
+
+
 @dataclass
 class Panel:
     """Values over time by label, bands of checks, and constants by label.

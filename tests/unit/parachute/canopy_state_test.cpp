@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "miniapps/parachute/canopy/canopy_state.hpp"
-#include "miniapps/parachute/verify/canopy_record.hpp"
+#include "miniapps/parachute/verify/canopy_checks.hpp"
 
-// Measures of canopies, and their record over a run.
+// Measures of canopies, and checks of them in rows.
 
 namespace drogue::parachute_app {
 namespace {
@@ -152,96 +152,85 @@ TEST(CanopyState, ForceBalanceComparesTotalAndSum) {
   EXPECT_EQ(force_balance({0.0, 0.0, 0.0}, std::vector<Vector>(2)), 0.0);
 }
 
-/// A scene with one canopy of an area of 2 m^2 in a stream of 3 m/s, density 1.
-FlowScene scene_with_canopy() {
+TEST(CanopyState, DragCoefficientIsThatOfTheForceAlongTheStream) {
+  // 2 F / (rho U^2 S) = F / 25 at U = 5 m/s, with a density of 1 kg/m^3 and an area of 2 m^2.
+  EXPECT_NEAR(drag_coefficient({0.0, 9.0, 25.0}, {0.0, 0.0, 5.0}, 1.0, 2.0), 1.0, 1e-15);
+  EXPECT_NEAR(drag_coefficient({30.0, 40.0, 0.0}, {-3.0, -4.0, 0.0}, 1.0, 2.0), -2.0, 1e-15);
+  EXPECT_EQ(drag_coefficient({1.0, 0.0, 0.0}, {}, 1.0, 2.0), 0.0) << "still air";
+}
+
+TEST(CanopyState, AirspeedNeedsAStreamOrAPayloadThatMoves) {
   FlowScene scene;
-  scene.parameters.density = 1.0;
-  scene.velocity = {"0", "0", "3"};
-  scene.canopies.resize(1);
-  scene.output.history_every = 1;
-  scene.canopies[0].diameter = std::sqrt(8.0 / std::numbers::pi);
-  return scene;
+  scene.fluid.emplace();
+  scene.canopies.resize(2);
+  scene.canopies[0].payload.fixed = true;
+  EXPECT_EQ(scene.lack_of_airspeed(0), "which is 0: fluid.velocity is 0 and canopy[0].payload.fixed is true");
+  EXPECT_EQ(scene.lack_of_airspeed(1), "");
+  scene.canopies[1].payload.shared = 0;
+  EXPECT_EQ(scene.lack_of_airspeed(1), "which is 0: fluid.velocity is 0 and canopy[0].payload.fixed is true");
+  scene.velocity = {"0", "0", "2+1"};
+  EXPECT_EQ(scene.lack_of_airspeed(0), "");
+  EXPECT_EQ(scene.stream(), (Vector{0.0, 0.0, 3.0}));
+  scene.velocity = {"0", "0", "3+t"};
+  EXPECT_EQ(scene.lack_of_airspeed(0), "which needs a fluid.velocity that does not vary");
+  scene.fluid.reset();
+  EXPECT_EQ(scene.lack_of_airspeed(0), "which needs [fluid]");
 }
 
-CanopyMeasures measures_of(double force, double velocity, double line_force) {
-  CanopyMeasures measures;
-  measures.force = {0.0, 0.0, force};
-  measures.velocity = {0.0, 0.0, velocity};
-  measures.line_force = {0.0, 0.0, line_force};
-  measures.projected_area = 0.1 * line_force;
-  return measures;
+/// Rows in which air leaks inwards and outwards, with U = 5 m/s and an area of 4 m^2.
+run::History leaking_rows() {
+  return {{"time", {0.0, 1.0, 3.0, 4.0}},
+          {"canopy_0_leak", {1e6, -3.0, 1.0, -1.0}},
+          {"canopy_0_airspeed", {5.0, 5.0, 5.0, 5.0}},
+          {"canopy_0_projected_area", {4.0, 4.0, 4.0, 4.0}}};
 }
 
-TEST(CanopyRecord, MeansAreThoseOfAnInterval) {
-  const FlowScene scene = scene_with_canopy();
-  CanopyRecord record(scene, false);
-  record.add(1, 0.0, {measures_of(1e6, -2.0, 0.0)}, 1e-16, 0.0);
-  record.add(1, 1.0, {measures_of(25.0, -2.0, 70.0)}, 3e-16, 0.0);
-  record.add(1, 1.0, {measures_of(1e6, 0.0, 1e6)}, 1.0, 0.0);  // a row of the same time
-  record.add(1, 3.0, {measures_of(50.0, -2.0, 60.0)}, 2e-16, 3.0);
-  record.add(1, 4.0, {measures_of(72.0, -3.0, 10.0)}, 0.0, 0.0);
-  // 2 F / (rho U^2 S0) = F / 25 at U = 5, F / 36 at U = 6; trapezoids of 2 s and 1 s.
-  EXPECT_NEAR(record.mean_drag(0, 0.5, 5.0), (2.0 * 1.5 + 1.0 * 2.0) / 3.0, 1e-14);
-  EXPECT_NEAR(record.mean_speed(0, 0.5, 5.0), (2.0 * 5.0 + 1.0 * 5.5) / 3.0, 1e-14);
-  EXPECT_NEAR(record.mean_drag(0, 1.0, 3.0), 1.5, 1e-14);
-  EXPECT_TRUE(std::isnan(record.mean_drag(0, 3.5, 5.0))) << "one row is no interval";
-  EXPECT_EQ(record.balance(), 3e-16);
-  EXPECT_EQ(record.intersections(), 3.0);
-  // Areas of a tenth of the line force: 7, 6 and 1 m^2.
-  EXPECT_NEAR(record.mean_area(0, 0.5, 5.0), (2.0 * 6.5 + 1.0 * 3.5) / 3.0, 1e-14);
+/// Mean and root mean square of a leak in the group `canopies`.
+std::array<double, 2> leak_between(double from, double to, const run::History& history) {
+  Verify wanted;
+  wanted.leaks = {{0, from, to, 1.0, {}}};
+  run::ResultDocument result;
+  check_canopies(wanted, PeakPulls(1, false), history, result);
+  EXPECT_EQ(result.checks.size(), 1U);
+  return {result.metrics.real("canopies", "leak_0").value(),
+          result.metrics.real("canopies", "leak_rms_0").value()};
 }
 
-TEST(CanopyRecord, HasTheRowsOfARunWithoutInterruption) {
-  FlowScene scene = scene_with_canopy();
-  scene.output.history_every = 4;
-  scene.end_time = 3.0;
-  CanopyRecord record(scene, false);
-  record.add(4, 1.0, {measures_of(25.0, -2.0, 0.0)}, 0.0, 0.0);
-  record.add(5, 2.0, {measures_of(1e6, -2.0, 0.0)}, 0.0, 0.0);  // the state that a run continues from
-  record.add(7, 3.0, {measures_of(50.0, -2.0, 0.0)}, 0.0, 0.0);
-  EXPECT_NEAR(record.mean_drag(0, 0.0, 3.0), 1.5, 1e-14);
-  EXPECT_EQ(record.rows(), 2U);
-  EXPECT_EQ(record.rows(1.5, 3.0), 1U);
-}
-
-TEST(CanopyRecord, LeakIsThatOfAnIntervalRelativeToTheStream) {
-  const FlowScene scene = scene_with_canopy();
-  CanopyRecord record(scene, false);
-  // Air that leaks inwards and outwards, with U = 5 m/s and an area of 4 m^2.
-  const double times[] = {0.0, 1.0, 3.0, 4.0}, leaks[] = {1e6, -3.0, 1.0, -1.0};
-  for (std::size_t row = 0; row < 4; ++row) {
-    CanopyMeasures measures = measures_of(0.0, -2.0, 40.0);
-    measures.leak = leaks[row];
-    record.add(1, times[row], {measures}, 0.0, 0.0);
-  }
+TEST(CanopyChecks, LeakIsThatOfAnIntervalRelativeToTheStream) {
+  const run::History history = leaking_rows();
   // Trapezoids: means of the leak of -1 for 2 s and 0 for 1 s, and of its square of 5 and 1.
-  EXPECT_NEAR(record.relative_leak(0, 0.5, 5.0), 2.0 / 3.0 / (5.0 * 4.0), 1e-15);
-  EXPECT_NEAR(record.relative_leak_rms(0, 0.5, 5.0), std::sqrt(11.0 / 3.0) / (5.0 * 4.0), 1e-15);
-  EXPECT_NEAR(record.relative_leak(0, 1.0, 3.0), 1.0 / (5.0 * 4.0), 1e-15);
-  EXPECT_TRUE(std::isnan(record.relative_leak(0, 3.5, 5.0))) << "one row is no interval";
-  EXPECT_TRUE(std::isnan(record.relative_leak_rms(0, 3.5, 5.0)));
+  const auto [mean, rms] = leak_between(0.5, 5.0, history);
+  EXPECT_NEAR(mean, 2.0 / 3.0 / (5.0 * 4.0), 1e-15);
+  EXPECT_NEAR(rms, std::sqrt(11.0 / 3.0) / (5.0 * 4.0), 1e-15);
+  EXPECT_NEAR(leak_between(1.0, 3.0, history)[0], 1.0 / (5.0 * 4.0), 1e-15);
+  for (const double value : leak_between(3.5, 5.0, history))
+    EXPECT_TRUE(std::isnan(value)) << "one row is no interval";
 }
 
-TEST(CanopyRecord, LeakRelativeToStillAirIsNoNumber) {
-  FlowScene scene = scene_with_canopy();
-  scene.velocity = {"0", "0", "0"};
-  for (const double leak : {0.0, 1.0}) {
-    CanopyRecord record(scene, false);
-    CanopyMeasures measures = measures_of(0.0, 0.0, 40.0);
-    measures.leak = leak;
-    record.add(1, 0.0, {measures}, 0.0, 0.0);
-    record.add(1, 1.0, {measures}, 0.0, 0.0);
-    EXPECT_TRUE(std::isnan(record.relative_leak(0, 0.0, 1.0))) << leak;
-    EXPECT_TRUE(std::isnan(record.relative_leak_rms(0, 0.0, 1.0))) << leak;
-  }
+TEST(CanopyChecks, LeakRelativeToStillAirIsNoNumber) {
+  run::History history = leaking_rows();
+  history["canopy_0_airspeed"].assign(4, 0.0);
+  for (const double value : leak_between(0.5, 5.0, history)) EXPECT_TRUE(std::isnan(value));
+  history["canopy_0_leak"].assign(4, 0.0);
+  for (const double value : leak_between(0.5, 5.0, history)) EXPECT_TRUE(std::isnan(value));
 }
 
-TEST(CanopyRecord, NonFiniteBalanceIsNotHidden) {
-  const FlowScene scene = scene_with_canopy();
-  CanopyRecord record(scene, false);
-  record.add(1, 1.0, {measures_of(1.0, 0.0, 1.0)}, std::nan(""), 0.0);
-  record.add(1, 2.0, {measures_of(1.0, 0.0, 1.0)}, 0.0, 0.0);
-  EXPECT_TRUE(std::isnan(record.balance()));
+TEST(CanopyChecks, TakeTheLargestOfAllRows) {
+  Verify wanted;
+  wanted.force_balance = 1e-15;
+  wanted.intersections = 2.0;
+  run::ResultDocument result;
+  run::History history = {
+      {"time", {0.0, 1.0, 2.0}}, {"force_balance", {0.0, 3e-16, 2e-16}}, {"intersections", {0.0, 3.0, 1.0}}};
+  check_canopies(wanted, PeakPulls(1, false), history, result);
+  ASSERT_EQ(result.checks.size(), 2U);
+  EXPECT_EQ(result.checks[0].value, 3e-16);
+  EXPECT_TRUE(result.checks[0].passed);
+  EXPECT_EQ(result.checks[1].value, 3.0);
+  EXPECT_FALSE(result.checks[1].passed);
+  history["force_balance"][1] = std::nan("");
+  check_canopies(wanted, PeakPulls(1, false), history, result);
+  EXPECT_FALSE(result.checks[2].passed) << "a balance that is not finite is not hidden";
 }
 
 }  // namespace

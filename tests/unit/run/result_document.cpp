@@ -172,6 +172,24 @@ TEST(ResultDocument, ChecksReportTheirMeasurements) {
   EXPECT_EQ(result.checks[4].measured(), "not measured");
 }
 
+TEST(ResultDocument, DeviationsAreRelativeUnlessFromZero) {
+  ResultDocument result;
+  result.add_deviation("force", -0.32, -0.3, 0.1);
+  result.add_deviation("drag", 0.5, 0.3, 0.1);
+  result.add_deviation("lift", -0.5, 0.0, 0.1);
+  result.add_distance("place", 2.5, 2.0, 1.0);
+  EXPECT_NEAR(result.checks[0].value, 0.02 / 0.3, 1e-15);
+  EXPECT_EQ(result.checks[0].tolerance, 0.1);
+  EXPECT_EQ(result.checks[0].measured(), "-0.32 in [-0.33, -0.27]");
+  EXPECT_EQ(result.checks[1].measured(), "0.5 not in [0.27, 0.33]");
+  EXPECT_EQ(result.checks[2].value, 0.5);
+  EXPECT_EQ(result.checks[2].measured(), "-0.5 not in [-0.1, 0.1]");
+  EXPECT_EQ(result.checks[3].value, 0.5);
+  EXPECT_EQ(result.checks[3].measured(), "2.5 in [1, 3]");
+  const Json json = Json::parse(to_json(result));
+  EXPECT_EQ(json["checks"][1]["measured"], 0.5);
+}
+
 TEST(ResultDocument, KnowsTheResultOfAFinishedRun) {
   const test::TemporaryDirectory directory;
   const auto file = directory / "result.json";

@@ -66,6 +66,7 @@ void declare(Table& root, Fabric& cloth) {
         material.value("pressure", real_or_expression_codec(cloth.pressure, {"x", "t"}), "Pressure")
             .unit("Pa");
         material.value("interval", interval_codec(cloth.low, cloth.high), "Ends");
+        material.former("hardness", "stiffness, in N/m");
       },
       "Material");
   root.tables(
@@ -147,6 +148,11 @@ TEST(Schema, ReportsTheMostImportantError) {
   EXPECT_EQ(error_of(value), "c.toml:3: material.count = 99 is out of range: it must be 1 .. 10");
   EXPECT_EQ(error_of("app = \"cloth\"\n"), "c.toml:1: missing table \"mesh\": Mesh");
   EXPECT_EQ(error_of(""), "c.toml:1: missing key \"app\": Program");
+}
+
+TEST(Schema, FormerKeysNameTheirReplacement) {
+  EXPECT_EQ(error_of(head + "[material]\nhardness = 2\n"),
+            "c.toml:5: \"material.hardness\" is now stiffness, in N/m");
 }
 
 TEST(Schema, ErrorsNameKeyValueAndRange) {

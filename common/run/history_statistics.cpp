@@ -1,0 +1,98 @@
+#include "common/run/history_statistics.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/run/statistics.hpp"
+
+namespace drogue::run {
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// Extremum of the parabola through three values, of which the middle one is the largest or the least.
+double vertex(const double* time, const double* value) {
+  const double slope = (value[1] - value[0]) / (time[1] - time[0]);
+  const double curvature = ((value[2] - value[1]) / (time[2] - time[1]) - slope) / (time[2] - time[0]);
+  if (curvature == 0.0) return value[1];
+  const double at = 0.5 * (time[0] + time[1] - slope / curvature);
+  return value[0] + (at - time[0]) * (slope + curvature * (at - time[1]));
+}
+
+/// Largest value times `sign`; NaN without rows and if a value is NaN.
+double largest_of(std::span<const double> values, double sign) {
+  if (values.empty()) return not_a_number;
+  double largest = sign * values.front();
+  for (const double value : values) largest = maximum_or_nan(largest, sign * value);
+  return largest;
+}
+
+}  // namespace
+
+HistoryRows rows_between(const HistoryRows& rows, double from, double to) {
+  if (rows.time.empty() || rows.time.front() > from) return {};
+  const auto first = static_cast<std::size_t>(std::ranges::lower_bound(rows.time, from) - rows.time.begin()),
+             end = static_cast<std::size_t>(std::ranges::upper_bound(rows.time, to) - rows.time.begin()),
+             count = end > first ? end - first : 0;
+  return {rows.time.subspan(first, count), rows.value.subspan(first, count)};
+}
+
+double mean_of(const HistoryRows& rows) {
+  const auto& [time, value] = rows;
+  if (time.size() < 2) return not_a_number;
+  double integral = 0.0;
+  for (std::size_t k = 1; k < time.size(); ++k)
+    integral += 0.5 * (value[k - 1] + value[k]) * (time[k] - time[k - 1]);
+  return integral / (time.back() - time.front());
+}
+
+double frequency_of(const HistoryRows& rows) {
+  const auto& [time, value] = rows;
+  const double mean = mean_of(rows);
+  double first = 0.0, last = 0.0;
+  int crossings = 0;
+  for (std::size_t k = 1; k < time.size(); ++k) {
+    const double before = value[k - 1] - mean, after = value[k] - mean;
+    if (!(before < 0.0 && after >= 0.0)) continue;
+    last = time[k - 1] + (time[k] - time[k - 1]) * before / (before - after);
+    if (crossings++ == 0) first = last;
+  }
+  return crossings >= 3 ? (crossings - 1) / (last - first) : not_a_number;
+}
+
+double amplitude_of(const HistoryRows& rows) {
+  const auto& [time, value] = rows;
+  if (value.empty()) return not_a_number;
+  const auto [least, largest] = std::ranges::minmax_element(value);
+  const auto extremum = [&](auto row) {
+    const auto k = static_cast<std::size_t>(row - value.begin());
+    return k > 0 && k + 1 < value.size() ? vertex(&time[k - 1], &value[k - 1]) : *row;
+  };
+  return 0.5 * (extremum(largest) - extremum(least));
+}
+
+double statistic_of(Statistic statistic, const HistoryRows& rows) {
+  switch (statistic) {
+    case Statistic::mean:
+      return mean_of(rows);
+    case Statistic::max:
+      return largest_of(rows.value, 1.0);
+    case Statistic::min:
+      return -largest_of(rows.value, -1.0);
+    case Statistic::last:
+      return rows.value.empty() ? not_a_number : rows.value.back();
+    case Statistic::frequency:
+      return frequency_of(rows);
+    case Statistic::amplitude:
+      return amplitude_of(rows);
+  }
+  return not_a_number;
+}
+
+double rows_in_period(const HistoryRows& rows, double frequency) {
+  const std::span<const double> time = rows.time;
+  return time.size() < 2 ? 0.0
+                         : static_cast<double>(time.size() - 1) / ((time.back() - time.front()) * frequency);
+}
+
+}  // namespace drogue::run

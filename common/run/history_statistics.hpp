@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace drogue::run {
+
+/// Number that is computed from the values of a column of history.csv in an interval of time.
+enum class Statistic { mean, max, min, last, frequency, amplitude };
+
+/// Rows of a column of history.csv: times, s, which increase, and values.
+struct HistoryRows {
+  std::span<const double> time, value;
+};
+
+/// Rows in [from, to], s; none if the first of all is later than `from`, as in a run that continues without
+/// the history before. Does not throw.
+[[nodiscard]] HistoryRows rows_between(const HistoryRows& rows, double from, double to);
+
+/// Mean by the trapezoidal rule; NaN for fewer than two rows. Does not throw.
+[[nodiscard]] double mean_of(const HistoryRows& rows);
+
+/// Frequency, 1/s, at which the values cross their mean upwards: between the first and the last of these
+/// times, interpolated linearly. NaN for fewer than three of them: they may be those of a transient. Does not
+/// throw.
+[[nodiscard]] double frequency_of(const HistoryRows& rows);
+
+/// Half of the difference between the largest and the least value, each by a parabola through its row and the
+/// two beside it; NaN without rows. Does not throw.
+[[nodiscard]] double amplitude_of(const HistoryRows& rows);
+
+/// The statistic of this name. The largest, least and last value are NaN without rows, the first two also if
+/// a value is NaN. Does not throw.
+[[nodiscard]] double statistic_of(Statistic statistic, const HistoryRows& rows);
+
+/// Mean number of rows in a period of a frequency, 1/s; NaN or 0 without one. Does not throw.
+[[nodiscard]] double rows_in_period(const HistoryRows& rows, double frequency);
+
+}  // namespace drogue::run
