@@ -41,7 +41,7 @@ struct PorousDragFunctor {
   }
 };
 
-/// A vertex in the middle of each column of cells: the delta function spreads their forces uniformly.
+/// One vertex for each column of cells: the delta function spreads their equal forces uniformly.
 fabric::Parameters cloth(double dt) {
   fabric::Parameters p;
   p.mesh = mesh::rectangle(1.0 - h, 1.0 - h, n - 1, n - 1);

@@ -100,9 +100,15 @@ class Install(unittest.TestCase):
         program = self.build("coupled_solvers", "coupled_solvers")
         # Sheet of 1 kg/m^2, 4 m of air of 1.2 kg/m^3, drag of 2 Pa s/m; the air moves as a whole.
         rate, end = 2 * (1 + 1 / 4.8), 0.32
+        numbers = re.compile(r"\d+\.\d+")
+        page = (SOURCE / "examples/README.md").read_text(encoding="utf-8").partition("```text\n")[2].partition("```")[0]
+        output = self.run_command(program, "serial")
+        self.assertEqual(numbers.sub("", page), numbers.sub("", output))
+        for shown, now in zip(numbers.findall(page), numbers.findall(output)):
+            self.assertAlmostEqual(float(shown), float(now), delta=2e-9)
         errors = []
         for steps in (64, 128):
-            printed = re.findall(r"-?\d+\.\d+", self.run_command(program, "serial", steps))
+            printed = numbers.findall(self.run_command(program, "serial", steps))
             sheet, relative, exact, momentum, expected = map(float, printed)
             self.assertAlmostEqual((1 - rate * end / steps) ** steps, relative, delta=2e-9)
             self.assertAlmostEqual(math.exp(-rate * end), exact, delta=1e-9)

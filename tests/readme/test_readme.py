@@ -33,7 +33,7 @@ class Readme(unittest.TestCase):
             self.assertTrue(os.access(SOURCE / script, os.X_OK), script)
 
     def test_links_have_targets(self):
-        for page in [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]:
+        for page in [SOURCE / "README.md", SOURCE / "examples/README.md", *sorted((SOURCE / "docs").glob("*.md"))]:
             for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
                 self.assertTrue((page.parent / target).exists(), f"{page.name}: {target}")
 
