@@ -17,11 +17,11 @@ namespace drogue::framework {
 struct HistoryCheck {
   std::string column;
   run::Statistic statistic = run::Statistic::mean;
-  double from = 0.0;         ///< s
-  std::optional<double> to;  ///< s; none: the end of the run
-  double reference = 1.0;    ///< in the unit of the statistic, which is divided by it
-  double value = 0.0;        ///< of the quotient
-  double tolerance = 0.0;    ///< relative to `value`, unless that is 0
+  double from = 0.0;              ///< s
+  std::optional<double> to = {};  ///< s; none: the end of the run
+  double reference = 1.0;         ///< in the unit of the statistic, which is divided by it
+  double value = 0.0;             ///< of the quotient
+  double tolerance = 0.0;         ///< relative to `value`, unless that is 0
 };
 
 /// Declares `history` of [verify].

@@ -15,9 +15,9 @@ GAS = ["mesh.cells=100", "output={history_every=1}"]
 
 
 class HistoryChecks(springs_program.SpringsTest):
-    def check(self, program, code, scene, *checks, sets=(), words=()):
-        process = gas_program.run(scene, "--backend", "serial", "--quiet", "--overwrite", "--out", "out", *words, cwd=self.folder,
-                                  program=program, sets=["verify={history=[" + ",".join(checks) + "]}", *sets])
+    def check(self, program, code, scene, *checks, sets=(), words=("--overwrite", "--out", "out")):
+        process = gas_program.run(scene, "--backend", "serial", "--quiet", *words, cwd=self.folder, program=program,
+                                  sets=["verify={history=[" + ",".join(checks) + "]}", *sets])
         self.assertEqual(code, process.returncode, process.stderr)
         return process.stderr
 
@@ -63,9 +63,10 @@ class HistoryChecks(springs_program.SpringsTest):
         mean, last = (statistic("energy", name, 1, 1e9) for name in ("mean", "last"))
         self.check(gas_program.PROGRAM, 0, "sod", mean, sets=GAS)
         (self.folder / "out/restart.h5").rename(self.folder / "state.h5")
-        words = ("--restart", "state.h5")
-        self.check(gas_program.PROGRAM, 0, "sod", last, sets=later, words=words)
-        self.assertIn("energy_mean could not be measured", self.check(gas_program.PROGRAM, 5, "sod", mean, sets=later, words=words))
+        restart = ("--restart", "state.h5", "--out")
+        self.check(gas_program.PROGRAM, 0, "sod", last, sets=later, words=(*restart, "last"))
+        message = self.check(gas_program.PROGRAM, 5, "sod", mean, sets=later, words=(*restart, "mean"))
+        self.assertIn("energy_mean could not be measured", message)
 
 
 if __name__ == "__main__":
