@@ -51,7 +51,7 @@ class Shipped(parachute_program.FlowTest):
         self.assertGreater(without["value"], least_error)
 
     def test_inset_of_the_edge_gives_a_disk_of_six_cells_its_drag(self):
-        """Against 1.56, to which finer cells converge with the inset as without it (docs/coupling.md)."""
+        """Against 1.56, to which finer cells converge with the inset as without it (docs/coupling-notebook.md)."""
         steady = ["fluid.viscosity=0.01", "grid.cells=[36,24,24]", "grid.domain=[[-2,4],[-2,2],[-2,2]]",
                   "initial.velocity=[0,0,0]", "body[0].edge_length=0.08333333", "run.end_time=12", "run.max_dt=0.05",
                   "output={history_every=4}",
@@ -59,7 +59,7 @@ class Shipped(parachute_program.FlowTest):
         self.assert_drag_needs("coupling.edge_inset", "disk-normal", steady, 0.38)
 
     def test_retraction_gives_a_sphere_of_six_cells_its_drag(self):
-        """Without it the drag is a quarter too large (docs/coupling.md)."""
+        """Without it the drag is a quarter too large (docs/coupling-notebook.md)."""
         coarse = ["grid.cells=[54,36,36]", "body[0].edge_length=0.08333333", "run.max_dt=0.05",
                   "verify={history=[" + parachute_program.statistic("body_0_force_x", "mean", 1.09, 0.08, from_=12, reference=0.3926990817) + "]}"]
         self.assert_drag_needs("body[0].retraction", "sphere", coarse, 0.2)
