@@ -1,30 +1,30 @@
 #!/usr/bin/env bash
-# Sets up, builds for this machine, runs the shipped scenes, verifies and draws them, and makes one page of all.
-# The last one is an opening parachute, c9-flat.
+# Sets up, builds for this machine, runs shipped scenes, verifies and draws them, and makes one page of all.
 #
-#   scripts/demo.sh [--system] [SCENE...]
+#   scripts/demo.sh [--system] [--all | SCENE...]
 #     --system   install nothing, use the libraries and the Python packages that are there
-#     SCENE      run these scenes only (default: all but those that need a GPU, and slow ones that resemble others)
+#     --all      run every scene that needs no GPU
+#     SCENE      run these scenes (default: some of every mini-app, the last one an opening parachute)
 #
 # Environment: DROGUE_DEMO_OUT (folder of the page, default out/demo), and that of scripts/setup.sh.
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 
-options=() scenes=()
+options=() setup=() scenes=()
 for argument in "$@"; do
   case "$argument" in
     --system) options+=(--system) ;;
+    --all) scenes+=(--all) ;;
     -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" && exit 0 ;;
     -*) fail "unknown argument $argument: see scripts/demo.sh --help." ;;
     *) scenes+=("$argument") ;;
   esac
 done
 
-"$root/scripts/setup.sh" ${options[@]+"${options[@]}"}
-
-preset=host
-if [ -n "$(find_nvcc)" ] && nvidia-smi -L >/dev/null 2>&1; then
-  preset=cuda
+preset=cuda
+if [ -z "$(find_nvcc)" ] || ! nvidia-smi -L >/dev/null 2>&1; then
+  preset=host setup=(--no-cuda)
 fi
+"$root/scripts/setup.sh" ${options[@]+"${options[@]}"} ${setup[@]+"${setup[@]}"}
 # The mini-apps alone: the tests take longer to build than all scenes to run.
 targets=()
 for main in "$root"/miniapps/*/main.cpp; do

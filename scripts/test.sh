@@ -3,6 +3,7 @@
 #
 #   scripts/test.sh                 everything that needs neither a GPU nor patience
 #   scripts/test.sh -R gas          tests whose name contains gas
+#   scripts/test.sh -L smoke        one scene per program, one comparison with the reference per area of kernels
 #   scripts/test.sh -L long         the long ones
 #   scripts/test.sh --system        install nothing, use what find_package finds
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
@@ -24,7 +25,7 @@ for argument in "$@"; do
   esac
 done
 
-"$root/scripts/setup.sh" ${setup[@]+"${setup[@]}"}
+"$root/scripts/setup.sh" --no-cuda ${setup[@]+"${setup[@]}"}
 "$root/scripts/build.sh" host ${build[@]+"${build[@]}"}
 [ "$labels" = no ] || pass+=(-LE 'long|gpu')
 exec ctest --test-dir "$root/build/host" --parallel "$jobs" --output-on-failure --no-tests=error "${pass[@]}"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <string_view>
 
@@ -125,6 +126,16 @@ class Compiler {
     fail("unknown name " + shown(token) + "; known here are " + known);
   }
 
+  /// Refuses a number, whose instructions begin at `first`, as the order of a Bessel function without one.
+  void check_order(std::size_t first, int position) const {
+    const std::size_t length = _program.size() - first;
+    const bool is_number = _program[first].name == "constant" &&
+                           (length == 1 || (length == 2 && _program.back().name == "negate"));
+    const double order = _program[first].value;
+    if (is_number && (order != std::floor(order) || order > 1000.0))
+      throw ExpressionError(position, "besselj has integer orders from -1000 to 1000");
+  }
+
   void call(const Token& name) {
     const auto* function = std::find_if(functions.begin(), functions.end(), [&](const Function& candidate) {
       return candidate.name == name.text;
@@ -139,8 +150,11 @@ class Compiler {
     int arguments = 0;
     const bool folds = function->arguments == 0;
     do {
+      const int position = now().position;
+      const std::size_t first = _program.size();
       ternary();
       ++arguments;
+      if (name.text == "besselj" && arguments == 1) check_order(first, position);
       if (folds && arguments > 1) emit(name.text == "avg" || name.text == "sum" ? "+" : name.text);
     } while (take(","));
     if (!folds && arguments != function->arguments) {

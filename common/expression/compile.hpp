@@ -27,7 +27,8 @@ struct Instruction {
 };
 
 /// Compiles muParser syntax without assignment, strings and lists: numbers, `variables`, pi, the operators ?:
-/// || && == != < > <= >= + - * / ^ and the functions of `function_names`. Throws ExpressionError.
+/// || && == != < > <= >= + - * / ^ and the functions of `function_names`. Throws ExpressionError, also for a
+/// number that is no order of `besselj`, an integer from -1000 to 1000; another order gives NaN there.
 std::vector<Instruction> compile(const std::string& text, const std::vector<std::string>& variables);
 
 /// Functions that an expression may call.

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/coupling/delta_kernel.hpp"
+#include "kernels/coupling/delta_function.hpp"
 #include "kernels/coupling/staggered_grid.hpp"
 #include "kernels/spatial/points.hpp"
 
@@ -107,10 +107,10 @@ KOKKOS_INLINE_FUNCTION AxisStencil<Spline::points> axis_stencil(const GridAxis& 
 }
 
 /// Faces of one velocity component that the delta function around a point covers, and their weights.
-template <DeltaKernel kernel>
+template <DeltaFunction delta>
 struct FaceStencil {
-  using Along = typename KernelFactors<kernel>::Along;
-  using Across = typename KernelFactors<kernel>::Across;
+  using Along = typename DeltaFactors<delta>::Along;
+  using Across = typename DeltaFactors<delta>::Across;
 
   AxisStencil<Along::points> along;
   AxisStencil<Across::points> across, last;

@@ -36,11 +36,11 @@ struct GridTransfer {
   /// Allocates for a number of points; blocks. Memory: 24 bytes per point and 24 per cell. Throws
   /// std::invalid_argument for an invalid grid and unless 0 <= points <= 2^29. `own_faces`: those of this
   /// rank, by default all.
-  GridTransfer(const ExecutionSpace& space, const StaggeredGrid& staggered_grid, DeltaKernel delta_kernel,
+  GridTransfer(const ExecutionSpace& space, const StaggeredGrid& staggered_grid, DeltaFunction delta_function,
                int number_of_points, const std::optional<FaceWindow>& own_faces = {})
       : grid(staggered_grid),
         window(own_faces.value_or(whole_window(staggered_grid))),
-        kernel(delta_kernel),
+        delta(delta_function),
         points(number_of_points) {
     check(grid);
     if (points < 0 || points > 1 << 29)
@@ -60,7 +60,7 @@ struct GridTransfer {
 
   StaggeredGrid grid;
   FaceWindow window;  ///< faces of this rank, those of `sums`
-  DeltaKernel kernel;
+  DeltaFunction delta;
   int points;
   Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory> positions;  ///< frozen, m
   FaceViews<Sums> sums;                                             ///< all zero between calls
@@ -79,9 +79,9 @@ void require_points(const GridTransfer<ExecutionSpace>& transfer, const View& vi
 }
 
 /// Base of kernels with one thread per point and component. `divided`: other ranks hold some of the faces.
-template <class ExecutionSpace, DeltaKernel kernel, bool divided>
+template <class ExecutionSpace, DeltaFunction delta, bool divided>
 struct TransferKernel {
-  static constexpr DeltaKernel delta_kernel = kernel;
+  static constexpr DeltaFunction delta_function = delta;
 
   GridTransfer<ExecutionSpace> transfer;
   GridAxes axes;
@@ -99,7 +99,7 @@ struct TransferKernel {
     return {component, point, spatial::load_vector(transfer.positions, point)};
   }
   /// Faces around a point, with dimensionless weights. Does not throw.
-  KOKKOS_FUNCTION FaceStencil<kernel> stencil(const Item& at) const { return {axes, at.x, at.component}; }
+  KOKKOS_FUNCTION FaceStencil<delta> stencil(const Item& at) const { return {axes, at.x, at.component}; }
   /// Scale of the sums in use.
   KOKKOS_FUNCTION FixedPointScale scale() const {
     return fixed_point_scale(Kokkos::bit_cast<double>(transfer.largest(1)), summands);
@@ -141,10 +141,10 @@ template <class ExecutionSpace, class Make>
 void for_each_point_and_component(const ExecutionSpace& space, const char* label,
                                   const GridTransfer<ExecutionSpace>& transfer, const Make& make) {
   const auto launch = [&]<bool divided>(std::bool_constant<divided>) {
-    dispatch_kernel(transfer.kernel, [&]<DeltaKernel kernel>() {
-      const TransferKernel<ExecutionSpace, kernel, divided> base{transfer, grid_axes(transfer.grid),
-                                                                 face_arrays(transfer.window, transfer.sums),
-                                                                 summand_bound(transfer.points)};
+    dispatch_delta(transfer.delta, [&]<DeltaFunction delta>() {
+      const TransferKernel<ExecutionSpace, delta, divided> base{transfer, grid_axes(transfer.grid),
+                                                                face_arrays(transfer.window, transfer.sums),
+                                                                summand_bound(transfer.points)};
       device::launch_each(space, label, 3 * transfer.points, make(base));
     });
   };
@@ -154,7 +154,7 @@ void for_each_point_and_component(const ExecutionSpace& space, const char* label
     launch(std::false_type());
 }
 
-template <class ExecutionSpace, DeltaKernel kernel, class Positions, class Velocities>
+template <class ExecutionSpace, DeltaFunction delta, class Positions, class Velocities>
 struct FreezePositionsFunctor {
   GridTransfer<ExecutionSpace> transfer;
   GridAxes axes;
@@ -172,7 +172,7 @@ struct FreezePositionsFunctor {
   KOKKOS_FUNCTION bool is_complete(const spatial::Point& point) const {
     if (transfer.has_stencils) {
       for (int component = 0; component < 3; ++component)
-        if (!FaceStencil<kernel>(axes, point, component).is_complete()) return false;
+        if (!FaceStencil<delta>(axes, point, component).is_complete()) return false;
       return true;
     }
     constexpr double rounding = 1e-6;  // of a cell
@@ -196,10 +196,11 @@ void freeze_positions(const ExecutionSpace& space, const GridTransfer<ExecutionS
   static_assert(spatial::accessible_from<ExecutionSpace, Positions, Velocities>);
   require_points(transfer, x);
   require_points(transfer, v);
-  dispatch_kernel(transfer.kernel, [&]<DeltaKernel kernel>() {
-    device::launch_each(space, "drogue::coupling::freeze_positions", transfer.points,
-                        FreezePositionsFunctor<ExecutionSpace, kernel, Positions, Velocities>{
-                            transfer, grid_axes(transfer.grid), x, v, time});
+  dispatch_delta(transfer.delta, [&]<DeltaFunction delta>() {
+    device::launch_each(
+        space, "drogue::coupling::freeze_positions", transfer.points,
+        FreezePositionsFunctor<ExecutionSpace, delta, Positions, Velocities>{
+            .transfer = transfer, .axes = grid_axes(transfer.grid), .x = x, .v = v, .time = time});
   });
 }
 

@@ -7,7 +7,7 @@ namespace drogue::coupling {
 /// Regularised delta functions on a staggered grid. The composite B-splines (Gruninger and Griffith, J.
 /// Comput. Phys. 546:114472) are products of a spline along the direction of a velocity component and splines
 /// of one order less across it. They interpolate a discretely divergence-free field to a divergence-free one.
-enum class DeltaKernel {
+enum class DeltaFunction {
   cbs43,  ///< cubic along, quadratic across: 36 faces per component
   cbs32,  ///< quadratic along, linear across: 12 faces per component
   ib4,    ///< four-point function of Peskin (Acta Numerica 2002, eq. 6.27) in all directions: 64 faces

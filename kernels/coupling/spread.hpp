@@ -64,7 +64,7 @@ struct SpreadFunctor : Base {
     };
     // The centre receives the remainder, so that the parts add up to the rounded force.
     std::int64_t remainder = to_fixed_point(scaled);
-    const FaceStencil<Base::delta_kernel> stencil = this->stencil(at);
+    const FaceStencil<Base::delta_function> stencil = this->stencil(at);
     stencil.for_each_face([&](const FaceIndex& face, double weight, bool is_centre) {
       if (is_centre) return;
       const std::int64_t part = to_fixed_point(weight * scaled);
@@ -78,7 +78,7 @@ struct SpreadFunctor : Base {
 /// Adds the sums of faces to densities and resets them. Among the points around a face, one takes its sum.
 template <class Base, class T>
 struct AddDensitiesFunctor : Base {
-  FaceArrays<T> density;
+  FaceArrays<T> force_density;
   double inverse_volume;  ///< 1/m^3
 
   KOKKOS_FUNCTION void operator()(const int n) const {
@@ -89,7 +89,7 @@ struct AddDensitiesFunctor : Base {
       FixedPoint& sum = this->sums.at(at.component, face);
       if (device::relaxed_load(&sum) == 0) return;
       const FixedPoint taken = Kokkos::atomic_exchange(&sum, FixedPoint{0});
-      if (taken != 0) density.at(at.component, face) += unit * from_fixed_point(taken);
+      if (taken != 0) force_density.at(at.component, face) += unit * from_fixed_point(taken);
     });
   }
 };
@@ -140,8 +140,8 @@ void add_to_sums(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>
 }
 
 /// Spreads forces on the frozen positions, `force` (points, 3), N, and adds their densities, N/m^3, to
-/// `density` at the faces; impulses give impulse densities likewise. A rank-1 `force` (points) acts along all
-/// axes. The work grows with the points, not with the grid.
+/// `force_density` at the faces; impulses give impulse densities likewise. A rank-1 `force` (points) acts
+/// along all axes. The work grows with the points, not with the grid.
 ///
 /// The result has the same bits for any order of points and threads. `bound`, N, states a magnitude that no
 /// component exceeds, and fixes the resolution; larger components are not spread but counted in
@@ -150,9 +150,9 @@ void add_to_sums(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>
 /// std::invalid_argument for Views of the wrong extents and a bound that is negative or not finite.
 template <class ExecutionSpace, class Forces, class View>
 void spread(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& transfer, const Forces& force,
-            const FaceViews<View>& density, double bound = 0.0) {
+            const FaceViews<View>& force_density, double bound = 0.0) {
   static_assert(spatial::accessible_from<ExecutionSpace, View>);
-  const auto arrays = face_arrays(transfer.window, density);
+  const auto arrays = face_arrays(transfer.window, force_density);
   add_to_sums(space, transfer, force, bound);
   for_each_point_and_component(
       space, "drogue::coupling::add_densities", transfer, [&]<class Base>(const Base& base) {
@@ -172,14 +172,14 @@ struct ClearFacesFunctor : Base {
   }
 };
 
-/// Sets `density`, N/m^3, to zero at all faces that `spread` may have changed since the positions were
+/// Sets `force_density`, N/m^3, to zero at all faces that `spread` may have changed since the positions were
 /// frozen. Asynchronous, allocates nothing, and may be captured into a CUDA graph. Throws
 /// std::invalid_argument for Views of the wrong extents.
 template <class ExecutionSpace, class View>
 void clear_spread(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& transfer,
-                  const FaceViews<View>& density) {
+                  const FaceViews<View>& force_density) {
   static_assert(spatial::accessible_from<ExecutionSpace, View>);
-  const auto arrays = face_arrays(transfer.window, density);
+  const auto arrays = face_arrays(transfer.window, force_density);
   for_each_point_and_component(space, "drogue::coupling::clear_spread", transfer,
                                [&]<class Base>(const Base& base) {
                                  using T = typename View::value_type;

@@ -13,11 +13,11 @@ namespace drogue::coupling {
 /// Index n sums the densities on the faces of component n % 3 with the last index n / 3, in a fixed order.
 template <class ExecutionSpace, class View>
 struct SumLayersFunctor {
-  View density[3];
+  View force_density[3];
   Kokkos::View<double*, typename ExecutionSpace::memory_space> layers;
 
   KOKKOS_FUNCTION void operator()(const int n) const {
-    const View& values = density[n % 3];
+    const View& values = force_density[n % 3];
     const auto k = static_cast<std::size_t>(n / 3);
     double sum = 0.0;
     if (k < values.extent(2))
@@ -37,14 +37,15 @@ class TotalForce {
         _layers("drogue::coupling::layers", 3 * (static_cast<std::size_t>(grid.cells[2]) + 1)),
         _mirror(Kokkos::create_mirror_view(_layers)) {}
 
-  /// Sum of `density`, N/m^3, times the volume of a cell, with the same bits for any number of threads.
+  /// Sum of `force_density`, N/m^3, times the volume of a cell, with the same bits for any number of threads.
   /// Blocks. Throws std::runtime_error after a failed kernel.
   template <class View>
   [[nodiscard]] std::array<double, 3> operator()(const ExecutionSpace& space,
-                                                 const FaceViews<View>& density) const {
-    device::launch_each(space, "drogue::coupling::sum_layers", static_cast<int>(_layers.extent(0)),
-                        SumLayersFunctor<ExecutionSpace, View>{
-                            {density.component[0], density.component[1], density.component[2]}, _layers});
+                                                 const FaceViews<View>& force_density) const {
+    device::launch_each(
+        space, "drogue::coupling::sum_layers", static_cast<int>(_layers.extent(0)),
+        SumLayersFunctor<ExecutionSpace, View>{
+            {force_density.component[0], force_density.component[1], force_density.component[2]}, _layers});
     device::copy(space, _mirror, _layers);
     space.fence("drogue::coupling::total_force");
     std::array<double, 3> sum{};

@@ -16,27 +16,31 @@ class Cuda;
 // CMake defines DROGUE_HAVE_NAME for each backend in DROGUE_BACKENDS (cmake/DrogueBackends.cmake).
 #if defined(DROGUE_HAVE_SERIAL)
 #define DROGUE_COMPILED_SERIAL true
-#define DROGUE_EXTERN_SERIAL(...) extern template __VA_ARGS__<Kokkos::Serial>;
+#define DROGUE_EXTERN_SERIAL(Class, ...) \
+  extern template Class<Kokkos::Serial __VA_OPT__(, __VA_ARGS__<Kokkos::Serial>)>;
 #else
 #define DROGUE_COMPILED_SERIAL false
 #define DROGUE_EXTERN_SERIAL(...)
 #endif
 #if defined(DROGUE_HAVE_OPENMP)
 #define DROGUE_COMPILED_OPENMP true
-#define DROGUE_EXTERN_OPENMP(...) extern template __VA_ARGS__<Kokkos::OpenMP>;
+#define DROGUE_EXTERN_OPENMP(Class, ...) \
+  extern template Class<Kokkos::OpenMP __VA_OPT__(, __VA_ARGS__<Kokkos::OpenMP>)>;
 #else
 #define DROGUE_COMPILED_OPENMP false
 #define DROGUE_EXTERN_OPENMP(...)
 #endif
 #if defined(DROGUE_HAVE_CUDA)
 #define DROGUE_COMPILED_CUDA true
-#define DROGUE_EXTERN_CUDA(...) extern template __VA_ARGS__<Kokkos::Cuda>;
+#define DROGUE_EXTERN_CUDA(Class, ...) \
+  extern template Class<Kokkos::Cuda __VA_OPT__(, __VA_ARGS__<Kokkos::Cuda>)>;
 #else
 #define DROGUE_COMPILED_CUDA false
 #define DROGUE_EXTERN_CUDA(...)
 #endif
 
 // Declares the instances of a class template that a source of a folder instances/ compiles for each backend.
+// The second argument is a template of its second argument, if it has one.
 #define DROGUE_EXTERN_INSTANCES(...) \
   DROGUE_EXTERN_SERIAL(__VA_ARGS__)  \
   DROGUE_EXTERN_OPENMP(__VA_ARGS__)  \

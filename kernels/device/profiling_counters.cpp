@@ -88,9 +88,15 @@ void end_warmup() { counters.warm = true; }
 void count_launch() { ++counters.launches; }
 
 ProfilingCounters profiling_counters() {
-  return {counters.launches, counters.fences, counters.allocations,
-          counters.h2d,      counters.d2h,    counters.copies,
-          counters.bytes,    counters.peak,   counters.warm_allocations};
+  return {.kernel_launches = counters.launches,
+          .fences = counters.fences,
+          .allocations = counters.allocations,
+          .h2d_bytes = counters.h2d,
+          .d2h_bytes = counters.d2h,
+          .copies = counters.copies,
+          .device_bytes = counters.bytes,
+          .peak_device_bytes = counters.peak,
+          .allocations_after_warmup = counters.warm_allocations};
 }
 
 }  // namespace drogue::device

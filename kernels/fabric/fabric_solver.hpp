@@ -16,7 +16,6 @@
 #include "kernels/fabric/elastic/stress_evaluator.hpp"
 #include "kernels/fabric/loads/dirichlet.hpp"
 #include "kernels/fabric/loads/make_loads.hpp"
-#include "kernels/fabric/loads/prescribed_motion.hpp"
 #include "kernels/fabric/peak_pulls.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/state.hpp"
@@ -48,7 +47,6 @@ class FabricSolver {
   // with a default argument.
  public:
   using Points = PointsView<ExecutionSpace>;
-  using PressureView = ListView<ExecutionSpace, double>;
 
   /// Allocates all memory of steps, and places the vertices at rest; blocks. Throws std::invalid_argument for
   /// parameters out of range.
@@ -66,27 +64,6 @@ class FabricSolver {
   /// Does not throw.
   [[nodiscard]] State<ExecutionSpace> state() const;
 
-  /// Dead forces on all vertices, (vertices, 3), N, which kernels may change between steps. Initially
-  /// `Parameters::load`; Model::linear_vector adds the forces of its springs at rest. The first call may
-  /// allocate and then blocks. Throws std::runtime_error if memory runs out.
-  [[nodiscard]] Points loads();
-
-  /// Follower pressure at all vertices, (vertices), Pa, initially zero, which kernels may change between
-  /// steps. It adds to `Parameters::follower_pressures`. The first call allocates and blocks. Throws
-  /// std::runtime_error if memory runs out.
-  [[nodiscard]] PressureView pressures();
-
-  /// Motion of the pinned axes that no expression of `Parameters::motions` moves, which kernels may change
-  /// between steps. It is evaluated in every stage and at `upload`. Without it such an axis moves at its
-  /// velocity in `state`, in every driver.
-  ///
-  /// The first call allocates, blocks, and gives up the persistent driver. It initialises the motion with the
-  /// present positions, velocities and time. Throws std::logic_error if no such axis is pinned.
-  [[nodiscard]] PrescribedMotion<ExecutionSpace> prescribed_motion();
-
-  /// Replaces the functor from the next step on. Does not throw.
-  void set_vertex_force(const VertexForce& vertex_force);
-
   /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
   /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
   /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit,
@@ -97,15 +74,9 @@ class FabricSolver {
   /// (std::logic_error). Each launch of that graph takes `steps` steps; the caller bounds the launches in
   /// flight. From the first capture on, the solver takes no checkpoints of its own, and `time_state` is valid
   /// after `synchronize`; `upload` does not change that, and the graph remains valid. A captured graph is
-  /// invalid after `set_vertex_force`, `set_time_state`, `watch_pulls`, and the first calls of `loads`,
-  /// `pressures` and `prescribed_motion`. After `set_time_state` the solver takes checkpoints again.
+  /// invalid after `set_time_state` and `watch_pulls`. After `set_time_state` the solver takes checkpoints
+  /// again.
   bool enqueue_steps(std::int64_t steps);
-
-  /// Enqueues the number of steps that ends nearest to `time`, s; none if that time has passed. Returns as
-  /// `enqueue_steps`. Once steps have been captured, it blocks until all steps are done, since only the
-  /// device counts them. Throws std::invalid_argument for a time that is not finite or 1e15 steps away, and
-  /// std::logic_error in a capture, whose graph may be launched at any time.
-  bool advance_to(double time);
 
   /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure. Throws
   /// std::runtime_error if the launch fails.
@@ -209,21 +180,7 @@ class FabricSolver {
     return {_monitor, _time, _parity, fraction};
   }
   [[nodiscard]] VertexForceTerm<VertexForce> vertex_force_term() const {
-    return {_vertex_force, _time, _vertices, !ends_vertex_forces_apart()};
-  }
-  /// True if other kernels change the state after the kernel that ends a step. Velocity Verlet moves pins
-  /// before that kernel.
-  [[nodiscard]] bool ends_vertex_forces_apart() const {
-    return VertexForceTerm<VertexForce>::ends_steps &&
-           (has_contact_in_steps() || (moves_pins() && _parameters.integrator != Integrator::verlet));
-  }
-  /// Enqueues `end_step` of the VertexForce where the kernels of a step do not call it.
-  void end_vertex_forces() const {
-    if constexpr (VertexForceTerm<VertexForce>::ends_steps)
-      if (ends_vertex_forces_apart())
-        launch_each(space(), "drogue::fabric::end_vertex_forces", _vertices,
-                    EndVertexForcesFunctor<ExecutionSpace, VertexForce>{
-                        vertex_force_term(), _x, _v, _fabric.inverse_mass, _monitor, _parity});
+    return {_vertex_force, _time, _vertices};
   }
   /// True if every step resolves contact.
   [[nodiscard]] bool has_contact_in_steps() const { return _contact && _parameters.contact.interval == 1; }
@@ -236,13 +193,19 @@ class FabricSolver {
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  double fraction, bool with_dashpots) const {
-    return {_external, _dead.total, x, v, _fabric.load, stage_time(fraction), with_dashpots};
+    return {.external = _external,
+            .dead = _dead.total,
+            .x = x,
+            .v = v,
+            .out = _fabric.load,
+            .stage_time = stage_time(fraction),
+            .with_dashpots = with_dashpots};
   }
   /// Enqueues the evaluation of `_fabric.load`.
   void evaluate_loads(const Points& x, const Points& v, double fraction, bool with_dashpots) const {
     launch_each(space(), "drogue::fabric::loads", _vertices, external_functor(x, v, fraction, with_dashpots));
   }
-  [[nodiscard]] bool moves_pins() const { return _dirichlet || _prescribed_motion; }
+  [[nodiscard]] bool moves_pins() const { return _dirichlet.has_value(); }
   void apply_dirichlet(const Points& x, const Points& v, double fraction, bool checks_divergence) const;
   /// True if every stage is a kernel: other kernels need its state, or the execution space is a host, whose
   /// registers do not hold two stages at once.
@@ -321,8 +284,6 @@ class FabricSolver {
   bool _has_dashpots = false;
   ListView<ExecutionSpace, double> _load_stiffness;  ///< N/m, of pressure and bending; empty without
   std::optional<DirichletConditions<ExecutionSpace>> _dirichlet;
-  std::optional<PrescribedMotion<ExecutionSpace>> _prescribed_motion;  ///< after the first request
-  PinnedAxes<ExecutionSpace> _pinned_axes;                             ///< of the prescribed motion
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
   StepMonitor<ExecutionSpace> _monitor;
@@ -434,62 +395,11 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_drivers() {
   }
 }
 
-// ---- state and loads ----
+// ---- state ----
 
 template <class ExecutionSpace, class VertexForce>
 State<ExecutionSpace> FabricSolver<ExecutionSpace, VertexForce>::state() const {
   return {without_padding(_x), without_padding(_v)};
-}
-
-template <class ExecutionSpace, class VertexForce>
-PointsView<ExecutionSpace> FabricSolver<ExecutionSpace, VertexForce>::loads() {
-  if (_dead.total.extent(0) == 0) {
-    synchronize();
-    _dead.total = points("drogue::fabric::dead_load");
-    if (!_has_load_kernel) _fabric.load = _dead.total;
-    _launcher.discard_graphs();
-  }
-  return without_padding(_dead.total);
-}
-
-template <class ExecutionSpace, class VertexForce>
-auto FabricSolver<ExecutionSpace, VertexForce>::pressures() -> PressureView {
-  if (_external.pressure_values.extent(0) == 0) {
-    synchronize();
-    const auto n = static_cast<std::size_t>(_vertices);
-    _external.pressure_values = PressureView("drogue::fabric::pressures", n);
-    if (!_has_load_kernel) {
-      _external.rest = rest_positions();
-      _fabric.load = points("drogue::fabric::load");
-      _has_load_kernel = true;
-    }
-    if (_external.surface.first.extent(0) == 0)
-      _external.surface = make_surface(space(), _parameters, _fabric);
-    if (_load_stiffness.extent(0) == 0)
-      _load_stiffness = decltype(_load_stiffness)("drogue::fabric::load_stiffness", n);
-    make_drivers();
-  }
-  return _external.pressure_values;
-}
-
-template <class ExecutionSpace, class VertexForce>
-PrescribedMotion<ExecutionSpace> FabricSolver<ExecutionSpace, VertexForce>::prescribed_motion() {
-  if (!_prescribed_motion) {
-    synchronize();
-    _pinned_axes = make_pinned_axes(space(), _parameters, rest_positions());
-    _prescribed_motion = PrescribedMotion<ExecutionSpace>(static_cast<std::size_t>(_vertices));
-    launch_each(
-        space(), "drogue::fabric::initial_motion", static_cast<int>(_pinned_axes.vertex.extent(0)),
-        InitialMotionFunctor<ExecutionSpace>{_pinned_axes, *_prescribed_motion, _x, _v, stage_time(0.0)});
-    make_drivers();
-  }
-  return *_prescribed_motion;
-}
-
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::set_vertex_force(const VertexForce& vertex_force) {
-  _vertex_force = vertex_force;
-  _launcher.discard_graphs();
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -549,18 +459,17 @@ void FabricSolver<ExecutionSpace, VertexForce>::download(std::span<Vector> posit
 
 // ---- steps ----
 
-/// Sets the axes that expressions or the Views of the caller move.
+/// Sets the axes that expressions move, of which there are some (`moves_pins`).
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::apply_dirichlet(const Points& x, const Points& v,
                                                                 double fraction,
                                                                 bool checks_divergence) const {
-  if (_dirichlet)
-    launch_each(space(), "drogue::fabric::dirichlet", static_cast<int>(_dirichlet->vertex.extent(0)),
-                DirichletFunctor<ExecutionSpace>{*_dirichlet, x, v, stage_time(fraction), checks_divergence});
-  if (_prescribed_motion)
-    launch_each(space(), "drogue::fabric::prescribed_motion", static_cast<int>(_pinned_axes.vertex.extent(0)),
-                PrescribedMotionFunctor<ExecutionSpace>{_pinned_axes, *_prescribed_motion, x, v,
-                                                        stage_time(fraction), checks_divergence});
+  launch_each(space(), "drogue::fabric::dirichlet", static_cast<int>(_dirichlet->vertex.extent(0)),
+              DirichletFunctor<ExecutionSpace>{.prescribed = *_dirichlet,
+                                               .x = x,
+                                               .v = v,
+                                               .stage_time = stage_time(fraction),
+                                               .checks_divergence = checks_divergence});
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -568,15 +477,15 @@ template <ConstitutiveModel model, bool last>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_half(const char* label) const {
   launch_packs(space(), label, _padded,
                RungeKuttaHalfFunctor<ExecutionSpace, model, last, VertexForce>{
-                   _fabric,
-                   _x,
-                   _v,
-                   _next,
-                   _other,
-                   {_stage_velocity[0], _stage_velocity[1]},
-                   _monitor,
-                   _time.dt,
-                   vertex_force_term()});
+                   .fabric = _fabric,
+                   .x = _x,
+                   .v = _v,
+                   .third = _next,
+                   .fourth = _other,
+                   .velocity = {_stage_velocity[0], _stage_velocity[1]},
+                   .monitor = _monitor,
+                   .dt = _time.dt,
+                   .vertex_force = vertex_force_term()});
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -600,20 +509,19 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
       evaluate_loads(at[stage], stage == 0 ? _v : _stage_velocity[stage - 1], before[stage], _has_dashpots);
     launch_packs(space(), "drogue::fabric::rk4_stage", _padded,
                  RungeKuttaFunctor<ExecutionSpace, model, VertexForce>{
-                     _fabric,
-                     _x,
-                     _v,
-                     at[stage],
-                     next[stage],
-                     {_stage_velocity[0], _stage_velocity[1], _stage_velocity[2]},
-                     _monitor,
-                     _time.dt,
-                     stage,
-                     vertex_force_term()});
+                     .fabric = _fabric,
+                     .x = _x,
+                     .v = _v,
+                     .at = at[stage],
+                     .next = next[stage],
+                     .velocity = {_stage_velocity[0], _stage_velocity[1], _stage_velocity[2]},
+                     .monitor = _monitor,
+                     .dt = _time.dt,
+                     .stage = stage,
+                     .vertex_force = vertex_force_term()});
     if (moves_pins())
       apply_dirichlet(next[stage], stage == 3 ? _v : _stage_velocity[stage], after[stage], stage == 3);
   }
-  if (!has_contact_in_steps()) end_vertex_forces();
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -621,14 +529,28 @@ template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_verlet(bool ends, bool begins) {
   if (_has_load_kernel) evaluate_loads(_x, _v, 0.0, false);
   launch_packs(space(), "drogue::fabric::verlet", _padded,
-               VerletFunctor<ExecutionSpace, model, VertexForce>{
-                   _fabric, _x, _v, _next, _monitor, _parameters.damping, _time.dt, _parity, ends, begins,
-                   !_has_dashpots, vertex_force_term()});
+               VerletFunctor<ExecutionSpace, model, VertexForce>{.fabric = _fabric,
+                                                                 .x = _x,
+                                                                 .v = _v,
+                                                                 .next = _next,
+                                                                 .monitor = _monitor,
+                                                                 .damping = _parameters.damping,
+                                                                 .dt = _time.dt,
+                                                                 .parity = _parity,
+                                                                 .ends = ends,
+                                                                 .begins = begins,
+                                                                 .drifts = !_has_dashpots,
+                                                                 .vertex_force = vertex_force_term()});
   if (!begins) return;
   if (_has_dashpots) {
     launch_each(space(), "drogue::fabric::dashpot_damping", _vertices,
-                DashpotDampingFunctor<ExecutionSpace>{_fabric, _external.dashpots, _x, _v, _damped_v, _next,
-                                                      _time.dt});
+                DashpotDampingFunctor<ExecutionSpace>{.fabric = _fabric,
+                                                      .dashpots = _external.dashpots,
+                                                      .x = _x,
+                                                      .v = _v,
+                                                      .damped_v = _damped_v,
+                                                      .next = _next,
+                                                      .dt = _time.dt});
     std::swap(_v, _damped_v);
   }
   exchange_positions();
@@ -644,10 +566,16 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_symplectic_euler() {
     if (moves_pins()) apply_dirichlet(_next, _v, 1.0, false);
   launch_packs(
       space(), "drogue::fabric::symplectic_euler", _padded,
-      SymplecticEulerFunctor<ExecutionSpace, model, VertexForce>{
-          _fabric, _x, _v, _next, _monitor, _parameters.damping, _time.dt, _parity, vertex_force_term()});
+      SymplecticEulerFunctor<ExecutionSpace, model, VertexForce>{.fabric = _fabric,
+                                                                 .x = _x,
+                                                                 .v = _v,
+                                                                 .next = _next,
+                                                                 .monitor = _monitor,
+                                                                 .damping = _parameters.damping,
+                                                                 .dt = _time.dt,
+                                                                 .parity = _parity,
+                                                                 .vertex_force = vertex_force_term()});
   exchange_positions();
-  if (!has_contact_in_steps()) end_vertex_forces();
 }
 
 /// Makes the positions after a drift those of the state.
@@ -667,8 +595,14 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_persistent_steps(std::in
     restore_addresses();  // after a single step of another kernel
     FabricViews<ExecutionSpace> fabric = _fabric;
     fabric.load = _dead.total;
-    const PersistentInputs<ExecutionSpace, VertexForce> inputs{
-        fabric, _x, _v, _monitor, _time, vertex_force_term(), _external, _has_load_kernel};
+    const PersistentInputs<ExecutionSpace, VertexForce> inputs{.fabric = fabric,
+                                                               .x = _x,
+                                                               .v = _v,
+                                                               .monitor = _monitor,
+                                                               .time = _time,
+                                                               .vertex_force = vertex_force_term(),
+                                                               .external = _external,
+                                                               .has_loads = _has_load_kernel};
     if constexpr (RelaxesVelocity<VertexForce>)
       launch_persistent_euler<model>(space(), *_persistent, inputs, _parameters.damping, steps,
                                      _loop.has_captured_steps());
@@ -703,14 +637,6 @@ bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps
     _contact->end_interval(_x, _v);
   }
   return true;
-}
-
-template <class ExecutionSpace, class VertexForce>
-bool FabricSolver<ExecutionSpace, VertexForce>::advance_to(double time) {
-  if (device::is_capturing(space()))
-    throw std::logic_error("fabric solver: a captured graph takes a fixed number of steps, not a time");
-  if (_loop.has_captured_steps()) synchronize();
-  return enqueue_steps(_time.steps_to(time));
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -755,7 +681,6 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
   }
   _contact->end_step(_x, _v);
   record_pulls();
-  end_vertex_forces();
 }
 
 /// Moves the state back to its stable addresses after an odd number of steps that alternate between two
@@ -767,7 +692,8 @@ void FabricSolver<ExecutionSpace, VertexForce>::restore_addresses() {
   std::swap(_x, _next);
   if (_damped_v.extent(0) > 0) std::swap(_v, _damped_v);
   launch_each(space(), "drogue::fabric::restore_addresses", _padded,
-              RestoreAddressesFunctor<ExecutionSpace>{_monitor, x, v, _x, _v});
+              RestoreAddressesFunctor<ExecutionSpace>{
+                  .monitor = _monitor, .from_x = x, .from_v = v, .x = _x, .v = _v});
   _parity = 0;
 }
 
@@ -796,8 +722,11 @@ void FabricSolver<ExecutionSpace, VertexForce>::synchronize() {
   if (_loop.has_captured_steps()) _time.step = stepping::completed_steps(space(), _monitor, _parity);
   if (!first) return;
   _time.step = first->step - 1;
-  _failure = StepFailure{_contact ? _contact->reason(first->step) : FailureReason::not_finite, first->index,
-                         first->step, _time.time(), _time.dt};
+  _failure = StepFailure{.reason = _contact ? _contact->reason(first->step) : FailureReason::not_finite,
+                         .index = first->index,
+                         .step = first->step,
+                         .time = _time.time(),
+                         .dt = _time.dt};
   _time.step = first->checkpoint_step;
 }
 
@@ -895,8 +824,8 @@ Totals FabricSolver<ExecutionSpace, VertexForce>::totals() {
   synchronize();
   FabricViews<ExecutionSpace> with_dead_loads = _fabric;
   with_dead_loads.load = _dead.total;
-  Totals totals =
-      _totals.evaluate(space(), _parameters.material, with_dead_loads, _x, _v, _dead.pull, _external.bending);
+  Totals totals = _totals.evaluate(space(), _parameters.material, with_dead_loads, _x, _v, _dead.rest_forces,
+                                   _external.bending);
   totals.elastic += _dead.rest_energy;
   if (!_contact) return totals;
   std::vector<ContactWork> work(static_cast<std::size_t>(_vertices));

@@ -143,8 +143,8 @@ KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const FabricViews<ExecutionSpace>& f
 
 /// Force of a triangle on its first vertex, N.
 template <ConstitutiveModel model, class R>
-KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const EdgeVector<R>& j,
-                                                const EdgeVector<R>& k, const RestTriangle<R>& rest) {
+KOKKOS_INLINE_FUNCTION Vector3<R> triangle_force(const Moduli& m, const EdgeVector<R>& j,
+                                                 const EdgeVector<R>& k, const RestTriangle<R>& rest) {
   const GramMatrix<R> now{j.squared, dot(j.to, k.to), k.squared};
   if constexpr (model.model == Model::biquadratic && !model.tension_only) {
     const EdgePairTensions<R> tension = edge_pair_tensions(m, now, rest.products, rest.inverse_area);
@@ -159,7 +159,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const EdgeVecto
 
 /// Force of a spring on the start of `edge`, N.
 template <ConstitutiveModel model, class R>
-KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3<R>& edge) {
+KOKKOS_INLINE_FUNCTION Vector3<R> spring_force(R stiffness, R rest, const Vector3<R>& edge) {
   return spring_tension<model>(stiffness, dot(edge, edge), rest) * edge;
 }
 
@@ -214,8 +214,8 @@ KOKKOS_INLINE_FUNCTION auto spring_reader(const Springs& springs, const Points& 
 
 /// Force of a spring on its vertex, N.
 template <ConstitutiveModel model, class R>
-KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(const Spring<R>& of) {
-  return spring_pull<model>(of.stiffness, of.rest, of.edge);
+KOKKOS_INLINE_FUNCTION Vector3<R> spring_force(const Spring<R>& of) {
+  return spring_force<model>(of.stiffness, of.rest, of.edge);
 }
 
 /// `sum` plus the forces of the springs on vertex i and the lanes after it, N, in the order of their slots.
@@ -224,7 +224,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& fabric, const Point
                                                Vector3<R> sum) {
   const auto& springs = fabric.springs;
   springs.each_read(i, spring_reader<R>(springs, positions, i),
-                    [&](const Spring<R>& spring) { sum = sum + spring_pull<model>(spring); });
+                    [&](const Spring<R>& spring) { sum = sum + spring_force<model>(spring); });
   return sum;
 }
 
@@ -238,7 +238,7 @@ KOKKOS_INLINE_FUNCTION Vector3<double> with_springs_of_warp(const Springs& sprin
   const int lane = i % slice, begin = springs.first(i / slice), end = springs.first(i / slice + 1),
             shared = device::minimum(begin + most_own, end);
   for_each_read_slot(begin, shared, i, spring_reader<double>(springs, positions, i),
-                     [&](const Spring<double>& spring) { sum = sum + spring_pull<model>(spring); });
+                     [&](const Spring<double>& spring) { sum = sum + spring_force<model>(spring); });
   if (shared == end) return sum;
   unsigned rows = device::warp_ballot(springs.neighbour(shared * slice + lane) != i);
   for (int row = 0; rows != 0U; ++row, rows >>= 1U) {
@@ -246,11 +246,11 @@ KOKKOS_INLINE_FUNCTION Vector3<double> with_springs_of_warp(const Springs& sprin
     const auto read = spring_reader<double>(springs, positions, i - lane + row);
     for (int k = shared; k < end; k += slice) {
       Vector3<double> own{0.0, 0.0, 0.0};
-      if (k + lane < end) own = spring_pull<model>(read((k + lane) * slice + row));
+      if (k + lane < end) own = spring_force<model>(read((k + lane) * slice + row));
       for (int n = 0; n < slice && k + n < end; ++n) {
-        const Vector3<double> pull{device::shuffle(own.x, n), device::shuffle(own.y, n),
-                                   device::shuffle(own.z, n)};
-        if (lane == row) sum = sum + pull;
+        const Vector3<double> force_of_lane{device::shuffle(own.x, n), device::shuffle(own.y, n),
+                                            device::shuffle(own.z, n)};
+        if (lane == row) sum = sum + force_of_lane;
       }
     }
   }
@@ -273,7 +273,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& fabric, const Poin
   if constexpr (whole_triangles<model>)
     each_triangle<R>(fabric, positions, i,
                      [&](const EdgeVector<R>& j, const EdgeVector<R>& k, const RestTriangle<R>& rest) {
-                       sum = sum + triangle_pull<model>(fabric.moduli, j, k, rest);
+                       sum = sum + triangle_force<model>(fabric.moduli, j, k, rest);
                      });
   return with_springs<model>(fabric, positions, i, sum);
 }
@@ -298,8 +298,8 @@ KOKKOS_INLINE_FUNCTION StatePair<Vector3<R>> elastic_forces(const Fabric& fabric
                              edge_to<R>(second, own.second, neighbour)};
         },
         [&](const EdgeVectors& j, const EdgeVectors& k, const RestTriangle<R>& rest) {
-          sum.first = sum.first + triangle_pull<model>(fabric.moduli, j.first, k.first, rest);
-          sum.second = sum.second + triangle_pull<model>(fabric.moduli, j.second, k.second, rest);
+          sum.first = sum.first + triangle_force<model>(fabric.moduli, j.first, k.first, rest);
+          sum.second = sum.second + triangle_force<model>(fabric.moduli, j.second, k.second, rest);
         });
   }
   return {with_springs<model>(fabric, first, i, sum.first),

@@ -90,12 +90,12 @@ class PeakPulls {
       first.push_back(static_cast<int>(pulled.size()));
     }
     const std::vector<PeakPull> none(pulls.size());
-    _views = {list_view(space, "drogue::fabric::first_line", first),
-              list_view(space, "drogue::fabric::pulled_vertices", pulled),
-              list_view(space, "drogue::fabric::pulling_vertices", from),
-              list_view(space, "drogue::fabric::pulling_stiffness", length),
-              list_view(space, "drogue::fabric::pulling_length", length),
-              list_view(space, "drogue::fabric::peak_pulls", none)};
+    _views = {.first = list_view(space, "drogue::fabric::first_line", first),
+              .pulled = list_view(space, "drogue::fabric::pulled_vertices", pulled),
+              .from = list_view(space, "drogue::fabric::pulling_vertices", from),
+              .stiffness = list_view(space, "drogue::fabric::pulling_stiffness", length),
+              .length = list_view(space, "drogue::fabric::pulling_length", length),
+              .peak = list_view(space, "drogue::fabric::peak_pulls", none)};
     _saved = list_view(space, "drogue::fabric::saved_peak_pulls", none);
     _pulls = pulls.size();
     set_stiffness(space, stiffness);

@@ -26,7 +26,8 @@ template <class ExecutionSpace, ConstitutiveModel model>
 struct TotalsFunctor {
   FabricViews<ExecutionSpace> fabric;
   PointsView<ExecutionSpace> x, v;
-  PointsView<ExecutionSpace> pull;  ///< N, of Model::linear_vector, also part of `fabric.load`; may be empty
+  /// N, of Model::linear_vector, also part of `fabric.load`; may be empty.
+  PointsView<ExecutionSpace> rest_forces;
   SlicedEllViews<ExecutionSpace, 1> bending;  ///< may be empty
   TotalsView<ExecutionSpace> out;
   int vertices;
@@ -44,8 +45,8 @@ struct TotalsFunctor {
     sum[1] += elastic(i, at);
     sum[2] -= mass * dot(fabric.gravity, at);
     if (fabric.load.extent(0) > 0) sum[3] -= dot(load_points<double>(fabric.load, i), at);
-    if (pull.extent(0) > 0) {
-      const double work = dot(load_points<double>(pull, i), at);
+    if (rest_forces.extent(0) > 0) {
+      const double work = dot(load_points<double>(rest_forces, i), at);
       sum[1] -= work, sum[3] += work;
     }
     const double moved[3] = {mass * velocity.x, mass * velocity.y, mass * velocity.z};
@@ -111,15 +112,21 @@ class TotalsEvaluator {
   }
 
   /// Totals without contact and without the rest energy of springs of vectors. `fabric.load` holds the dead
-  /// loads alone; `pull` and `bending` may be empty. Blocks.
+  /// loads alone; `rest_forces` and `bending` may be empty. Blocks.
   Totals evaluate(const ExecutionSpace& space, const Material& material,
                   const FabricViews<ExecutionSpace>& fabric, const PointsView<ExecutionSpace>& x,
-                  const PointsView<ExecutionSpace>& v, const PointsView<ExecutionSpace>& pull,
+                  const PointsView<ExecutionSpace>& v, const PointsView<ExecutionSpace>& rest_forces,
                   const SlicedEllViews<ExecutionSpace, 1>& bending) const {
     dispatch_model(material, [&]<ConstitutiveModel model>() {
-      Kokkos::parallel_for(
-          "drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels.front().extent(0)),
-          TotalsFunctor<ExecutionSpace, model>{fabric, x, v, pull, bending, _levels.front(), _vertices});
+      Kokkos::parallel_for("drogue::fabric::totals",
+                           Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels.front().extent(0)),
+                           TotalsFunctor<ExecutionSpace, model>{.fabric = fabric,
+                                                                .x = x,
+                                                                .v = v,
+                                                                .rest_forces = rest_forces,
+                                                                .bending = bending,
+                                                                .out = _levels.front(),
+                                                                .vertices = _vertices});
     });
     for (std::size_t level = 1; level < _levels.size(); ++level)
       Kokkos::parallel_for("drogue::fabric::sum",
@@ -127,7 +134,12 @@ class TotalsEvaluator {
                            SumFunctor<ExecutionSpace>{_levels[level - 1], _levels[level]});
     device::copy(space, _mirror, _levels.back());
     space.fence("drogue::fabric::totals");
-    Totals t{_mirror(0, 0), _mirror(0, 1), _mirror(0, 2), _mirror(0, 3), {}, {}, 0.0, 0.0};
+    Totals t{.kinetic = _mirror(0, 0),
+             .elastic = _mirror(0, 1),
+             .gravity = _mirror(0, 2),
+             .load = _mirror(0, 3),
+             .contact = 0.0,
+             .friction = 0.0};
     for (std::size_t axis = 0; axis < 3; ++axis)
       t.momentum[axis] = _mirror(0, 4 + axis), t.angular_momentum[axis] = _mirror(0, 7 + axis);
     return t;

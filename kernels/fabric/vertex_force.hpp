@@ -35,22 +35,17 @@ concept RelaxesVelocity = requires(const Functor& functor, const VertexStage& at
 };
 
 /// Functor, copied into kernels, that returns a force on a vertex, N, in every evaluation of forces. Calls
-/// must not write, because they have no order within a stage. They may read the `VertexStage`, state of their
-/// own for its vertex, and data that nothing changes during the steps: neither state of other vertices, which
-/// `end_step` changes in the same kernel, nor the Views of `State`, which a persistent kernel updates at its
-/// end.
+/// must not write, because they have no order within a stage. They may read the `VertexStage` and data that
+/// nothing changes during the steps: not the Views of `State`, which a persistent kernel updates at its end.
+/// The Runge-Kutta method evaluates the force four times per step. Velocity Verlet evaluates it twice per
+/// position: for the kick that ends a step, with the velocity before that kick, and for the kick that begins
+/// the next one.
 ///
 /// An optional `Vector3<double> relaxed_velocity(const VertexStage&) const`, with or without a force, returns
 /// the velocity in which dissipation ends that is too stiff for a force, such as the drag on light cloth. The
 /// symplectic Euler method calls it once per step and vertex, between kick and drift, with the position at
 /// the beginning of the step, the velocity after the kick, m/s, and zero `force`. It may update state of its
 /// own for the vertex. Pinned axes keep their velocity.
-///
-/// An optional `void end_step(const VertexStage&) const` updates state of its own for the vertex. The solver
-/// calls it once per step and vertex with the position, velocity and time at the end of the step and zero
-/// `force`. The Runge-Kutta method evaluates the force four times per step. Velocity Verlet evaluates it
-/// twice per position: for the kick that ends a step, with the velocity before that kick, and for the kick
-/// that begins the next one.
 template <class Functor>
 concept IsVertexForce = std::copy_constructible<Functor> &&(GivesForce<Functor> || RelaxesVelocity<Functor>);
 
@@ -62,14 +57,10 @@ template <class VertexForce>
 struct VertexForceTerm {
   static_assert(!has_vertex_force<VertexForce> || IsVertexForce<VertexForce>,
                 "a VertexForce maps a VertexStage to a force or a relaxed velocity");
-  static constexpr bool ends_steps = requires(const VertexForce& functor, const VertexStage& at) {
-    functor.end_step(at);
-  };
 
   VertexForce functor;
   stepping::TimeState origin;  ///< `step` is ignored: kernels count steps on the device
   int vertices = 0;            ///< of the mesh; padding of the last slice has no force
-  bool ends_in_steps = true;   ///< the kernels of steps call `end_step`; else `EndVertexForcesFunctor` does
 
   /// Force on vertex i and the lanes after it, N, `part` of a step after `steps` steps. `force` holds the
   /// elastic forces and loads, N; the result includes them.
@@ -108,26 +99,6 @@ struct VertexForceTerm {
     }
   }
 
-  /// Ends step `steps` of vertex i and the lanes after it, in a kernel of steps; position in m, velocity in
-  /// m/s.
-  template <class R>
-  KOKKOS_INLINE_FUNCTION void end_step(const Vector3<R>& position, const Vector3<R>& velocity,
-                                       const double* inverse_mass, int i, std::int64_t steps) const {
-    if constexpr (ends_steps) {
-      if (!ends_in_steps) return;
-      const Vector3<R> none{R(0.0), R(0.0), R(0.0)};
-      for (int lane = 0; lane < device::Access<R>::lanes && i + lane < vertices; ++lane)
-        functor.end_step(of_lane(lane, position, velocity, none, inverse_mass[lane], i + lane, steps, 0.0));
-    }
-  }
-
-  /// State of vertex i after `steps` steps; position in m, velocity in m/s, inverse mass in 1/kg.
-  KOKKOS_INLINE_FUNCTION VertexStage end_of_step(const Vector3<double>& position,
-                                                 const Vector3<double>& velocity, double inverse_mass, int i,
-                                                 std::int64_t steps) const {
-    return of_lane(0, position, velocity, Vector3<double>{0.0, 0.0, 0.0}, inverse_mass, i, steps, 0.0);
-  }
-
  private:
   /// Vectors `of(lane)` of vertex i and the lanes after it; zero beyond the last vertex.
   template <class R, class Of>
@@ -149,25 +120,13 @@ struct VertexForceTerm {
       using Lanes = device::Access<R>;
       return Vector3<double>{Lanes::lane(v.x, lane), Lanes::lane(v.y, lane), Lanes::lane(v.z, lane)};
     };
-    return {one(position), one(velocity), one(force),
-            inverse_mass,  vertex,        stepping::stage_time(origin, steps, part),
-            origin.dt};
-  }
-};
-
-/// Calls `end_step` of a VertexForce for all vertices, after prescribed motion and contact have changed the
-/// state at the end of a step.
-template <class ExecutionSpace, class VertexForce>
-struct EndVertexForcesFunctor {
-  VertexForceTerm<VertexForce> term;
-  PointsView<ExecutionSpace> x, v;
-  Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;
-  stepping::StepMonitor<ExecutionSpace> monitor;
-  int parity;  ///< entry of the step counter
-
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    term.functor.end_step(term.end_of_step(load_points<double>(x, i), load_points<double>(v, i),
-                                           inverse_mass(i), i, monitor.steps(parity)));
+    return {.position = one(position),
+            .velocity = one(velocity),
+            .force = one(force),
+            .inverse_mass = inverse_mass,
+            .vertex = vertex,
+            .time = stepping::stage_time(origin, steps, part),
+            .dt = origin.dt};
   }
 };
 

@@ -16,7 +16,7 @@ using stepping::no_failure;
 
 /// Maxima of a step over the cells, of integers alone. Ranks agree on the largest of each.
 struct StepMaxima {
-  std::uint64_t next_rate;       ///< of the state after the step, as `Progress::rate`
+  std::uint64_t next_rate_bits;  ///< of the state after the step, as `Progress::rate_bits`
   std::uint64_t eddy_viscosity;  ///< bits of the largest one since the last step, m^2/s; 0 without a model
   /// Bits of the largest acceleration of each prescribed velocity component in the last step, in cells,
   /// 1/s^2.
@@ -101,7 +101,7 @@ inline constexpr double largest_excess = 2.0;
 /// Largest dt of the next step that is stable, s; NaN if the velocity is not finite. Implicit diffusion damps
 /// the waves that the explicit advection amplifies while rate^2 dt is at most twice `damping_rate`.
 KOKKOS_INLINE_FUNCTION double stable_dt(const Progress& now, const StepConstants& k) {
-  const double rate = Kokkos::bit_cast<double>(now.rate);
+  const double rate = Kokkos::bit_cast<double>(now.rate_bits);
   if (!(rate >= 0.0)) return rate;  // NaN
   const double dt = 1.0 / (rate / k.stable_cfl + 1.0 / k.diffusive_dt);
   const double damped = 2.0 * k.damping_rate / (rate * rate);
@@ -111,7 +111,7 @@ KOKKOS_INLINE_FUNCTION double stable_dt(const Progress& now, const StepConstants
 /// Admissible dt of the next step, s. NaN or zero if there is none. Does not bound a fixed dt.
 KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConstants& k) {
   if (k.fixed_dt > 0.0) return k.fixed_dt;
-  const double rate = Kokkos::bit_cast<double>(now.rate);
+  const double rate = Kokkos::bit_cast<double>(now.rate_bits);
   if (!(rate >= 0.0)) return rate;  // NaN
   // Advection and diffusion share the stability region: the sum of their rates limits dt. A tenth is kept in
   // reserve for the dissipation of upwind-biased fluxes.
@@ -134,19 +134,19 @@ KOKKOS_INLINE_FUNCTION stepping::MotionBound resolved_motion(const Progress& now
   return bound;
 }
 
-/// Rate that limits the next dt, as `Progress::rate`: that of advection, and that of an eddy viscosity. If
-/// sides accelerate by a in cells, the sum over the components, r becomes r' with dt (r + a dt) = cfl for dt
-/// = cfl / r'. If the velocity grows so fast that dt would be unstable at the end of a step, a is that of the
-/// last step and the stable CFL number takes the place of cfl.
-KOKKOS_INLINE_FUNCTION std::uint64_t limiting_rate(const Control& c, const StepConstants& k) {
+/// Rate that limits the next dt, as `Progress::rate_bits`: that of advection, and that of an eddy viscosity.
+/// If sides accelerate by a in cells, the sum over the components, r becomes r' with dt (r + a dt) = cfl for
+/// dt = cfl / r'. If the velocity grows so fast that dt would be unstable at the end of a step, a is that of
+/// the last step and the stable CFL number takes the place of cfl.
+KOKKOS_INLINE_FUNCTION std::uint64_t limiting_rate_bits(const Control& c, const StepConstants& k) {
   double rate =
-      Kokkos::bit_cast<double>(c.next_rate) + k.eddy_weight * Kokkos::bit_cast<double>(c.eddy_viscosity);
+      Kokkos::bit_cast<double>(c.next_rate_bits) + k.eddy_weight * Kokkos::bit_cast<double>(c.eddy_viscosity);
   double acceleration = 0.0;
   for (const std::uint64_t bits : c.side_acceleration) acceleration += Kokkos::bit_cast<double>(bits);
   if (acceleration > 0.0 && !(k.fixed_dt > 0.0))
     rate = 0.5 * (rate + Kokkos::sqrt(rate * rate + 4.0 * acceleration * k.cfl));
-  const double before = Kokkos::bit_cast<double>(c.now.velocity_rate),
-               after = Kokkos::bit_cast<double>(c.next_rate);
+  const double before = Kokkos::bit_cast<double>(c.now.velocity_rate_bits),
+               after = Kokkos::bit_cast<double>(c.next_rate_bits);
   if (c.trial.dt > 0.0 && after > before && !(k.fixed_dt > 0.0)) {
     const double growth = (after - before) / c.trial.dt;
     const double safe =
@@ -156,8 +156,8 @@ KOKKOS_INLINE_FUNCTION std::uint64_t limiting_rate(const Control& c, const StepC
   return Kokkos::bit_cast<std::uint64_t>(rate);
 }
 
-/// Bound of the dt that follows the step under way, s, before `Progress::rate` is that of its end: steps grow
-/// by degrees, and with implicit diffusion, which is stable for any dt, only while viscosity changes the
+/// Bound of the dt that follows the step under way, s, before `Progress::rate_bits` is that of its end: steps
+/// grow by degrees, and with implicit diffusion, which is stable for any dt, only while viscosity changes the
 /// velocity little. A change that pressure and forces balance does not count.
 KOKKOS_INLINE_FUNCTION double longest_next_dt(const Control& c, const StepConstants& k) {
   constexpr double infinite = Kokkos::Experimental::infinity_v<double>;

@@ -67,9 +67,6 @@ class FlowSolver {
   [[nodiscard]] const MacGrid& grid() const { return _grid; }
   /// Velocity with ghost cells, m/s; valid after the kernels enqueued so far. Does not throw.
   [[nodiscard]] const Values& velocity() const { return _velocity; }
-  /// Kinematic pressure at the cells that acted in the last step, x fastest, m^2/s^2: of second order at the
-  /// middle of that step, and zero before the first. Does not throw.
-  [[nodiscard]] const Values& pressure() const { return _pressure; }
   /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless
   /// `Parameters::external_force`. On sides it acts only on outflows. Other kernels may write it between
   /// steps; it keeps its values. Does not throw.
@@ -193,7 +190,9 @@ class FlowSolver {
     for (std::size_t axis = 0; axis < 3; ++axis) pressure_below[axis] = _halo->pressure_below(axis);
   }
   /// Solution of the pressure equation: the pressure, or its increment.
-  [[nodiscard]] const Values& unknown() const { return _diffusion ? _pressure_increment : _divergence; }
+  [[nodiscard]] const Values& unknown() const {
+    return _diffusion ? _pressure_increment : _divergence_or_pressure;
+  }
   [[nodiscard]] double kinematic_viscosity() const { return _parameters.viscosity / _parameters.density; }
 
   const device::Instance<ExecutionSpace>* _instance;
@@ -210,10 +209,11 @@ class FlowSolver {
   std::array<double, 3> _frame_velocity{};  ///< m/s
   EddyModel _eddy_model{};
   EddyCells _eddy_cells{};
-  Values _velocity, _predicted, _rate, _force;
+  Values _velocity, _predicted, _force;
+  Values _rate_or_stage;  ///< AB2: rate of the step before, m/s^2; RK3: velocity of a stage, m/s
   /// Right-hand side of the pressure equation, 1/s^2; with explicit diffusion also its solution, m^2/s^2, so
   /// that the pressure changes with the velocity, in the correction.
-  Values _divergence;
+  Values _divergence_or_pressure;
   Values _pressure;
   Values _pressure_increment;                  ///< empty with explicit diffusion, which needs no increments
   Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
@@ -250,9 +250,9 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   const auto cells = static_cast<std::size_t>(_grid.cells());
   _velocity = field("drogue::flow::velocity");
   _predicted = field("drogue::flow::predicted_velocity");
-  _rate = field("drogue::flow::rate");
+  _rate_or_stage = field("drogue::flow::rate");
   if (parameters.external_force) _force = field("drogue::flow::force");
-  _divergence = Values("drogue::flow::divergence", cells);
+  _divergence_or_pressure = Values("drogue::flow::divergence", cells);
   _pressure = Values("drogue::flow::pressure", cells);
   const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
   if (is_implicit) {
@@ -321,13 +321,13 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
     throw std::invalid_argument("flow solver: an array of the state has the wrong length");
   const auto axis = static_cast<std::size_t>(index % 3);
   const bool has_low_side = extents(_parameters, field) != _parameters.cells && _ranks.place[axis] == 0;
-  return {_grid,
-          is_rate ? _rate : _velocity,
-          _predicted,
-          (index % 3) * _grid.component,
-          {shape[0], shape[1], shape[2]},
-          to_field,
-          is_rate && has_low_side ? index % 3 : -1};
+  return {.grid = _grid,
+          .field = is_rate ? _rate_or_stage : _velocity,
+          .contiguous = _predicted,
+          .first = (index % 3) * _grid.component,
+          .extent = {shape[0], shape[1], shape[2]},
+          .to_field = to_field,
+          .bounded_axis = is_rate && has_low_side ? index % 3 : -1};
 }
 
 template <class ExecutionSpace>
@@ -363,9 +363,13 @@ void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> value
   if (values.size() != static_cast<std::size_t>(_grid.cells()) * static_cast<std::size_t>(components(field)))
     throw std::invalid_argument("flow solver: a field has the wrong length");
   if (field == CellField::pressure) solve_present_pressure(kinematic_viscosity());
-  launch_cells(
-      space(), "drogue::flow::sample", _grid.n,
-      SampleFunctor<ExecutionSpace>{_grid, _velocity, unknown(), _predicted, _parameters.density, field});
+  launch_cells(space(), "drogue::flow::sample", _grid.n,
+               SampleFunctor<ExecutionSpace>{.grid = _grid,
+                                             .velocity = _velocity,
+                                             .pressure = unknown(),
+                                             .samples = _predicted,
+                                             .density = _parameters.density,
+                                             .field = field});
   device::copy_out(space(), values.data(), _predicted, values.size());
   space().fence("drogue::flow::sample");
 }
@@ -446,10 +450,10 @@ void FlowSolver<ExecutionSpace>::start() {
   Kokkos::deep_copy(space(), _pressure, 0.0);  // the first step has no pressure of a previous one
   control = read_control();
   control.trial.dt = 0.0;
-  control.now.velocity_rate = control.next_rate;
+  control.now.velocity_rate_bits = control.next_rate_bits;
   // No first step is admissible after a failure.
-  const auto no_rate = Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
-  control.now.rate = control.has_failed() ? no_rate : limiting_rate(control, _constants);
+  const auto no_rate_bits = Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
+  control.now.rate_bits = control.has_failed() ? no_rate_bits : limiting_rate_bits(control, _constants);
   if (const double longest = longest_first_dt(); std::isfinite(longest)) control.now.longest_dt = longest;
   control.forget_step();
   control.trial.stop = Stop::pause;
@@ -463,7 +467,7 @@ void FlowSolver<ExecutionSpace>::start() {
     if (solved.pressure_failed != 0) {
       control.pressure_failed = 1;
       control.pressure_residual = solved.pressure_residual;
-      control.now.rate = no_rate;
+      control.now.rate_bits = no_rate_bits;
       write_control(control);
     }
   }
@@ -505,8 +509,11 @@ void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
 template <class ExecutionSpace>
 StepFailure FlowSolver<ExecutionSpace>::failure() {
   const Control control = read_control();
-  StepFailure failure{
-      {FailureReason::time_step, -1, control.now.step + 1, control.now.time, control.trial.dt}, 0.0, 0.0};
+  StepFailure failure{{.reason = FailureReason::time_step,
+                       .index = -1,
+                       .step = control.now.step + 1,
+                       .time = control.now.time,
+                       .dt = control.trial.dt}};
   if (control.failed_side != 0) {
     failure.reason = FailureReason::side_velocity;
     failure.index = control.failed_side - 1;
@@ -519,7 +526,7 @@ StepFailure FlowSolver<ExecutionSpace>::failure() {
   } else if (control.pressure_failed != 0) {
     failure.reason = FailureReason::pressure_solver;
     failure.pressure_residual = control.pressure_residual;
-  } else if (!std::isfinite(Kokkos::bit_cast<double>(control.next_rate))) {
+  } else if (!std::isfinite(Kokkos::bit_cast<double>(control.next_rate_bits))) {
     failure.reason = FailureReason::not_finite;
   }
   return failure;
@@ -532,8 +539,11 @@ struct FlowSolver<ExecutionSpace>::Steps {
 
   void begin(const stepping::AdvanceRequest& request, std::int64_t output_step) {
     Kokkos::parallel_for("drogue::flow::begin_advance", one_thread(solver.space()),
-                         BeginAdvanceFunctor<ExecutionSpace>{solver._control, solver._loop.status_view(),
-                                                             solver._constants, request, output_step});
+                         BeginAdvanceFunctor<ExecutionSpace>{.control = solver._control,
+                                                             .status = solver._loop.status_view(),
+                                                             .constants = solver._constants,
+                                                             .request = request,
+                                                             .output_step = output_step});
   }
   [[nodiscard]] bool holds_many_steps(int /*variant*/) const { return false; }
   void enqueue(int variant, std::int64_t /*max_steps*/) {
@@ -636,7 +646,8 @@ void FlowSolver<ExecutionSpace>::change_frame(const std::array<double, 3>& veloc
   set_frame(velocity);
   if (has_rates) add_rates(1.0 / dt);
   // An upper bound until the next step.
-  control.now.rate = Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(control.now.rate) + rate);
+  control.now.rate_bits =
+      Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(control.now.rate_bits) + rate);
   write_control(control);
 }
 
@@ -658,9 +669,13 @@ void FlowSolver<ExecutionSpace>::add_rates(double weight) {
   setup.weights = {0.0, 1.0, false};
   setup.force = Values();
   enqueue_rates(space(), setup, 1.0);
-  launch_cells(
-      space(), "drogue::flow::add_rates", _grid.n,
-      AddRatesFunctor<ExecutionSpace>{_grid, _boundary.conditions(), _velocity, _predicted, _rate, weight});
+  launch_cells(space(), "drogue::flow::add_rates", _grid.n,
+               AddRatesFunctor<ExecutionSpace>{.grid = _grid,
+                                               .boundary = _boundary.conditions(),
+                                               .velocity = _velocity,
+                                               .predicted = _predicted,
+                                               .rate = _rate_or_stage,
+                                               .weight = weight});
 }
 
 template <class ExecutionSpace>
@@ -741,20 +756,20 @@ MomentumSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::momentum_setup(double 
   // round-off leaves of a velocity above 1e-19 m/s, so that results do not depend on the unit of velocity.
   // Its fourth power, a product of the weights, is a number.
   constexpr double smoothness_floor = 1e-72;
-  return {_grid,
-          _velocity,
-          _velocity,
-          _predicted,
-          _rate,
-          _force,
-          _eddy_acceleration,
-          _control,
-          nu,
-          {_acceleration[0], _acceleration[1], _acceleration[2]},
-          1.0 / _parameters.density,
-          smoothness_floor,
-          tile_rows(_parameters.block),
-          {}};
+  return {.grid = _grid,
+          .state = _velocity,
+          .stage = _velocity,
+          .out = _predicted,
+          .old_rate = _rate_or_stage,
+          .force = _force,
+          .eddy = _eddy_acceleration,
+          .control = _control,
+          .nu = nu,
+          .acceleration = {_acceleration[0], _acceleration[1], _acceleration[2]},
+          .specific_volume = 1.0 / _parameters.density,
+          .epsilon = smoothness_floor,
+          .rows = tile_rows(_parameters.block),
+          .weights = {}};
 }
 
 template <class ExecutionSpace>
@@ -768,10 +783,10 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
   } else {
     // Shu and Osher 1988, eq. (2.18). The first two stages are projected into the array of rates.
     setup.weights = {0.0, 1.0, false};
-    enqueue_stage(space, setup, _rate, 1.0, 1.0);
-    setup.stage = _rate;
+    enqueue_stage(space, setup, _rate_or_stage, 1.0, 1.0);
+    setup.stage = _rate_or_stage;
     setup.weights = {0.75, 0.25, false};
-    enqueue_stage(space, setup, _rate, 0.25, 0.5);
+    enqueue_stage(space, setup, _rate_or_stage, 0.25, 0.5);
     setup.weights = {1.0 / 3.0, 2.0 / 3.0, false};
     enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
   }
@@ -790,8 +805,12 @@ void FlowSolver<ExecutionSpace>::enqueue_eddy_viscosity(const ExecutionSpace& sp
   if (_parameters.turbulence == Turbulence::none) return;
   finish_ghosts(space, velocity);
   launch_cells(space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
-               EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, velocity, _eddy_cells,
-                                                    _eddy_viscosity, _control});
+               EddyViscosityFunctor<ExecutionSpace>{.grid = _grid,
+                                                    .model = _eddy_model,
+                                                    .velocity = velocity,
+                                                    .cells = _eddy_cells,
+                                                    .viscosity = _eddy_viscosity,
+                                                    .control = _control});
 }
 
 /// Predicted velocity of a momentum stage. `time_fraction`: of dt at which it has the values of the sides.
@@ -801,8 +820,12 @@ void FlowSolver<ExecutionSpace>::enqueue_rates(const ExecutionSpace& space,
                                                double time_fraction) const {
   if (_parameters.turbulence != Turbulence::none)
     launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
-                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
-                                                   _eddy_acceleration, _control});
+                 EddyStressFunctor<ExecutionSpace>{.grid = _grid,
+                                                   .velocity = setup.stage,
+                                                   .cells = _eddy_cells,
+                                                   .viscosity = _eddy_viscosity,
+                                                   .acceleration = _eddy_acceleration,
+                                                   .control = _control});
   enqueue_momentum(space, setup);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, _constants, {time_fraction, false});
   enqueue_net_inflow(space);
@@ -819,11 +842,17 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
   if (setup.stage.data() != _velocity.data()) enqueue_eddy_viscosity(space, setup.stage);
   enqueue_rates(space, setup, time_fraction);
   if (_diffusion) {
-    DiffusionSetup<ExecutionSpace> diffusion{
-        _grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity(), {}};
+    DiffusionSetup<ExecutionSpace> diffusion{.grid = _grid,
+                                             .boundary = _boundary.conditions(),
+                                             .velocity = _velocity,
+                                             .predicted = _predicted,
+                                             .pressure = _pressure,
+                                             .control = _control,
+                                             .nu = kinematic_viscosity(),
+                                             .pressure_below = {}};
     if (_halo) _halo->exchange_pressure(space, _pressure);
     copy_pressure_below(diffusion.pressure_below);
-    _diffusion->enqueue(space, diffusion, _divergence, _pressure_increment);
+    _diffusion->enqueue(space, diffusion, _divergence_or_pressure, _pressure_increment);
   }
   ProjectionSetup<ExecutionSpace> projection = projection_setup(fraction);
   projection.velocity = result;
@@ -837,20 +866,20 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
 /// Projection of the predicted velocity, without a result.
 template <class ExecutionSpace>
 ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(double fraction) const {
-  ProjectionSetup<ExecutionSpace> setup{_grid,
-                                        _boundary.conditions(),
-                                        _predicted,
-                                        Values(),
-                                        _divergence,
-                                        unknown(),
-                                        Values(),
-                                        _diffusion.has_value(),
-                                        _control,
-                                        kinematic_viscosity(),
-                                        fraction,
-                                        false,
-                                        tile_rows(_parameters.block),
-                                        {}};
+  ProjectionSetup<ExecutionSpace> setup{.grid = _grid,
+                                        .boundary = _boundary.conditions(),
+                                        .predicted = _predicted,
+                                        .velocity = Values(),
+                                        .divergence = _divergence_or_pressure,
+                                        .pressure = unknown(),
+                                        .total_pressure = Values(),
+                                        .is_increment = _diffusion.has_value(),
+                                        .control = _control,
+                                        .nu = kinematic_viscosity(),
+                                        .step_fraction = fraction,
+                                        .ends_step = false,
+                                        .rows = tile_rows(_parameters.block),
+                                        .pressure_below = {}};
   copy_pressure_below(setup.pressure_below);
   return setup;
 }
@@ -861,7 +890,7 @@ void FlowSolver<ExecutionSpace>::enqueue_pressure(const ExecutionSpace& space,
                                                   const ProjectionSetup<ExecutionSpace>& setup) const {
   if (_halo) _halo->exchange_high_faces(space, _predicted);
   launch_divergence(space, setup);
-  if (!_pressure_equation->enqueue_solve(_divergence, unknown()))
+  if (!_pressure_equation->enqueue_solve(_divergence_or_pressure, unknown()))
     device::launch_each(space, "drogue::flow::pressure_failure", 1,
                         PressureFailureFunctor<ExecutionSpace>{_control, last_pressure_solve()->residual});
 }

@@ -33,9 +33,9 @@ struct Progress : stepping::AdaptiveTime {
   double dt_min = 0.0, dt_max = 0.0;  ///< s, over all steps
   /// Bits of the maximum over the cells of |u|/hx + |v|/hy + |w|/hz, 1/s, without axes of one cell, plus the
   /// rate of the largest eddy viscosity; more if sides accelerate.
-  std::uint64_t rate = 0;
-  std::uint64_t velocity_rate = 0;  ///< bits of that maximum of the velocity alone, 1/s
-  double longest_dt = 0.0;          ///< s, bound of the next dt by the steps so far; 0: none
+  std::uint64_t rate_bits = 0;
+  std::uint64_t velocity_rate_bits = 0;  ///< bits of that maximum of the velocity alone, 1/s
+  double longest_dt = 0.0;               ///< s, bound of the next dt by the steps so far; 0: none
 };
 
 /// Array of the state. Component c of the velocity lies on the faces normal to axis c.

@@ -40,8 +40,9 @@ struct PressureFailureFunctor {
 /// Largest stable dt, s, of the velocity at the end of a step.
 KOKKOS_INLINE_FUNCTION double stable_dt_of_result(const Control& c, const StepConstants& k) {
   Progress result;
-  result.rate = Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(c.next_rate) +
-                                                k.eddy_weight * Kokkos::bit_cast<double>(c.eddy_viscosity));
+  result.rate_bits =
+      Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(c.next_rate_bits) +
+                                      k.eddy_weight * Kokkos::bit_cast<double>(c.eddy_viscosity));
   return stable_dt(result, k);
 }
 
@@ -57,7 +58,7 @@ struct FinishStepFunctor {
     Progress now = c.now;
     stepping::StepTrial trial = c.trial;
     if (trial.stop == Stop::running) {
-      if (c.has_failed() || !Kokkos::isfinite(Kokkos::bit_cast<double>(c.next_rate))) {
+      if (c.has_failed() || !Kokkos::isfinite(Kokkos::bit_cast<double>(c.next_rate_bits))) {
         trial.stop = Stop::failed;
         now.last_dt = 0.0;  // the rates of the failed step must not enter another one
       } else {
@@ -65,9 +66,9 @@ struct FinishStepFunctor {
         now.dt_min = now.step == 0 || trial.dt < now.dt_min ? trial.dt : now.dt_min;
         now.dt_max = trial.dt > now.dt_max ? trial.dt : now.dt_max;
         now.longest_dt = longest_next_dt(c, constants);
-        now.velocity_rate = c.next_rate;
+        now.velocity_rate_bits = c.next_rate_bits;
         const double stable = stable_dt_of_result(c, constants);
-        now.rate = limiting_rate(c, constants);
+        now.rate_bits = limiting_rate_bits(c, constants);
         stepping::advance_time(now, trial);
         if (trial.dt > largest_excess * stable) {
           // The velocity has grown beyond what the step could resolve.

@@ -17,23 +17,9 @@
 
 namespace drogue::gas {
 
-/// Device state of a gas solver.
-template <class ExecutionSpace>
-struct GasState {
-  /// Conserved fields of the cells, shape (cells, 3): kg/m^3, kg/(m^2 s), J/m^3. Steps rotate the buffers.
-  FieldsView<ExecutionSpace> buffer[3];
-  Kokkos::View<const Control, typename ExecutionSpace::memory_space> control;
-
-  /// Fields of the last accepted step, in the units of `buffer` (kg, m, s, J); to be called in kernels. Does
-  /// not throw.
-  [[nodiscard]] KOKKOS_FUNCTION const FieldsView<ExecutionSpace>& now() const {
-    return buffer[control().restart.current];
-  }
-};
-
-/// Gas solver on the caller's instance of an execution space, for coupling to other kernels. It owns three
-/// field buffers, a device-resident control block and two captured steps, with and without the flux limiter;
-/// the control block decides which of the two has an effect.
+/// Gas solver on the caller's instance of an execution space. It owns three field buffers, a device-resident
+/// control block and two captured steps, with and without the flux limiter; the control block decides which
+/// of the two has an effect.
 ///
 /// All work is enqueued on the instance, which must outlive the solver; on CUDA it must have a stream of its
 /// own. Functions that `Solver` declares are documented in `Solver`.
@@ -42,21 +28,6 @@ class GasSolver {
  public:
   /// Throws std::runtime_error if memory runs out.
   GasSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters);
-
-  /// Views of the state, which kernels on the same instance may read between steps without a copy or fence.
-  /// Does not throw.
-  [[nodiscard]] GasState<ExecutionSpace> state() const {
-    return {{_setup.buffer[0], _setup.buffer[1], _setup.buffer[2]}, _setup.control};
-  }
-
-  /// Enqueues the begin of an advance to `target`, s, after `start` or `restore`. Asynchronous. Throws
-  /// std::runtime_error if a launch fails.
-  void enqueue_begin(double target);
-
-  /// Enqueues one launch: one step with dt from the device, or none after the target. With
-  /// Positivity::automatic a step that must be repeated with the limiter is taken by a later launch.
-  /// Asynchronous; the caller bounds the launches in flight. Throws std::runtime_error if a launch fails.
-  void enqueue_step();
 
   void upload(std::int64_t first, const ConstConservedFields& fields);
   void download(std::int64_t first, const ConservedFields& fields);
@@ -134,15 +105,15 @@ GasSolver<ExecutionSpace>::GasSolver(const device::Instance<ExecutionSpace>& ins
   const double dx = (p.x_max - p.x_min) / static_cast<double>(p.cells);
   _setup.table = stage_table(p.time_scheme);
   const double limited_cap = p.time_scheme == TimeScheme::ssprk3 ? 0.4 : 0.8;
-  _constants = {p.gamma,
-                dx,
-                p.cfl,
-                p.cfl < limited_cap ? p.cfl : limited_cap,
-                p.fixed_dt,
-                p.cells,
-                p.max_steps,
-                p.ramp_steps,
-                static_cast<int>(p.positivity)};
+  _constants = {.gamma = p.gamma,
+                .dx = dx,
+                .cfl = p.cfl,
+                .limited_cfl = p.cfl < limited_cap ? p.cfl : limited_cap,
+                .fixed_dt = p.fixed_dt,
+                .cells = p.cells,
+                .max_steps = p.max_steps,
+                .ramp_steps = p.ramp_steps,
+                .positivity = static_cast<int>(p.positivity)};
   const auto n = static_cast<std::size_t>(p.cells);
   const ExecutionSpace& space = _instance.space();
   const auto uninitialised = [&](const std::string& label) {
@@ -388,9 +359,13 @@ void GasSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool l
     for (int stage = 0; stage < _setup.table.stages; ++stage)
       launch_stage<scheme.value>(space, _setup, _parameters.precision, limited, stage);
   });
-  device::launch_teams(
-      "drogue::gas::finish_step", Kokkos::TeamPolicy<ExecutionSpace>(space, 1, on_host ? 1 : finish_team),
-      FinishFunctor<ExecutionSpace>{_setup.control, _loop.status_view(), _constants, _setup.table, limited});
+  device::launch_teams("drogue::gas::finish_step",
+                       Kokkos::TeamPolicy<ExecutionSpace>(space, 1, on_host ? 1 : finish_team),
+                       FinishFunctor<ExecutionSpace>{.control = _setup.control,
+                                                     .status = _loop.status_view(),
+                                                     .constants = _constants,
+                                                     .table = _setup.table,
+                                                     .limited = limited});
 }
 
 template <class ExecutionSpace>
@@ -401,19 +376,25 @@ void GasSolver<ExecutionSpace>::enqueue_sums(const ExecutionSpace& space, int ro
     const auto out = static_cast<std::int64_t>(_partial[level].extent(0));
     Kokkos::parallel_for(
         "drogue::gas::sum_level", Kokkos::RangePolicy<ExecutionSpace>(space, 0, out),
-        SumLevelFunctor<ExecutionSpace>{{_setup.buffer[0], _setup.buffer[1], _setup.buffer[2]},
-                                        _setup.control,
-                                        _partial[level == 0 ? 0 : level - 1],
-                                        _partial[level],
-                                        n,
-                                        out,
-                                        level == 0,
-                                        always});
+        SumLevelFunctor<ExecutionSpace>{.buffer = {_setup.buffer[0], _setup.buffer[1], _setup.buffer[2]},
+                                        .control = _setup.control,
+                                        .in = _partial[level == 0 ? 0 : level - 1],
+                                        .out = _partial[level],
+                                        .n_in = n,
+                                        .n_out = out,
+                                        .first = level == 0,
+                                        .always = always});
     n = out;
   }
   Kokkos::parallel_for("drogue::gas::history_row", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
-                       RowFunctor<ExecutionSpace>{_setup.control, _loop.status_view(), _ring,
-                                                  _partial[level - 1], n, _constants, row_every, always});
+                       RowFunctor<ExecutionSpace>{.control = _setup.control,
+                                                  .status = _loop.status_view(),
+                                                  .ring = _ring,
+                                                  .partial = _partial[level - 1],
+                                                  .n = n,
+                                                  .constants = _constants,
+                                                  .every = row_every,
+                                                  .always = always});
 }
 
 template <class ExecutionSpace>
@@ -448,8 +429,11 @@ struct GasSolver<ExecutionSpace>::DeviceSteps {
     }
     Kokkos::parallel_for("drogue::gas::begin_advance",
                          Kokkos::RangePolicy<ExecutionSpace>(s._instance.space(), 0, 1),
-                         BeginAdvanceFunctor<ExecutionSpace>{s._setup.control, s._loop.status_view(),
-                                                             s._constants, request, row_step});
+                         BeginAdvanceFunctor<ExecutionSpace>{.control = s._setup.control,
+                                                             .status = s._loop.status_view(),
+                                                             .constants = s._constants,
+                                                             .request = request,
+                                                             .row_step = row_step});
   }
   bool holds_many_steps(int limited) const { return solver._persistent && limited == 0; }
   void enqueue(int limited, std::int64_t max_steps) {
@@ -474,20 +458,6 @@ template <class ExecutionSpace>
 Stop GasSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every,
                                         const RowSink& rows, const Poll& poll) {
   return _loop.advance({target, pause_step, row_every}, DeviceSteps{*this, rows}, poll);
-}
-
-template <class ExecutionSpace>
-void GasSolver<ExecutionSpace>::enqueue_begin(double target) {
-  const RowSink no_rows;
-  DeviceSteps{*this, no_rows}.begin({target}, -1);
-  _loop.count_launch();
-}
-
-template <class ExecutionSpace>
-void GasSolver<ExecutionSpace>::enqueue_step() {
-  const RowSink no_rows;
-  DeviceSteps{*this, no_rows}.enqueue(_loop.status().variant, 1);
-  _loop.count_launch();
 }
 
 DROGUE_EXTERN_INSTANCES(class GasSolver)

@@ -79,7 +79,12 @@ class DenseProduct {
                   const List& from, const List& to) const {
     int inner = 1, lines = 1;
     for (std::size_t a = 0; a < 3; ++a) (a < axis ? inner : lines) *= cells[a];
-    const AxisProduct product{cells[axis], inner, transposed, matrix.data(), from.data(), to.data()};
+    const AxisProduct product{.n = cells[axis],
+                              .inner = inner,
+                              .transposed = transposed,
+                              .matrix = matrix.data(),
+                              .from = from.data(),
+                              .to = to.data()};
     if constexpr (device::is_host<ExecutionSpace>)
       device::launch_each(_space, "drogue::linear::dense_product", lines, DenseProductFunctor{product});
     else

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
-#include <stdexcept>
 
 namespace drogue::stepping {
 
@@ -32,15 +30,6 @@ struct TimeState {
 
   /// Time of the present step, s. Does not throw.
   [[nodiscard]] double time() const { return start + static_cast<double>(step - since) * dt; }
-
-  /// Number of steps to the time nearest to `target`, s; 0 if that time has passed. Throws
-  /// std::invalid_argument if it is not finite or 1e15 steps away.
-  [[nodiscard]] std::int64_t steps_to(double target) const {
-    const double steps = (target - time()) / dt;
-    if (!(steps < 1e15))
-      throw std::invalid_argument("time stepping: the target time is not finite, or too far");
-    return steps > 0.0 ? std::llround(steps) : 0;
-  }
 };
 
 /// First failed step of a run. `Reason` is an enumeration of the solver.

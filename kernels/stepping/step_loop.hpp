@@ -241,15 +241,14 @@ class StepLoop {
 
   /// Enqueues `count` steps from step `step` on in batches that end at multiples of `checkpoint_every`, each
   /// with a checkpoint. Asynchronous but for the bound on the batches in flight. Returns false after a
-  /// recorded failure or if `poll` returns false; sets `step` to the number of steps enqueued. Throws only
-  /// what `steps`, `poll` or a failed launch throw.
+  /// recorded failure; sets `step` to the number of steps enqueued. Throws only what `steps` or a failed
+  /// launch throw.
   ///
   /// It may be called while the caller captures the instance's stream into a graph. From then on only the
   /// device counts steps (`completed_steps`), which `step` leaves out, and the loop takes no checkpoints; see
   /// `forget_captures`. Batches that are not captured stay bounded. Launches of the graph are not.
   template <UniformSteps Steps>
-  bool enqueue_steps(std::int64_t& step, std::int64_t count, std::int64_t checkpoint_every, Steps&& steps,
-                     const Poll& poll = {}) {
+  bool enqueue_steps(std::int64_t& step, std::int64_t count, std::int64_t checkpoint_every, Steps&& steps) {
     _capturing = device::is_capturing(_instance->space());
     _captured = _captured || _capturing;
     if (_capturing) {
@@ -260,17 +259,12 @@ class StepLoop {
     std::int64_t& enqueued = _captured ? _steps_since_capture : step;
     const std::int64_t first_launch = status().launches, end = enqueued + count;
     const auto begin = SteadyTime::now();
-    auto last_poll = begin;
     while (enqueued < end) {
       const Status now = status();
       if (now.failed != 0) return false;
-      const auto clock = SteadyTime::now();
-      if (seconds(clock - last_poll) > 0.02 || on_host) {
-        last_poll = clock;
-        if (poll && !poll(now)) return false;
-      }
       // Each batch publishes one launch. Steps of a captured graph do not count.
-      const double batches = seconds_in_flight * per_second(now.launches - first_launch, clock - begin);
+      const double batches =
+          seconds_in_flight * per_second(now.launches - first_launch, SteadyTime::now() - begin);
       const auto window =
           static_cast<std::int64_t>(std::clamp(batches, 8.0, static_cast<double>(max_launches_in_flight)));
       if (_launches - now.launches >= window) {

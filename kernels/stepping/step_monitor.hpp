@@ -126,9 +126,12 @@ class Checkpoint {
   template <class Copy>
   void save(const ExecutionSpace& space, const char* label, const StepMonitor<ExecutionSpace>& monitor,
             int parity, int count, const Copy& copy, std::int64_t launches) const {
-    device::launch_each(
-        space, label, count,
-        CheckpointFunctor<ExecutionSpace, Copy>{monitor, copy, _saved_step, parity, launches});
+    device::launch_each(space, label, count,
+                        CheckpointFunctor<ExecutionSpace, Copy>{.monitor = monitor,
+                                                                .copy = copy,
+                                                                .saved_step = _saved_step,
+                                                                .parity = parity,
+                                                                .launches = launches});
   }
 
   /// Waits for all steps. After a failure it calls `restore`, which enqueues the copies of the saved arrays,

@@ -72,7 +72,7 @@ class RunLoop {
     timing.io_s = std::max(0.0, _stopwatch.seconds() - (phases.phases() - _phases_before));
   }
 
-  [[nodiscard]] bool ended() const { return _stop == Stop::interrupted || _stop == Stop::failed; }
+  [[nodiscard]] bool ended() const { return _stop == StopReason::interrupted || _stop == StopReason::failed; }
 
   void open_files() {
     if (_request.files.directory != nullptr) {
@@ -111,28 +111,28 @@ class RunLoop {
     _warm = true;
     _now = _simulation.now();
     if (_now.time == limits.target_time && is_output_time(_wanted, _now.time)) write_output_now();
-    const bool can_continue = _stop != Stop::target || _simulation.plan_next_interval();
+    const bool can_continue = _stop != StopReason::target || _simulation.plan_next_interval();
     const int every = restart_interval();
     if (_output && every > 0 && _now.step % every == 0 && !ended()) {
       _output->write_restart();
       _restart_step = _now.step;
     }
-    if (!can_continue) _stop = Stop::failed;
+    if (!can_continue) _stop = StopReason::failed;
   }
 
   ExitCode close_files() {
     const bool complete = !(_now.time < _end);
     // An interrupted run is continued, and must then have the rows of a run without interruption.
-    if (complete && _stop != Stop::interrupted && _output && _output->lacks_row(_now.time))
+    if (complete && _stop != StopReason::interrupted && _output && _output->lacks_row(_now.time))
       _output->write_row(_simulation.row());
-    const bool ends_early = (ended() && !complete) || _stop == Stop::interrupted;
+    const bool ends_early = (ended() && !complete) || _stop == StopReason::interrupted;
     const bool restart_written =
         _output && _request.keeps_restart && (ends_early || (!ended() && needs_restart_of_end()));
     if (restart_written) _output->write_restart();
     if (_output) _output->finish();
-    if (_stop == Stop::failed)
+    if (_stop == StopReason::failed)
       throw Failure(ExitCode::numerical_failure, _simulation.failure_text(restart_written));
-    return _stop == Stop::interrupted ? ExitCode::interrupted : ExitCode::ok;
+    return _stop == StopReason::interrupted ? ExitCode::interrupted : ExitCode::ok;
   }
 
   Simulation& _simulation;
@@ -146,7 +146,7 @@ class RunLoop {
   const double _phases_before;  ///< that setup has taken, s
   const Stopwatch _stopwatch;
   std::optional<RunOutput> _output;
-  Stop _stop = Stop::target;
+  StopReason _stop = StopReason::target;
   bool _warm = false;
 };
 

@@ -1,6 +1,7 @@
 #include "miniapps/framework/scene_keys.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "common/scene/codec.hpp"
 #include "common/scene/node.hpp"
@@ -62,6 +63,16 @@ void complete_output(const scene::Table& root, OutputRequest& output,
     scene::contradict(root, "output.times",
                       "output.times: " + scene::real_text(output.times.back()) + " is later than " + end.key +
                           " = " + scene::real_text(end.time));
+}
+
+std::string too_many_steps(const scene::Table& root, const std::string& what, double dt, double end_time,
+                           std::int64_t most) {
+  const double steps = end_time / dt;
+  if (steps <= static_cast<double>(most) || root.given("run.max_steps")) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text << what << dt << " s: " << steps << " steps to run.end_time, more than run.max_steps = " << most;
+  return text.str();
 }
 
 }  // namespace drogue::framework

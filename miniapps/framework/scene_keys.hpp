@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,5 +46,11 @@ void declare_output(scene::Table& table, OutputRequest& output, const std::vecto
 /// fields are given. Throws `Failure` (invalid_scene) for fields without times and for times after `end`.
 void complete_output(const scene::Table& root, OutputRequest& output,
                      const std::vector<std::string>& default_fields, const EndTime& end);
+
+/// Sentence that begins with `what` sets steps of `dt`, s, where a run until run.end_time takes more of them
+/// than run.max_steps = `most` and the scene leaves that at its default; else empty. Throws only
+/// std::bad_alloc.
+[[nodiscard]] std::string too_many_steps(const scene::Table& root, const std::string& what, double dt,
+                                         double end_time, std::int64_t most);
 
 }  // namespace drogue::framework

@@ -72,8 +72,12 @@ class SceneRun {
     const std::unique_ptr<Scene> scene = _app.read(_file, _options.set, _options.baseline);
     const device::Backend backend = choose_backend(_options.backend, scene->useful_threads(_result.ranks));
     const SceneIdentity identity = scene->identity();
-    const RunFiles files{&_directory, _result.scene, fingerprint(identity), _restart,
-                         [&](const std::string& restarted) { return difference(restarted, identity); }};
+    const RunFiles files{
+        .directory = &_directory,
+        .title = _result.scene,
+        .fingerprint = fingerprint(identity),
+        .restart = _restart,
+        .describe_difference = [&](const std::string& restarted) { return difference(restarted, identity); }};
     if (!_is_empty && !_options.restart.empty() && !_options.overwrite) require_same_scene(files.fingerprint);
     const DeviceSession session(backend, _options.kokkos);
     session.describe(_result);

@@ -37,7 +37,7 @@ struct HistoryRow {
 };
 
 /// Reason for which `Simulation::advance` returned.
-enum class Stop {
+enum class StopReason {
   target,       ///< the target time is reached
   pause,        ///< the pause step is reached
   interrupted,  ///< the poll requested the end
@@ -88,7 +88,7 @@ class Simulation {
 
   /// Takes steps until a limit is reached, and passes a row to `rows` every `limits.row_every` steps. Calls
   /// `poll` at least ten times per second.
-  virtual Stop advance(const AdvanceLimits& limits, const RowSink& rows, const Poll& poll) = 0;
+  virtual StopReason advance(const AdvanceLimits& limits, const RowSink& rows, const Poll& poll) = 0;
 
   /// Called at a target time, once its outputs are written: plans the steps to the next target. Returns false
   /// if the run cannot continue; `failure_text` then explains.

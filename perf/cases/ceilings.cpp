@@ -28,30 +28,36 @@ constexpr CeilingEntry ceilings[] = {
 Case ceiling_case(device::Backend backend, const CeilingEntry& entry) {
   const auto kernel = std::make_shared<std::unique_ptr<CeilingKernel>>();
   const std::string name(device::name(backend));
-  return {std::string("ceiling/") + entry.name + "/" + name,
-          device::needs_device(backend),
-          "launch",
-          entry.bound,
-          [=, ceiling = entry.ceiling] {
-            *kernel = create_ceiling(backend, ceiling);
-            return Sample{[=] { (*kernel)->reset(); },
-                          [=] {
-                            (*kernel)->run();
-                            return (*kernel)->launches();
-                          }};
-          },
-          [=] { return (*kernel)->error(); },
-          entry.tolerance,
-          [=] {
-            Facts facts{name, 0, "", (*kernel)->flops(), (*kernel)->bytes()};
-            facts.instructions = (*kernel)->instructions();
-            if (device::needs_device(backend))
-              facts.device_seconds = median_of_works([=] {
-                (*kernel)->reset();
-                return (*kernel)->timed_run() / static_cast<double>((*kernel)->launches());
-              });
-            return facts;
-          }};
+  return {.name = std::string("ceiling/") + entry.name + "/" + name,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "launch",
+          .bound = entry.bound,
+          .prepare =
+              [=, ceiling = entry.ceiling] {
+                *kernel = create_ceiling(backend, ceiling);
+                return Sample{[=] { (*kernel)->reset(); },
+                              [=] {
+                                (*kernel)->run();
+                                return (*kernel)->launches();
+                              }};
+              },
+          .error = [=] { return (*kernel)->error(); },
+          .tolerance = entry.tolerance,
+          .facts =
+              [=] {
+                Facts facts{.backend = name,
+                            .cells = 0,
+                            .variant = "",
+                            .flops = (*kernel)->flops(),
+                            .bytes = (*kernel)->bytes()};
+                facts.instructions = (*kernel)->instructions();
+                if (device::needs_device(backend))
+                  facts.device_seconds = median_of_works([=] {
+                    (*kernel)->reset();
+                    return (*kernel)->timed_run() / static_cast<double>((*kernel)->launches());
+                  });
+                return facts;
+              }};
 }
 
 }  // namespace

@@ -15,22 +15,26 @@ Case roll_case(device::Backend backend, int vertices, long steps, fabric::Integr
   const auto run = std::make_shared<Run>();
   const std::string name(device::name(backend));
   const std::string variant = integrator == fabric::Integrator::verlet ? "verlet" : "";
-  return {"springs-contact/" + name + "/" + std::to_string(vertices) + (variant.empty() ? "" : "/") + variant,
-          device::needs_device(backend),
-          "step",
-          backend == device::Backend::cuda ? "latency of some fifty small kernels below 100k vertices"
-                                           : "distances of near parts, by the cores",
-          [=] {
-            run->p = roll::parameters(vertices);
-            run->p.integrator = integrator;
-            run->solver = fabric::create_solver(backend, run->p);
-            return roll::steps(run->p, *run->solver, steps);
-          },
-          [=] { return roll::imbalance(run->p, *run->solver); },
-          roll::tolerance(vertices),
-          [=] {
-            return Facts{name, static_cast<std::int64_t>(run->p.mass.size()), variant};
-          }};
+  return {.name = "springs-contact/" + name + "/" + std::to_string(vertices) + (variant.empty() ? "" : "/") +
+                  variant,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "step",
+          .bound = backend == device::Backend::cuda
+                       ? "latency of some fifty small kernels below 100k vertices"
+                       : "distances of near parts, by the cores",
+          .prepare =
+              [=] {
+                run->p = roll::parameters(vertices);
+                run->p.integrator = integrator;
+                run->solver = fabric::create_solver(backend, run->p);
+                return roll::steps(run->p, *run->solver, steps);
+              },
+          .error = [=] { return roll::imbalance(run->p, *run->solver); },
+          .tolerance = roll::tolerance(vertices),
+          .facts =
+              [=] {
+                return Facts{name, static_cast<std::int64_t>(run->p.mass.size()), variant};
+              }};
 }
 
 }  // namespace

@@ -21,26 +21,28 @@ Case scatter_case(int vertices, long steps) {
     double dt = 0.0;
   };
   const auto run = std::make_shared<Run>();
-  return {"springs-step/scatter-loop/" + std::to_string(vertices),
-          false,
-          "step",
-          "one core; no vectorisation requested",
-          [=] {
-            run->p = sheet::parameters(vertices);
-            run->loop = std::make_unique<reference::ScatterSheet>(run->p);
-            run->dt = sheet::default_dt(run->p, *fabric::create_solver(device::Backend::serial, run->p));
-            return Sample{[=] { run->state = sheet::start(run->p); },
-                          [=] {
-                            for (long step = 0; step < steps; ++step)
-                              run->loop->step(run->dt, run->state.x, run->state.v);
-                            return steps;
-                          }};
-          },
-          [=] { return sheet::energy_drift(run->p, run->state); },
-          sheet::tolerance(fabric::Integrator::rk4, vertices),
-          [=] {
-            return Facts{"serial", static_cast<std::int64_t>(run->p.mass.size()), "scatter-loop"};
-          }};
+  return {.name = "springs-step/scatter-loop/" + std::to_string(vertices),
+          .on_device = false,
+          .unit_of_work = "step",
+          .bound = "one core; no vectorisation requested",
+          .prepare =
+              [=] {
+                run->p = sheet::parameters(vertices);
+                run->loop = std::make_unique<reference::ScatterSheet>(run->p);
+                run->dt = sheet::default_dt(run->p, *fabric::create_solver(device::Backend::serial, run->p));
+                return Sample{[=] { run->state = sheet::start(run->p); },
+                              [=] {
+                                for (long step = 0; step < steps; ++step)
+                                  run->loop->step(run->dt, run->state.x, run->state.v);
+                                return steps;
+                              }};
+              },
+          .error = [=] { return sheet::energy_drift(run->p, run->state); },
+          .tolerance = sheet::tolerance(fabric::Integrator::rk4, vertices),
+          .facts =
+              [=] {
+                return Facts{"serial", static_cast<std::int64_t>(run->p.mass.size()), "scatter-loop"};
+              }};
 }
 
 /// Change of the standard parameters.
@@ -102,21 +104,23 @@ Case sheet_case(device::Backend backend, int vertices, const std::shared_ptr<Sha
   const std::string name(device::name(backend));
   fabric::Parameters changed;
   variant.apply(changed);
-  return {"springs-step/" + name + "/" + std::to_string(vertices) + (*variant.name ? "/" : "") + variant.name,
-          device::needs_device(backend),
-          "step",
-          backend == device::Backend::cuda
-              ? "latency between patches below 100k vertices, memory bandwidth above"
-              : "loads of neighbours by the cores",
-          [=] {
-            run->p = sheet->parameters();
-            variant.apply(run->p);
-            run->solver = fabric::create_solver(backend, run->p);
-            return sheet::steps(run->p, *run->solver, steps);
-          },
-          [=] { return sheet::energy_drift(run->p, *run->solver); },
-          sheet::tolerance(changed.integrator, vertices),
-          [=] { return sheet_facts(backend, run->p, *run->solver, variant.name); }};
+  return {.name = "springs-step/" + name + "/" + std::to_string(vertices) + (*variant.name ? "/" : "") +
+                  variant.name,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "step",
+          .bound = backend == device::Backend::cuda
+                       ? "latency between patches below 100k vertices, memory bandwidth above"
+                       : "loads of neighbours by the cores",
+          .prepare =
+              [=] {
+                run->p = sheet->parameters();
+                variant.apply(run->p);
+                run->solver = fabric::create_solver(backend, run->p);
+                return sheet::steps(run->p, *run->solver, steps);
+              },
+          .error = [=] { return sheet::energy_drift(run->p, *run->solver); },
+          .tolerance = sheet::tolerance(changed.integrator, vertices),
+          .facts = [=] { return sheet_facts(backend, run->p, *run->solver, variant.name); }};
 }
 
 std::vector<FabricVariant> variants_of(int vertices, bool gpu) {

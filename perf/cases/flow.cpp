@@ -54,30 +54,34 @@ Case flow_case(device::Backend backend, const Cells& cells, const FlowVariant& v
   const auto solver = std::make_shared<std::unique_ptr<flow::Solver>>();
   const auto exact_error = std::make_shared<double>(0.0);
   const std::string name(device::name(backend));
-  return {"flow-step/" + name + "/" + streams::text(cells) + "/" + variant.name,
-          device::needs_device(backend),
-          "step",
-          backend == device::Backend::cuda ? "FP64 issue of the momentum stage, memory of the rest"
-                                           : "FP64 issue of the cores",
-          [=] {
-            *solver = flow::create_solver(backend, p);
-            return streams::steps(p, **solver, steps);
-          },
-          [=] {
-            const double divergence = streams::relative_divergence(p, **solver);
-            // A model of turbulence changes the solution.
-            if (p.turbulence != flow::Turbulence::none) return divergence;
-            *exact_error = streams::exact_error(p, **solver, exact_steps);
-            return *exact_error <= largest_exact_error(p, variant.sides)
-                       ? divergence
-                       : std::numeric_limits<double>::infinity();
-          },
-          1e-12,  // a wrong projection leaves a divergence of order one
-          [=] {
-            Facts facts{name, count, variant.name, 0.0, flow_step_bytes(p), *exact_error};
-            facts.driver = (*solver)->driver();
-            return facts;
-          }};
+  return {.name = "flow-step/" + name + "/" + streams::text(cells) + "/" + variant.name,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "step",
+          .bound = backend == device::Backend::cuda ? "FP64 issue of the momentum stage, memory of the rest"
+                                                    : "FP64 issue of the cores",
+          .prepare =
+              [=] {
+                *solver = flow::create_solver(backend, p);
+                return streams::steps(p, **solver, steps);
+              },
+          .error =
+              [=] {
+                const double divergence = streams::relative_divergence(p, **solver);
+                // A model of turbulence changes the solution.
+                if (p.turbulence != flow::Turbulence::none) return divergence;
+                *exact_error = streams::exact_error(p, **solver, exact_steps);
+                return *exact_error <= largest_exact_error(p, variant.sides)
+                           ? divergence
+                           : std::numeric_limits<double>::infinity();
+              },
+          .tolerance = 1e-12,
+          // a wrong projection leaves a divergence of order one
+          .facts =
+              [=] {
+                Facts facts{name, count, variant.name, 0.0, flow_step_bytes(p), *exact_error};
+                facts.driver = (*solver)->driver();
+                return facts;
+              }};
 }
 
 void add_pressure_cases(std::vector<Case>& cases, device::Backend backend, const Cells& grid) {

@@ -21,33 +21,37 @@ Case dense_case(std::int64_t cells, long steps) {
   const auto run = std::make_shared<Run>();
   const gas::Parameters p = sod::parameters(cells);
   const double dx = (p.x_max - p.x_min) / static_cast<double>(cells);
-  return {"gas-step/dense-loop/" + std::to_string(cells),
-          false,
-          "step",
-          "one core; no vectorisation requested",
-          [=] {
-            return Sample{
-                [=] {
-                  run->time = 0.0;
-                  run->state.clear();
-                  for (std::size_t i = 0; i < static_cast<std::size_t>(cells); ++i)
-                    run->state.push_back(reference::to_conserved(sod::initial(sod::centre(p, i)), p.gamma));
-                },
-                [=] {
-                  for (long step = 0; step < steps; ++step)
-                    run->time += reference::dense_step(run->state, run->workspace, p.gamma, dx, p.cfl);
-                  return steps;
-                }};
-          },
-          [=] {
-            std::vector<double> rho;
-            for (const auto& u : run->state) rho.push_back(u[0]);
-            return sod::l1_error(p, rho, run->time);
-          },
-          sod::tolerance(p),
-          [=] {
-            return Facts{"serial", cells, "dense-loop"};
-          }};
+  return {.name = "gas-step/dense-loop/" + std::to_string(cells),
+          .on_device = false,
+          .unit_of_work = "step",
+          .bound = "one core; no vectorisation requested",
+          .prepare =
+              [=] {
+                return Sample{[=] {
+                                run->time = 0.0;
+                                run->state.clear();
+                                for (std::size_t i = 0; i < static_cast<std::size_t>(cells); ++i)
+                                  run->state.push_back(
+                                      reference::to_conserved(sod::initial(sod::centre(p, i)), p.gamma));
+                              },
+                              [=] {
+                                for (long step = 0; step < steps; ++step)
+                                  run->time +=
+                                      reference::dense_step(run->state, run->workspace, p.gamma, dx, p.cfl);
+                                return steps;
+                              }};
+              },
+          .error =
+              [=] {
+                std::vector<double> rho;
+                for (const auto& u : run->state) rho.push_back(u[0]);
+                return sod::l1_error(p, rho, run->time);
+              },
+          .tolerance = sod::tolerance(p),
+          .facts =
+              [=] {
+                return Facts{"serial", cells, "dense-loop"};
+              }};
 }
 
 /// Change of the standard parameters.
@@ -75,17 +79,20 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
   variant.apply(p);
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
   const std::string name(device::name(backend));
-  return {"gas-step/" + name + "/" + std::to_string(cells) + (*variant.name ? "/" : "") + variant.name,
-          device::needs_device(backend),
-          "step",
-          backend == device::Backend::cuda ? "launch latency below 100k cells, FP64 issue above"
-                                           : "FP64 issue of the cores",
+  return {
+      .name = "gas-step/" + name + "/" + std::to_string(cells) + (*variant.name ? "/" : "") + variant.name,
+      .on_device = device::needs_device(backend),
+      .unit_of_work = "step",
+      .bound = backend == device::Backend::cuda ? "launch latency below 100k cells, FP64 issue above"
+                                                : "FP64 issue of the cores",
+      .prepare =
           [=] {
             *solver = gas::create_solver(backend, p);
             return sod::steps(p, backend, **solver, steps);
           },
-          [=] { return sod::l1_error(p, **solver); },
-          sod::tolerance(p),
+      .error = [=] { return sod::l1_error(p, **solver); },
+      .tolerance = sod::tolerance(p),
+      .facts =
           [=] {
             const StepWork work = step_work(p, (*solver)->tiling());
             Facts facts{name, cells, variant.name, static_cast<double>(work.arithmetic.flops()),

@@ -14,8 +14,11 @@ Case batch_case(device::Backend backend, std::size_t count, int mesh, int steps)
     const auto puts = static_cast<std::int64_t>(count);
     // Scratch memory of an option stays in caches.
     const double bytes = sizeof(options::Contract) + sizeof(options::Price);
-    return Facts{name, puts, grid, static_cast<double>(puts * options_march_arithmetic(mesh, steps).flops()),
-                 static_cast<double>(count) * bytes};
+    return Facts{.backend = name,
+                 .cells = puts,
+                 .variant = grid,
+                 .flops = static_cast<double>(puts * options_march_arithmetic(mesh, steps).flops()),
+                 .bytes = static_cast<double>(count) * bytes};
   };
   return batch;
 }

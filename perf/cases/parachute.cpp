@@ -15,21 +15,23 @@ Case inflation_case(device::Backend backend, const std::array<int, 3>& cells, bo
   const std::string name(device::name(backend)), variant = with_contact ? "c9-contact" : "c9";
   const auto solver = std::make_shared<std::unique_ptr<coupling::Solver>>();
   const auto problem = std::make_shared<inflation::Problem>();
-  return {"parachute-flight/" + name + "/" + streams::text(cells) + "/" + variant,
-          device::needs_device(backend),
-          "ms of flight",
-          device::needs_device(backend) ? "latency of the steps of the cloth"
-                                        : "FP64 issue of the cores, for cells and triangles",
-          [=] {
-            *problem = inflation::problem({.cells = cells, .with_contact = with_contact});
-            *solver = coupling::create_solver(backend, problem->parameters);
-            return inflation::flight(*problem, **solver, lead, milliseconds);
-          },
-          [=] { return inflation::imbalance(problem->parameters, **solver); },
-          1e-12,
-          [=] {
-            return Facts{name, static_cast<std::int64_t>(cells[0]) * cells[1] * cells[2], variant};
-          }};
+  return {.name = "parachute-flight/" + name + "/" + streams::text(cells) + "/" + variant,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "ms of flight",
+          .bound = device::needs_device(backend) ? "latency of the steps of the cloth"
+                                                 : "FP64 issue of the cores, for cells and triangles",
+          .prepare =
+              [=] {
+                *problem = inflation::problem({.cells = cells, .with_contact = with_contact});
+                *solver = coupling::create_solver(backend, problem->parameters);
+                return inflation::flight(*problem, **solver, lead, milliseconds);
+              },
+          .error = [=] { return inflation::imbalance(problem->parameters, **solver); },
+          .tolerance = 1e-12,
+          .facts =
+              [=] {
+                return Facts{name, static_cast<std::int64_t>(cells[0]) * cells[1] * cells[2], variant};
+              }};
 }
 
 }  // namespace

@@ -103,34 +103,37 @@ Case tridiagonal_case(device::Backend backend, bool by_pttrf, int count, int nod
   const auto run = std::make_shared<Run>();
   const std::string name(device::name(backend));
   const std::string variant = (by_pttrf ? "pttrf/" : "scan/") + std::to_string(nodes);
-  return {"tridiagonal/" + name + "/" + std::to_string(count) + "/" + variant,
-          device::needs_device(backend),
-          "batch",
-          by_pttrf ? "memory, on a host divisions that wait for one another" : "memory, on a host arithmetic",
-          [=] {
-            run->batch = random_batch(count, nodes);
-            run->solver = by_pttrf ? create_spd_solver(backend, symmetric_systems(run->batch))
-                                   : create_toeplitz_solver(backend, run->batch);
-            return Sample{[=] { run->solver->reset(); },
-                          [=] {
-                            run->solver->solve();
-                            return 1L;
-                          }};
-          },
-          [=] { return error_of(run->batch, run->solver->solution()); },
-          tridiagonal_tolerance,
-          [=] {
-            const Arithmetic work = by_pttrf ? spd_arithmetic(nodes - 1) : toeplitz_arithmetic(nodes);
-            const std::int64_t bytes = by_pttrf ? spd_bytes(nodes - 1) : toeplitz_bytes(nodes);
-            Facts facts{name, count, variant, static_cast<double>(count * work.flops()),
-                        static_cast<double>(count * bytes)};
-            if (device::needs_device(backend))
-              facts.device_seconds = median_of_works([=] {
-                run->solver->reset();
-                return run->solver->timed_solve();
-              });
-            return facts;
-          }};
+  return {.name = "tridiagonal/" + name + "/" + std::to_string(count) + "/" + variant,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "batch",
+          .bound = by_pttrf ? "memory, on a host divisions that wait for one another"
+                            : "memory, on a host arithmetic",
+          .prepare =
+              [=] {
+                run->batch = random_batch(count, nodes);
+                run->solver = by_pttrf ? create_spd_solver(backend, symmetric_systems(run->batch))
+                                       : create_toeplitz_solver(backend, run->batch);
+                return Sample{[=] { run->solver->reset(); },
+                              [=] {
+                                run->solver->solve();
+                                return 1L;
+                              }};
+              },
+          .error = [=] { return error_of(run->batch, run->solver->solution()); },
+          .tolerance = tridiagonal_tolerance,
+          .facts =
+              [=] {
+                const Arithmetic work = by_pttrf ? spd_arithmetic(nodes - 1) : toeplitz_arithmetic(nodes);
+                const std::int64_t bytes = by_pttrf ? spd_bytes(nodes - 1) : toeplitz_bytes(nodes);
+                Facts facts{name, count, variant, static_cast<double>(count * work.flops()),
+                            static_cast<double>(count * bytes)};
+                if (device::needs_device(backend))
+                  facts.device_seconds = median_of_works([=] {
+                    run->solver->reset();
+                    return run->solver->timed_solve();
+                  });
+                return facts;
+              }};
 }
 
 }  // namespace

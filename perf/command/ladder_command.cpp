@@ -28,21 +28,22 @@ std::string text(device::Backend backend) { return std::string(device::name(back
 /// Case of a rung; a sample is a run from the initial state.
 Case case_of(const ladder::Ladder& ladder, const ladder::Rung& rung, device::Backend backend) {
   const auto run = std::make_shared<std::unique_ptr<ladder::RungRun>>();
-  return {"ladder/" + ladder.name + "/" + text(backend) + "/" + std::to_string(ladder.size) + "/" +
-              rung.text.name,
-          device::needs_device(backend),
-          ladder.unit,
-          rung.text.idea,
-          [=] {
-            *run = rung.make();
-            return Sample{[=] { (*run)->reset(); },
-                          [=, units = ladder.units] {
-                            (*run)->run();
-                            return units;
-                          }};
-          },
-          [=] { return (*run)->error(); },
-          rung.tolerance};
+  return {.name = "ladder/" + ladder.name + "/" + text(backend) + "/" + std::to_string(ladder.size) + "/" +
+                  rung.text.name,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = ladder.unit,
+          .bound = rung.text.idea,
+          .prepare =
+              [=] {
+                *run = rung.make();
+                return Sample{[=] { (*run)->reset(); },
+                              [=, units = ladder.units] {
+                                (*run)->run();
+                                return units;
+                              }};
+              },
+          .error = [=] { return (*run)->error(); },
+          .tolerance = rung.tolerance};
 }
 
 nlohmann::json facts_of(const ladder::Ladder& ladder, const ladder::Rung& rung,

@@ -81,13 +81,13 @@ ComparedCase compare_case(const CaseRuns& before, const CaseRuns& after) {
     row.untimed = before.runs.empty();
     return row;
   }
-  return {after.name,
-          Verdict::ambiguous,
-          "",
-          compare_speed(before.runs, after.runs),
-          median_of(before.runs),
-          median_of(after.runs),
-          after.last.unit};
+  return {.name = after.name,
+          .verdict = Verdict::ambiguous,
+          .reason = "",
+          .speed = compare_speed(before.runs, after.runs),
+          .old_time = median_of(before.runs),
+          .new_time = median_of(after.runs),
+          .unit = after.last.unit};
 }
 
 Verdict verdict_of(SpeedVerdict speed) {

@@ -185,13 +185,13 @@ SpeedChange compare_speed(const Runs& before, const Runs& after) {
   const std::size_t runs = std::min(before.size(), after.size());
   const double part = runs == 1 ? fastest_of_one_run : fastest_of_several;
   if (fastest * shift.estimate <= part * shift.estimate * shift.estimate) agreed = 0.0;
-  return {std::exp(shift.estimate),
-          std::exp(shift.low),
-          std::exp(shift.high),
-          rank_test(old_all, new_all),
-          agreement({shift.estimate, agreed}),
-          before == after,
-          smallest_effect(runs)};
+  return {.ratio = std::exp(shift.estimate),
+          .low = std::exp(shift.low),
+          .high = std::exp(shift.high),
+          .probability = rank_test(old_all, new_all),
+          .agreed = agreement({shift.estimate, agreed}),
+          .identical = before == after,
+          .least = smallest_effect(runs)};
 }
 
 double smallest_effect(std::size_t runs) { return runs <= 1 ? 0.075 : runs == 2 ? 0.05 : 0.03; }

@@ -11,8 +11,11 @@ namespace drogue::perf::ladder {
 /// rung and its runs.
 template <class Type, class Problem>
 Rung make_rung(const std::shared_ptr<const Problem>& problem, double tolerance) {
-  Rung rung{Type::text, Type::work(*problem), tolerance, true,
-            [problem]() -> std::unique_ptr<RungRun> { return std::make_unique<Type>(*problem); }};
+  Rung rung{.text = Type::text,
+            .work = Type::work(*problem),
+            .tolerance = tolerance,
+            .available = true,
+            .make = [problem]() -> std::unique_ptr<RungRun> { return std::make_unique<Type>(*problem); }};
   if constexpr (requires { Type::available; }) rung.available = Type::available;
   if constexpr (requires { Type::tolerance; }) rung.tolerance = Type::tolerance;
   return rung;

@@ -25,12 +25,18 @@ struct Arithmetic {
   }
 
   friend constexpr Arithmetic operator+(const Arithmetic& a, const Arithmetic& b) {
-    return {a.additions + b.additions, a.multiplications + b.multiplications, a.divisions + b.divisions,
-            a.roots + b.roots, a.comparisons + b.comparisons};
+    return {.additions = a.additions + b.additions,
+            .multiplications = a.multiplications + b.multiplications,
+            .divisions = a.divisions + b.divisions,
+            .roots = a.roots + b.roots,
+            .comparisons = a.comparisons + b.comparisons};
   }
   friend constexpr Arithmetic operator*(std::int64_t times, const Arithmetic& a) {
-    return {times * a.additions, times * a.multiplications, times * a.divisions, times * a.roots,
-            times * a.comparisons};
+    return {.additions = times * a.additions,
+            .multiplications = times * a.multiplications,
+            .divisions = times * a.divisions,
+            .roots = times * a.roots,
+            .comparisons = times * a.comparisons};
   }
   friend constexpr bool operator==(const Arithmetic&, const Arithmetic&) = default;
 };

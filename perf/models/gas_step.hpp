@@ -16,11 +16,11 @@ namespace drogue::perf {
 [[nodiscard]] constexpr Arithmetic face_arithmetic(gas::Weno weno, int power) {
   switch (weno) {
     case gas::Weno::js:
-      return {230, 235, 7, 1, 15};
+      return {.additions = 230, .multiplications = 235, .divisions = 7, .roots = 1, .comparisons = 15};
     case gas::Weno::m:
-      return {296, 313, 31, 1, 15};
+      return {.additions = 296, .multiplications = 313, .divisions = 31, .roots = 1, .comparisons = 15};
     case gas::Weno::teno5:
-      return {278, 313, 7, 1, 51};
+      return {.additions = 278, .multiplications = 313, .divisions = 7, .roots = 1, .comparisons = 51};
     case gas::Weno::z:
       break;
   }

@@ -13,11 +13,11 @@ namespace drogue::perf {
 /// diffusion and split exercise, as a host runs it; all zero for meshes without a count. Does
 /// not throw. tests/kernels/options/options_work_host_test.cpp counts them.
 [[nodiscard]] constexpr Arithmetic options_step_arithmetic(int mesh, int lanes) {
-  if (lanes == 16 && mesh == 32) return {1452, 1459, 0, 0, 90};
-  if (lanes == 16 && mesh == 64) return {4884, 4895, 0, 0, 150};
-  if (lanes == 16 && mesh == 128) return {6384, 4236, 0, 0, 292};
-  if (lanes == 32 && mesh == 128) return {18081, 18094, 0, 0, 341};
-  if (lanes == 32 && mesh == 256) return {14173, 9099, 0, 0, 627};
+  if (lanes == 16 && mesh == 32) return {.additions = 1452, .multiplications = 1459, .comparisons = 90};
+  if (lanes == 16 && mesh == 64) return {.additions = 4884, .multiplications = 4895, .comparisons = 150};
+  if (lanes == 16 && mesh == 128) return {.additions = 6384, .multiplications = 4236, .comparisons = 292};
+  if (lanes == 32 && mesh == 128) return {.additions = 18081, .multiplications = 18094, .comparisons = 341};
+  if (lanes == 32 && mesh == 256) return {.additions = 14173, .multiplications = 9099, .comparisons = 627};
   return {};
 }
 

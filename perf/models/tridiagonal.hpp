@@ -10,7 +10,7 @@ namespace drogue::perf {
 
 /// Operations of Pttrf and Pttrs: factors and both substitutions of n unknowns.
 [[nodiscard]] constexpr Arithmetic spd_arithmetic(std::int64_t n) {
-  return {3 * (n - 1), 3 * (n - 1), 2 * n - 1, 0, 0};
+  return {.additions = 3 * (n - 1), .multiplications = 3 * (n - 1), .divisions = 2 * n - 1};
 }
 
 /// Diagonal, off-diagonal and right-hand side, which become factors and unknowns.
@@ -21,11 +21,11 @@ namespace drogue::perf {
 [[nodiscard]] constexpr Arithmetic toeplitz_arithmetic(int nodes) {
   switch (nodes) {
     case 64:
-      return {559, 603, 0, 0, 217};
+      return {.additions = 559, .multiplications = 603, .comparisons = 217};
     case 128:
-      return {871, 983, 0, 0, 341};
+      return {.additions = 871, .multiplications = 983, .comparisons = 341};
     case 256:
-      return {1570, 1780, 0, 0, 627};
+      return {.additions = 1570, .multiplications = 1780, .comparisons = 627};
     default:
       return {};
   }

@@ -15,10 +15,12 @@ Case baseline_case(const std::string& name, const std::string& bound, device::Ba
                    const std::function<std::map<std::string, double>(const gas::PhaseTimes&)>& parts) {
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
   const auto before = std::make_shared<gas::PhaseTimes>();
-  return {name,
-          device::needs_device(backend),
-          "step",
-          bound,
+  return {
+      .name = name,
+      .on_device = device::needs_device(backend),
+      .unit_of_work = "step",
+      .bound = bound,
+      .prepare =
           [=] {
             *solver = gas::create_baseline_solver(backend, p);
             const sod::Fields start = sod::start(p);
@@ -37,8 +39,8 @@ Case baseline_case(const std::string& name, const std::string& bound, device::Ba
                   return parts({now.h2d - before->h2d, now.compute - before->compute, now.d2h - before->d2h});
                 }};
           },
-          [=] { return sod::l1_error(p, **solver); },
-          sod::tolerance(p)};
+      .error = [=] { return sod::l1_error(p, **solver); },
+      .tolerance = sod::tolerance(p)};
 }
 
 }  // namespace drogue::perf

@@ -83,7 +83,7 @@ Problem with_canopy(const Discretization& d, parachute_app::Canopy canopy) {
       parachute_app::make_all_sheets({}, {canopy}, p.flow.density, p.flow.viscosity);
   p.fabric = std::move(sheets.fabric);
   p.sheet.law_of_vertex = std::move(sheets.laws);
-  p.sheet.kernel = d.kernel;
+  p.sheet.delta = d.delta;
   p.sheet.edge_inset = d.edge_inset;
   p.sheet.defect_filter = d.defect_filter;
   p.fabric.contact.self = d.with_contact;

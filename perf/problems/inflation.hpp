@@ -21,7 +21,7 @@ struct Discretization {
   flow::TimeScheme time_scheme = flow::TimeScheme::ab2;
   double cfl = 0.25;
   double edge = 0.7;  ///< longest edges of the cloth over the length of a cell along x, at most 1 / 1.4
-  coupling::DeltaKernel kernel = coupling::DeltaKernel::cbs43;
+  coupling::DeltaFunction delta = coupling::DeltaFunction::cbs43;
   double edge_inset = 0.0;     ///< cells
   double defect_filter = 0.0;  ///< weight of the present step in the mean defect of the coupling
   bool with_contact = false;

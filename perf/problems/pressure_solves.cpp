@@ -78,25 +78,29 @@ Case pressure_case(const PressureSolve& solve,
   // A tolerance of 1e-6 is a variant of the usual one.
   const std::string variant =
       std::string(method.name) + "/" + sides + (method.tolerance > 1e-8 ? "/1e-6" : "");
-  return {
-      "flow-pressure/" + name + "/" + streams::text(solve.cells) + "/" + variant,
-      device::needs_device(solve.backend), "solve",
-      method.iterates() ? "memory, and copies to the host" : "memory; FP64 tensor cores of matrix products",
-      [=] {
-        *solver = pressure::create_solver(solve.backend, streams::pressure_problem(solve.cells, solve.sides),
-                                          method.solver, std::max(method.tolerance, 1e-10));
-        return Sample{[] {},
-                      [=] {
-                        (*solver)->solve(solves);
-                        return solves;
-                      }};
-      },
-      [=] { return largest_residual(solve, **solver); },
-      // The residual of hypre is relative to the right-hand side, in the 2-norm.
-      method.iterates() ? 1e3 * method.tolerance : 1e-13,
-      [=] {
-        return Facts{name, solve.cell_count(), variant};
-      }};
+  return {.name = "flow-pressure/" + name + "/" + streams::text(solve.cells) + "/" + variant,
+          .on_device = device::needs_device(solve.backend),
+          .unit_of_work = "solve",
+          .bound = method.iterates() ? "memory, and copies to the host"
+                                     : "memory; FP64 tensor cores of matrix products",
+          .prepare =
+              [=] {
+                *solver = pressure::create_solver(solve.backend,
+                                                  streams::pressure_problem(solve.cells, solve.sides),
+                                                  method.solver, std::max(method.tolerance, 1e-10));
+                return Sample{[] {},
+                              [=] {
+                                (*solver)->solve(solves);
+                                return solves;
+                              }};
+              },
+          .error = [=] { return largest_residual(solve, **solver); },
+          // The residual of hypre is relative to the right-hand side, in the 2-norm.
+          .tolerance = method.iterates() ? 1e3 * method.tolerance : 1e-13,
+          .facts =
+              [=] {
+                return Facts{name, solve.cell_count(), variant};
+              }};
 }
 
 }  // namespace drogue::perf

@@ -93,30 +93,31 @@ Case timed(const std::string& name, device::Backend backend, HostMemory kind,
     return std::map<std::string, double>{
         {"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
   };
-  return {name,
-          device::needs_device(backend),
-          "batch",
-          "arithmetic of the convolution",
-          [=] {
-            std::unique_ptr<options::Pricer> pricer = options::create_pricer(backend, settings);
-            const std::shared_ptr<std::pmr::memory_resource> memory =
-                memory_for(*pricer, backend, settings, kind);
-            const std::vector<options::Contract> asked = contracts();
-            run->emplace(Run{std::move(pricer),
-                             memory,
-                             {asked.begin(), asked.end(), memory.get()},
-                             std::pmr::vector<options::Price>(asked.size(), memory.get()),
-                             {}});
-            return Sample{[] {},
-                          [=] {
-                            Run& now = **run;
-                            now.timing = now.pricer->price(now.contracts, now.prices);
-                            return 1L;
-                          },
-                          settings.time_copies ? parts : nullptr};
-          },
-          [=] { return error(**run); },
-          limit};
+  return {.name = name,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "batch",
+          .bound = "arithmetic of the convolution",
+          .prepare =
+              [=] {
+                std::unique_ptr<options::Pricer> pricer = options::create_pricer(backend, settings);
+                const std::shared_ptr<std::pmr::memory_resource> memory =
+                    memory_for(*pricer, backend, settings, kind);
+                const std::vector<options::Contract> asked = contracts();
+                run->emplace(Run{.pricer = std::move(pricer),
+                                 .memory = memory,
+                                 .contracts = {asked.begin(), asked.end(), memory.get()},
+                                 .prices = std::pmr::vector<options::Price>(asked.size(), memory.get()),
+                                 .timing = {}});
+                return Sample{[] {},
+                              [=] {
+                                Run& now = **run;
+                                now.timing = now.pricer->price(now.contracts, now.prices);
+                                return 1L;
+                              },
+                              settings.time_copies ? parts : nullptr};
+              },
+          .error = [=] { return error(**run); },
+          .tolerance = limit};
 }
 
 }  // namespace

@@ -27,25 +27,25 @@ class FabricPair final : public CudaPair {
                        static_cast<std::int64_t>(of.value.extent(0))};
     };
     const State& raw = of(Version::hand_written);
-    _step = {
-        slots(_fabric.triangles),
-        slots(_fabric.springs),
-        _fabric.rest.data(),
-        _fabric.inverse_mass.data(),
-        _fabric.fixed_dofs.data(),
-        _fabric.load.data(),
-        _fabric.moduli.lambda,
-        _fabric.moduli.two_g,
-        {_fabric.gravity.x, _fabric.gravity.y, _fabric.gravity.z},
-        _fabric.damping,
-        raw.x.data(),
-        raw.v.data(),
-        raw.third.data(),
-        raw.fourth.data(),
-        {raw.second_velocity.data(), raw.third_velocity.data()},
-        {raw.monitor.steps.data(), reinterpret_cast<unsigned long long*>(raw.monitor.first_failure.data())},
-        problem.dt,
-        _padded};
+    _step = {.ring = slots(_fabric.triangles),
+             .springs = slots(_fabric.springs),
+             .rest = _fabric.rest.data(),
+             .inverse_mass = _fabric.inverse_mass.data(),
+             .fixed_axes = _fabric.fixed_dofs.data(),
+             .load = _fabric.load.data(),
+             .lambda = _fabric.moduli.lambda,
+             .two_g = _fabric.moduli.two_g,
+             .gravity = {_fabric.gravity.x, _fabric.gravity.y, _fabric.gravity.z},
+             .damping = _fabric.damping,
+             .x = raw.x.data(),
+             .v = raw.v.data(),
+             .third = raw.third.data(),
+             .fourth = raw.fourth.data(),
+             .velocity = {raw.second_velocity.data(), raw.third_velocity.data()},
+             .count = {raw.monitor.steps.data(),
+                       reinterpret_cast<unsigned long long*>(raw.monitor.first_failure.data())},
+             .dt = problem.dt,
+             .vertices = _padded};
   }
 
   void reset(Version version) override {
@@ -80,17 +80,17 @@ class FabricPair final : public CudaPair {
   template <bool last>
   void enqueue_half(const char* label) const {
     const State& s = of(Version::kokkos);
-    fabric::launch_packs(
-        space(), label, _padded,
-        fabric::RungeKuttaHalfFunctor<Kokkos::Cuda, model, last>{_fabric,
-                                                                 s.x,
-                                                                 s.v,
-                                                                 s.third,
-                                                                 s.fourth,
-                                                                 {s.second_velocity, s.third_velocity},
-                                                                 s.monitor,
-                                                                 _problem.dt,
-                                                                 {}});
+    fabric::launch_packs(space(), label, _padded,
+                         fabric::RungeKuttaHalfFunctor<Kokkos::Cuda, model, last>{
+                             .fabric = _fabric,
+                             .x = s.x,
+                             .v = s.v,
+                             .third = s.third,
+                             .fourth = s.fourth,
+                             .velocity = {s.second_velocity, s.third_velocity},
+                             .monitor = s.monitor,
+                             .dt = _problem.dt,
+                             .vertex_force = {}});
   }
 
   /// Positions, velocities and the number of steps.

@@ -67,7 +67,7 @@ __device__ Vector pull(const FabricStep& p, const Edge& j, const Edge& k, double
 }
 
 /// Force of a spring on its vertex, N.
-__device__ Vector spring_pull(double stiffness, double length, const Vector& to) {
+__device__ Vector spring_force(double stiffness, double length, const Vector& to) {
   const double squared = dot(to, to);
   const double tension = squared > 0.0 ? stiffness * (1.0 - length / sqrt(squared)) : 0.0;
   return tension * to;
@@ -96,7 +96,7 @@ __device__ Vector with_springs(const FabricStep& p, const Positions& positions, 
     Spring springs[ahead];
     for (int n = 0; n < ahead; ++n) springs[n] = spring_at(p, positions, i, min(k + n, shared - 1) * slice + lane);
     for (int n = 0; n < ahead; ++n)
-      if (k + n < shared) sum = sum + spring_pull(springs[n].stiffness, springs[n].length, springs[n].to);
+      if (k + n < shared) sum = sum + spring_force(springs[n].stiffness, springs[n].length, springs[n].to);
   }
   if (shared == end) return sum;
   unsigned rows = __ballot_sync(all_lanes, p.springs.neighbour[shared * slice + lane] != i ? 1 : 0);
@@ -106,7 +106,7 @@ __device__ Vector with_springs(const FabricStep& p, const Positions& positions, 
       Vector own{0.0, 0.0, 0.0};
       if (k + lane < end) {
         const Spring spring = spring_at(p, positions, i - lane + row, (k + lane) * slice + row);
-        own = spring_pull(spring.stiffness, spring.length, spring.to);
+        own = spring_force(spring.stiffness, spring.length, spring.to);
       }
       for (int n = 0; n < slice && k + n < end; ++n) {
         const Vector of_lane{__shfl_sync(all_lanes, own.x, n), __shfl_sync(all_lanes, own.y, n),

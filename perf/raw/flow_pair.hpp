@@ -31,29 +31,40 @@ class FlowPair final : public CudaPair {
 
     const double nu = p.viscosity / p.density, epsilon = 1e-40;
     const State &ours = of(Version::kokkos), &raw = of(Version::hand_written);
-    _setup = {_grid,        _velocity,       _velocity, ours.out,        ours.old_rate,   {},
-              {},           _control,        nu,        {0.0, 0.0, 0.0}, 1.0 / p.density, epsilon,
-              flow::tile_y, {0.0, 1.0, true}};
+    _setup = {.grid = _grid,
+              .state = _velocity,
+              .stage = _velocity,
+              .out = ours.out,
+              .old_rate = ours.old_rate,
+              .force = {},
+              .eddy = {},
+              .control = _control,
+              .nu = nu,
+              .acceleration = {0.0, 0.0, 0.0},
+              .specific_volume = 1.0 / p.density,
+              .epsilon = epsilon,
+              .rows = flow::tile_y,
+              .weights = {0.0, 1.0, true}};
     _advection = p.advection;
     const auto parts = [](int n, int size) { return (n + size - 1) / size; };
     _momentum = {
-        {_grid.n[0], _grid.n[1], _grid.n[2]},
-        {_grid.stride[0], _grid.stride[1], _grid.stride[2]},
-        _grid.component,
-        _grid.first,
-        {_grid.inverse_h[0], _grid.inverse_h[1], _grid.inverse_h[2]},
-        _velocity.data(),
-        raw.out.data(),
-        raw.old_rate.data(),
-        nullptr,
-        nullptr,
-        _raw_control.data(),
-        nu,
-        1.0 / p.density,
-        {0.0, 0.0, 0.0},
-        epsilon,
-        flow::momentum_planes(_advection, parts(_grid.n[0], flow::tile_x) * parts(_grid.n[1], flow::tile_y),
-                              _grid.n[2])};
+        .n = {_grid.n[0], _grid.n[1], _grid.n[2]},
+        .stride = {_grid.stride[0], _grid.stride[1], _grid.stride[2]},
+        .component = _grid.component,
+        .first = _grid.first,
+        .inverse_h = {_grid.inverse_h[0], _grid.inverse_h[1], _grid.inverse_h[2]},
+        .stage = _velocity.data(),
+        .out = raw.out.data(),
+        .old_rate = raw.old_rate.data(),
+        .force = nullptr,
+        .eddy = nullptr,
+        .control = _raw_control.data(),
+        .nu = nu,
+        .specific_volume = 1.0 / p.density,
+        .acceleration = {0.0, 0.0, 0.0},
+        .epsilon = epsilon,
+        .planes = flow::momentum_planes(
+            _advection, parts(_grid.n[0], flow::tile_x) * parts(_grid.n[1], flow::tile_y), _grid.n[2])};
   }
 
   void reset(Version version) override {

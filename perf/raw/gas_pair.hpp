@@ -24,20 +24,20 @@ class GasPair final : public CudaPair {
     _setup.dx = (p.x_max - p.x_min) / static_cast<double>(p.cells);
     _setup.splitting = p.splitting;
     _setup.average = p.face_average;
-    _step = {{},
-             _raw_control.data(),
-             {},
-             _setup.table.stages,
-             p.cells,
-             static_cast<int>(p.left),
-             static_cast<int>(p.right),
-             static_cast<int>(p.face_average),
-             p.gamma,
-             1.0 / _setup.dx,
-             tile_cells,
-             tiling.halo,
-             _setup.step_shape.stride,
-             _setup.team_size};
+    _step = {.buffer = {},
+             .control = _raw_control.data(),
+             .stage = {},
+             .stages = _setup.table.stages,
+             .cells = p.cells,
+             .left = static_cast<int>(p.left),
+             .right = static_cast<int>(p.right),
+             .average = static_cast<int>(p.face_average),
+             .gamma = p.gamma,
+             .inverse_dx = 1.0 / _setup.dx,
+             .tile_cells = tile_cells,
+             .halo = tiling.halo,
+             .slots = _setup.step_shape.stride,
+             .threads = _setup.team_size};
     for (std::size_t k = 0; k < 3; ++k) {
       _setup.buffer[k] = Fields("drogue::perf::raw::gas", _cells);
       _raw_buffer[k] = Fields("drogue::perf::raw::gas_raw", _cells);

@@ -101,22 +101,24 @@ Case version_case(const std::shared_ptr<KernelPair>& pair, const std::string& na
                   Launches launches, const Size& size,
                   const std::shared_ptr<std::optional<double>>& difference) {
   const long steps = steps_of(size.cells);
-  return {name,
-          true,
-          "step",
-          size.cells < 100'000 ? "launch latency" : "that of the kernel of the suite",
-          [=] {
-            return Sample{[=] { pair->reset(version); },
-                          [=] {
-                            pair->run(version, launches, steps);
-                            return steps;
-                          }};
-          },
-          [=] {
-            if (!*difference) *difference = pair->difference(launches);
-            return **difference;
-          },
-          size.round_off};
+  return {.name = name,
+          .on_device = true,
+          .unit_of_work = "step",
+          .bound = size.cells < 100'000 ? "launch latency" : "that of the kernel of the suite",
+          .prepare =
+              [=] {
+                return Sample{[=] { pair->reset(version); },
+                              [=] {
+                                pair->run(version, launches, steps);
+                                return steps;
+                              }};
+              },
+          .error =
+              [=] {
+                if (!*difference) *difference = pair->difference(launches);
+                return **difference;
+              },
+          .tolerance = size.round_off};
 }
 
 void print_time(const Record& record) {

@@ -44,16 +44,17 @@ Case fused_case(device::Backend backend, const std::string& name, std::int64_t c
   constexpr long steps = 200;  // some milliseconds
   const gas::Parameters p = gas_parameters(cells, block);
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
-  return {name,
-          device::needs_device(backend),
-          "step",
-          blocks_bound,
-          [=] {
-            *solver = gas::create_solver(backend, p);
-            return sod::steps(p, backend, **solver, steps);
-          },
-          [=] { return sod::l1_error(p, **solver); },
-          sod::tolerance(p)};
+  return {.name = name,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "step",
+          .bound = blocks_bound,
+          .prepare =
+              [=] {
+                *solver = gas::create_solver(backend, p);
+                return sod::steps(p, backend, **solver, steps);
+              },
+          .error = [=] { return sod::l1_error(p, **solver); },
+          .tolerance = sod::tolerance(p)};
 }
 
 Block flux_block(int block) {
@@ -75,17 +76,16 @@ std::vector<BlockForm> gas_forms(device::Backend backend, bool quick) {
     for (const dissertation::TransferRow& row : dissertation::table_5_5) cells.push_back(row.cells);
   }
   const auto form = [&](const char* name, const char* title, const char* kernel, auto make, auto resources) {
-    return BlockForm{"gas-block",
-                     name,
-                     title,
-                     "step",
-                     kernel,
-                     blocks,
-                     cells,
-                     [=](const std::string& case_name, std::size_t mesh, int block) {
-                       return make(backend, case_name, cells[mesh], block);
-                     },
-                     resources};
+    return BlockForm{.records = "gas-block",
+                     .name = name,
+                     .title = title,
+                     .unit = "step",
+                     .kernel = kernel,
+                     .blocks = blocks,
+                     .cells = cells,
+                     .make = [=](const std::string& case_name, std::size_t mesh,
+                                 int block) { return make(backend, case_name, cells[mesh], block); },
+                     .resources = resources};
   };
   return {form("seed", "The flux kernel of [Shi], three stages", "drogue::gas::BaselineFluxFunctor",
                flux_case, flux_block),
@@ -106,24 +106,32 @@ std::vector<BlockForm> flow_forms(device::Backend backend, bool quick) {
                                          : std::vector<Mesh>{{{64, 64, 64}, 200}, {{128, 128, 128}, 50}};
   std::vector<std::int64_t> cells;
   for (const Mesh& mesh : meshes) cells.push_back(cells_of(mesh.grid));
-  return {{"flow-block", "momentum",
-           "A step of flow; momentum stage and pressure correction have the block, transforms their own",
-           "step", "drogue::flow::MomentumFunctor", quick ? quick_blocks : all_blocks, cells,
+  return {
+      {.records = "flow-block",
+       .name = "momentum",
+       .title = "A step of flow; momentum stage and pressure correction have the block, transforms their own",
+       .unit = "step",
+       .kernel = "drogue::flow::MomentumFunctor",
+       .blocks = quick ? quick_blocks : all_blocks,
+       .cells = cells,
+       .make =
            [=](const std::string& name, std::size_t mesh, int block) {
              flow::Parameters p = streams::parameters(meshes[mesh].grid, streams::Sides::periodic);
              p.block = block;
              const auto solver = std::make_shared<std::unique_ptr<flow::Solver>>();
-             return Case{name,
-                         device::needs_device(backend),
-                         "step",
-                         blocks_bound,
-                         [=] {
-                           *solver = flow::create_solver(backend, p);
-                           return streams::steps(p, **solver, meshes[mesh].steps);
-                         },
-                         [=] { return streams::relative_divergence(p, **solver); },
-                         1e-12};
+             return Case{.name = name,
+                         .on_device = device::needs_device(backend),
+                         .unit_of_work = "step",
+                         .bound = blocks_bound,
+                         .prepare =
+                             [=] {
+                               *solver = flow::create_solver(backend, p);
+                               return streams::steps(p, **solver, meshes[mesh].steps);
+                             },
+                         .error = [=] { return streams::relative_divergence(p, **solver); },
+                         .tolerance = 1e-12};
            },
+       .resources =
            [](int block) {
              return Block{block, bounded_registers, team_buffer(block)};
            }}};
@@ -132,54 +140,61 @@ std::vector<BlockForm> flow_forms(device::Backend backend, bool quick) {
 std::vector<BlockForm> parachute_forms(device::Backend backend, bool quick) {
   const Grid grid = quick ? Grid{24, 24, 48} : Grid{60, 60, 120};
   const double lead = quick ? 0.05 : 0.8;  // s
-  return {{"parachute-block",
-           "contact",
+  return {
+      {.records = "parachute-block",
+       .name = "contact",
+       .title =
            "Flight of a canopy; the kernel that resolves contact has the block, one on each multiprocessor",
-           "ms of flight",
-           "drogue::fabric::PersistentResolutionFunctor",
-           quick ? quick_blocks : all_blocks,
-           {cells_of(grid)},
+       .unit = "ms of flight",
+       .kernel = "drogue::fabric::PersistentResolutionFunctor",
+       .blocks = quick ? quick_blocks : all_blocks,
+       .cells = {cells_of(grid)},
+       .make =
            [=](const std::string& name, std::size_t /*mesh*/, int block) {
              const auto solver = std::make_shared<std::unique_ptr<coupling::Solver>>();
              const auto problem = std::make_shared<inflation::Problem>();
-             return Case{name,
-                         device::needs_device(backend),
-                         "ms of flight",
-                         blocks_bound,
-                         [=] {
-                           *problem = inflation::problem({.cells = grid, .with_contact = true});
-                           problem->parameters.fabric.contact.block = block;
-                           *solver = coupling::create_solver(backend, problem->parameters);
-                           return inflation::flight(*problem, **solver, lead, 10);
-                         },
-                         [=] { return inflation::imbalance(problem->parameters, **solver); },
-                         1e-12};
+             return Case{.name = name,
+                         .on_device = device::needs_device(backend),
+                         .unit_of_work = "ms of flight",
+                         .bound = blocks_bound,
+                         .prepare =
+                             [=] {
+                               *problem = inflation::problem({.cells = grid, .with_contact = true});
+                               problem->parameters.fabric.contact.block = block;
+                               *solver = coupling::create_solver(backend, problem->parameters);
+                               return inflation::flight(*problem, **solver, lead, 10);
+                             },
+                         .error = [=] { return inflation::imbalance(problem->parameters, **solver); },
+                         .tolerance = 1e-12};
            },
+       .resources =
            [](int block) {
              return Block{block, bounded_registers, 0};
            },
-           1}};
+       .most_blocks = 1}};
 }
 
 std::vector<BlockForm> options_forms(device::Backend backend, bool quick) {
   const std::int64_t count = quick ? 4 : 256;
   const double loose = 1e-3;  // at 1e-4 a batch of blocks of 32 takes too long for a round of all blocks
-  return {{"options-block",
-           "cos",
-           "Puts by cosine series; a put has a team, tables of the host are included",
-           "batch",
-           "drogue::options::PriceBermudansFunctor",
-           quick ? quick_blocks : all_blocks,
-           {count},
-           [=](const std::string& name, std::size_t /*mesh*/, int block) {
-             return puts::batch(name, backend, HostMemory::pinned, static_cast<std::size_t>(count),
-                                {.method = options::Method::cos, .tolerance = loose, .block = block},
-                                puts::loose_cosine_error);
-           },
-           [](int block) {
-             // Its launch states no bounds, but one compiled kernel serves all blocks, up to the largest.
-             return Block{block, bounded_registers, team_buffer(block)};
-           }}};
+  return {{.records = "options-block",
+           .name = "cos",
+           .title = "Puts by cosine series; a put has a team, tables of the host are included",
+           .unit = "batch",
+           .kernel = "drogue::options::PriceBermudansFunctor",
+           .blocks = quick ? quick_blocks : all_blocks,
+           .cells = {count},
+           .make =
+               [=](const std::string& name, std::size_t /*mesh*/, int block) {
+                 return puts::batch(name, backend, HostMemory::pinned, static_cast<std::size_t>(count),
+                                    {.method = options::Method::cos, .tolerance = loose, .block = block},
+                                    puts::loose_cosine_error);
+               },
+           .resources =
+               [](int block) {
+                 // Its launch states no bounds, but one compiled kernel serves all blocks, up to the largest.
+                 return Block{block, bounded_registers, team_buffer(block)};
+               }}};
 }
 
 }  // namespace

@@ -46,22 +46,24 @@ Case case_of(device::Backend backend, const FabricTransfer& row) {
     std::map<std::string, double> parts;
   };
   const auto run = std::make_shared<std::optional<Run>>();
-  return {"springs-transfers/" + std::string(device::name(backend)) + "/" +
+  return {
+      .name = "springs-transfers/" + std::string(device::name(backend)) + "/" +
               std::to_string(row.printed.vertices) + "/" + std::to_string(row.substeps) +
               (row.memory == HostMemory::pinned ? "/pinned" : ""),
-          device::needs_device(backend),
-          "step",
-          transfer_bound(backend, "loads of neighbours by the cores"),
+      .on_device = device::needs_device(backend),
+      .unit_of_work = "step",
+      .bound = transfer_bound(backend, "loads of neighbours by the cores"),
+      .prepare =
           [=] {
             const fabric::Parameters p = sheet::parameters(row.printed.vertices);
             const sheet::State start = sheet::start(p);
             const auto memory = host_memory(backend, row.memory);
-            run->emplace(Run{memory,
-                             p,
-                             fabric::create_solver(backend, p),
-                             {start.x.begin(), start.x.end(), memory.get()},
-                             {start.v.begin(), start.v.end(), memory.get()},
-                             {}});
+            run->emplace(Run{.memory = memory,
+                             .p = p,
+                             .solver = fabric::create_solver(backend, p),
+                             .x = {start.x.begin(), start.x.end(), memory.get()},
+                             .v = {start.v.begin(), start.v.end(), memory.get()},
+                             .parts = {}});
             (*run)->solver->set_dt(sheet::default_dt(p, *(*run)->solver));
             return Sample{[=] {
                             std::ranges::copy(start.x, (*run)->x.begin());
@@ -79,11 +81,12 @@ Case case_of(device::Backend backend, const FabricTransfer& row) {
                           },
                           [=] { return (*run)->parts; }};
           },
+      .error =
           [=] {
             const Run& now = **run;
             return sheet::energy_drift(now.p, {{now.x.begin(), now.x.end()}, {now.v.begin(), now.v.end()}});
           },
-          drift_tolerance};
+      .tolerance = drift_tolerance};
 }
 
 }  // namespace

@@ -45,44 +45,46 @@ Case our_case(const std::string& name, const std::string& bound, device::Backend
     std::map<std::string, double> parts;
   };
   const auto run = std::make_shared<std::optional<Run>>();
-  return {name,
-          device::needs_device(backend),
-          "step",
-          bound,
-          [=] {
-            const sod::Fields start = sod::start(p);
-            const auto resource = host_memory(backend, memory);
-            const auto copy = [&](std::size_t k) {
-              return std::pmr::vector<double>(start[k].begin(), start[k].end(), resource.get());
-            };
-            run->emplace(Run{resource, gas::create_solver(backend, p), {copy(0), copy(1), copy(2)}, {}});
-            return Sample{[=] {
-                            for (std::size_t k = 0; k < 3; ++k)
-                              std::ranges::copy(start[k], (*run)->fields[k].begin());
-                          },
-                          [=] {
-                            gas::Solver& solver = *(*run)->solver;
-                            auto& [rho, momentum, energy] = (*run)->fields;
-                            (*run)->parts = timed_parts(
-                                [&] {
-                                  solver.upload(0, {rho, momentum, energy});
-                                },
-                                [&] {
-                                  solver.start();
-                                  solver.advance(1.0, baseline_steps, 0, {}, {});
-                                },
-                                [&] {
-                                  solver.download(0, {rho, momentum, energy});
-                                });
-                            return baseline_steps;
-                          },
-                          [=] { return (*run)->parts; }};
-          },
-          [=] {
-            const std::vector<double> rho((*run)->fields[0].begin(), (*run)->fields[0].end());
-            return sod::l1_error(p, rho, (*run)->solver->restart_state().time);
-          },
-          sod::tolerance(p)};
+  return {.name = name,
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "step",
+          .bound = bound,
+          .prepare =
+              [=] {
+                const sod::Fields start = sod::start(p);
+                const auto resource = host_memory(backend, memory);
+                const auto copy = [&](std::size_t k) {
+                  return std::pmr::vector<double>(start[k].begin(), start[k].end(), resource.get());
+                };
+                run->emplace(Run{resource, gas::create_solver(backend, p), {copy(0), copy(1), copy(2)}, {}});
+                return Sample{[=] {
+                                for (std::size_t k = 0; k < 3; ++k)
+                                  std::ranges::copy(start[k], (*run)->fields[k].begin());
+                              },
+                              [=] {
+                                gas::Solver& solver = *(*run)->solver;
+                                auto& [rho, momentum, energy] = (*run)->fields;
+                                (*run)->parts = timed_parts(
+                                    [&] {
+                                      solver.upload(0, {rho, momentum, energy});
+                                    },
+                                    [&] {
+                                      solver.start();
+                                      solver.advance(1.0, baseline_steps, 0, {}, {});
+                                    },
+                                    [&] {
+                                      solver.download(0, {rho, momentum, energy});
+                                    });
+                                return baseline_steps;
+                              },
+                              [=] { return (*run)->parts; }};
+              },
+          .error =
+              [=] {
+                const std::vector<double> rho((*run)->fields[0].begin(), (*run)->fields[0].end());
+                return sod::l1_error(p, rho, (*run)->solver->restart_state().time);
+              },
+          .tolerance = sod::tolerance(p)};
 }
 
 Case case_of(device::Backend backend, const GasTransfer& row) {

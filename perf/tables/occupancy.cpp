@@ -114,10 +114,17 @@ std::vector<StepKernel> step_kernels() {
   std::vector<StepKernel> kernels;
   for (const int team : {32, 64, 96, 128, 192, 256, 384, 512}) {
     const bool small = team <= gas::default_team;
-    kernels.push_back({team, gas::fitting_slots(gas::device_rows, team, team), small ? 168 : 128,
-                       small ? gas::default_teams : gas::largest_teams, ""});
+    kernels.push_back({.team = team,
+                       .slots = gas::fitting_slots(gas::device_rows, team, team),
+                       .registers = small ? 168 : 128,
+                       .least_teams = small ? gas::default_teams : gas::largest_teams,
+                       .name = ""});
   }
-  kernels.push_back({gas::default_team, gas::largest_tile, 128, gas::dense_teams, "/large-mesh"});
+  kernels.push_back({.team = gas::default_team,
+                     .slots = gas::largest_tile,
+                     .registers = 128,
+                     .least_teams = gas::dense_teams,
+                     .name = "/large-mesh"});
   return kernels;
 }
 

@@ -39,19 +39,20 @@ std::vector<ParachuteTransfer> parachute_transfers_of(device::Backend backend, b
 Case case_of(device::Backend backend, const ParachuteTransfer& row, double lead) {
   const auto solver = std::make_shared<std::unique_ptr<coupling::Solver>>();
   const auto problem = std::make_shared<inflation::Problem>();
-  return {"parachute-transfers/" + std::string(device::name(backend)) + "/" + name(row.memory) + "/" +
-              streams::text(row.cells) + "/" + std::to_string(row.steps),
-          device::needs_device(backend),
-          "step",
-          transfer_bound(backend, "FP64 issue of the cores, for cells and triangles"),
-          [=] {
-            *problem = inflation::problem({.cells = row.cells});
-            *solver = coupling::create_solver(backend, problem->parameters);
-            return inflation::copied_steps(*problem, **solver, lead, row.steps,
-                                           host_memory(backend, row.memory));
-          },
-          [=] { return inflation::imbalance(problem->parameters, **solver); },
-          1e-12};
+  return {.name = "parachute-transfers/" + std::string(device::name(backend)) + "/" + name(row.memory) + "/" +
+                  streams::text(row.cells) + "/" + std::to_string(row.steps),
+          .on_device = device::needs_device(backend),
+          .unit_of_work = "step",
+          .bound = transfer_bound(backend, "FP64 issue of the cores, for cells and triangles"),
+          .prepare =
+              [=] {
+                *problem = inflation::problem({.cells = row.cells});
+                *solver = coupling::create_solver(backend, problem->parameters);
+                return inflation::copied_steps(*problem, **solver, lead, row.steps,
+                                               host_memory(backend, row.memory));
+              },
+          .error = [=] { return inflation::imbalance(problem->parameters, **solver); },
+          .tolerance = 1e-12};
 }
 
 }  // namespace

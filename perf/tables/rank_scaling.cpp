@@ -106,7 +106,7 @@ void add_backend(const ScalingRequest& request, device::Backend backend, bool qu
     const std::array<int, 3> cells = scaled_cells({edge, edge, edge}, request.weak, units);
     const std::filesystem::path scene = folder.path() / ("scene-" + std::to_string(units) + ".toml");
     run::write_file_atomically(scene.string(), flow_scene(cells));
-    points.push_back({units, cells, scene, {}, 0.0, {}});
+    points.push_back({.units = units, .cells = cells, .scene = scene, .samples = {}, .result = {}});
   }
   for (int round = 0; round < (quick ? 3 : 7); ++round)
     for (ScalingPoint& point : points) run_point(request, backend, folder.path(), point);

@@ -22,7 +22,11 @@ std::string transfer_bound(device::Backend backend, const std::string& on_host);
 /// Times of a row of a table of [Shi], whose `cpu` is 0 where none is printed.
 template <class Row>
 PrintedTimes printed_times(const Row& row) {
-  return {row.h2d, row.compute, row.d2h, row.total, row.cpu > 0.0 ? std::optional(row.cpu) : std::nullopt};
+  return {.h2d = row.h2d,
+          .compute = row.compute,
+          .d2h = row.d2h,
+          .total = row.total,
+          .cpu = row.cpu > 0.0 ? std::optional(row.cpu) : std::nullopt};
 }
 
 /// Measured rows of a table.

@@ -32,15 +32,16 @@ std::vector<OptionsPoint> pide_points(bool quick) {
         for (const char* exercise : {"exact", "split", "none"}) {
           const bool split = *exercise == 's', none = *exercise == 'n';
           if (quick && intervals != 4) continue;
-          points.push_back({"pide",
-                            exercise,
-                            single_grid ? "one" : "two",
-                            intervals,
-                            {.mesh = mesh,
-                             .steps = mesh / intervals,
-                             .exercise = split ? options::ExerciseRule::split : options::ExerciseRule::exact,
-                             .single_grid = single_grid},
-                            none ? options::Style::european : options::Style::american});
+          points.push_back(
+              {.method = "pide",
+               .exercise = exercise,
+               .grids = single_grid ? "one" : "two",
+               .intervals_per_step = intervals,
+               .settings = {.mesh = mesh,
+                            .steps = mesh / intervals,
+                            .exercise = split ? options::ExerciseRule::split : options::ExerciseRule::exact,
+                            .single_grid = single_grid},
+               .style = none ? options::Style::european : options::Style::american});
         }
   return points;
 }
@@ -49,9 +50,17 @@ std::vector<OptionsPoint> other_points(const KnownPuts& puts, bool quick) {
   std::vector<OptionsPoint> points;
   if (puts.contract.model == options::JumpModel::generalized_hyperbolic)
     for (const int mesh : quick ? std::vector{64} : std::vector{64, 128, 256, 512})
-      points.push_back({"seed", "", "", 0, {.method = options::Method::baseline, .mesh = mesh}});
+      points.push_back({.method = "seed",
+                        .exercise = "",
+                        .grids = "",
+                        .intervals_per_step = 0,
+                        .settings = {.method = options::Method::baseline, .mesh = mesh}});
   for (const double tolerance : quick ? std::vector{1e-2} : std::vector{1e-2, 1e-4, 1e-5, 1e-6, 1e-7})
-    points.push_back({"cos", "", "", 0, {.method = options::Method::cos, .tolerance = tolerance}});
+    points.push_back({.method = "cos",
+                      .exercise = "",
+                      .grids = "",
+                      .intervals_per_step = 0,
+                      .settings = {.method = options::Method::cos, .tolerance = tolerance}});
   return points;
 }
 

@@ -76,8 +76,8 @@ std::vector<Discretization> discretizations(bool quick) {
       d.time_scheme = flow::TimeScheme::rk3;
       d.cfl = cfl;
     });
-  add([](Discretization& d) { d.kernel = coupling::DeltaKernel::cbs32; });
-  add([](Discretization& d) { d.kernel = coupling::DeltaKernel::ib4; });
+  add([](Discretization& d) { d.delta = coupling::DeltaFunction::cbs32; });
+  add([](Discretization& d) { d.delta = coupling::DeltaFunction::ib4; });
   add([](Discretization& d) { d.edge_inset = 0.55; });
   add([](Discretization& d) { d.defect_filter = 0.1; });
   add([](Discretization& d) {
@@ -94,9 +94,9 @@ Discretization reference_of(const Grids& grids, double edge_inset) {
 
 /// Delta function, with inset of edges and filtered defect where there are.
 std::string exchange_of(const Discretization& d) {
-  std::string name = d.kernel == coupling::DeltaKernel::cbs43   ? "cbs43"
-                     : d.kernel == coupling::DeltaKernel::cbs32 ? "cbs32"
-                                                                : "ib4";
+  std::string name = d.delta == coupling::DeltaFunction::cbs43   ? "cbs43"
+                     : d.delta == coupling::DeltaFunction::cbs32 ? "cbs32"
+                                                                 : "ib4";
   if (d.edge_inset != 0.0) name += " inset " + nlohmann::json(d.edge_inset).dump();
   if (d.defect_filter != 0.0) name += " defect " + nlohmann::json(d.defect_filter).dump();
   return name;

@@ -1,7 +1,9 @@
-"""Installs this build into a fresh prefix, builds a small program against the package, and runs it."""
+"""Installs this build into a fresh prefix, builds the programs of examples/ against the package, and runs them."""
 
 import json
+import math
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -26,6 +28,35 @@ def has_gpu():
     return shutil.which("nvidia-smi") and subprocess.run(["nvidia-smi", "-L"], capture_output=True).returncode == 0
 
 
+def binomial_put(spot, strike, rate, sigma, years, steps):
+    """American put by the tree of Cox, Ross and Rubinstein (1979)."""
+    dt = years / steps
+    up = math.exp(sigma * math.sqrt(dt))
+    p, discount = (math.exp(rate * dt) - 1 / up) / (up - 1 / up), math.exp(-rate * dt)
+    payoff = [strike - spot * up ** k for k in range(-steps, steps + 1)]
+    values = [max(payoff[k], 0.0) for k in range(0, 2 * steps + 1, 2)]
+    for level in range(steps - 1, -1, -1):
+        values = [max(discount * (p * values[k + 1] + (1 - p) * values[k]), payoff[steps - level + 2 * k])
+                  for k in range(level + 1)]
+    return values[0]
+
+
+def merton_put(spot, strike, rate, sigma, years, intensity, mean, deviation):
+    """European put under normal jumps of the logarithm: a Poisson sum of prices of Black and Scholes (Merton 1976)."""
+    def normal(x):
+        return 0.5 * math.erfc(-x / math.sqrt(2))
+
+    growth = math.exp(mean + 0.5 * deviation ** 2) - 1
+    price = 0.0
+    for jumps in range(30):
+        variance = sigma ** 2 * years + jumps * deviation ** 2
+        forward = spot * math.exp((rate - intensity * growth) * years + jumps * (mean + 0.5 * deviation ** 2))
+        d = (math.log(forward / strike) + 0.5 * variance) / math.sqrt(variance)
+        put = strike * normal(math.sqrt(variance) - d) - forward * normal(-d)
+        price += math.exp(-intensity * years) * (intensity * years) ** jumps / math.factorial(jumps) * put
+    return math.exp(-rate * years) * price
+
+
 class Install(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -42,30 +73,65 @@ class Install(unittest.TestCase):
             raise AssertionError(f"{command}\n{result.stdout}\n{result.stderr}")
         return result.stdout
 
-    def build(self, name):
-        """Configures and builds the consumer `name` against the package; returns its build folder."""
+    def build(self, example, program):
+        """Configures and builds a folder of examples/ against the package; returns its program."""
         options = [f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_BUILD_TYPE={cached('CMAKE_BUILD_TYPE')}"]
         if cached("DROGUE_SANITIZE") == "ON":
             options.append("-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined")
         if cached("DROGUE_CUDA") == "ON":
             options.append(f"-DCMAKE_CUDA_COMPILER={cached('CMAKE_CUDA_COMPILER')}")
-        folder = self.work / name
-        self.run_command("cmake", "-S", SOURCE / "tests/install" / name, "-B", folder, "-G", "Ninja", *options)
+        folder = self.work / example
+        self.run_command("cmake", "-S", SOURCE / "examples" / example, "-B", folder, "-G", "Ninja", *options)
         self.run_command("cmake", "--build", folder)
         if cached("DROGUE_CUDA") == "ON" and not has_gpu():
             self.skipTest("built and linked; a CUDA build of Kokkos starts on no machine without a GPU")
-        return folder
+        return folder / program
 
-    def test_consumer_builds_and_runs(self):
-        self.assertEqual("steps 20 mass 2.000000000000\n", self.run_command(self.build("consumer") / "consumer"))
+    def test_examples_are_short(self):
+        """At most 120 lines that are neither empty nor comments."""
+        found = sorted((SOURCE / "examples").rglob("*.cpp"))
+        self.assertEqual(3, len(found))
+        for path in found:
+            lines = path.read_text(encoding="utf-8").splitlines()
+            self.assertLessEqual(sum(bool(re.match(r"\s*[^\s/]", line)) for line in lines), 120, path)
 
-    def test_mini_app_of_120_lines(self):
+    def test_coupled_solvers(self):
+        """Exact solution of the scheme, which converges to that of the sheet and the air; momentum, to round-off."""
+        program = self.build("coupled_solvers", "coupled_solvers")
+        # Sheet of 1 kg/m^2, 4 m of air of 1.2 kg/m^3, drag of 2 Pa s/m; the air moves as a whole.
+        rate, end = 2 * (1 + 1 / 4.8), 0.32
+        numbers = re.compile(r"\d+\.\d+")
+        page = (SOURCE / "examples/README.md").read_text(encoding="utf-8").partition("```text\n")[2].partition("```")[0]
+        output = self.run_command(program, "serial")
+        self.assertEqual(numbers.sub("", page), numbers.sub("", output))
+        for shown, now in zip(numbers.findall(page), numbers.findall(output)):
+            self.assertAlmostEqual(float(shown), float(now), delta=2e-9)
+        errors = []
+        for steps in (64, 128):
+            printed = numbers.findall(self.run_command(program, "serial", steps))
+            sheet, relative, exact, momentum, expected = map(float, printed)
+            self.assertAlmostEqual((1 - rate * end / steps) ** steps, relative, delta=2e-9)
+            self.assertAlmostEqual(math.exp(-rate * end), exact, delta=1e-9)
+            self.assertAlmostEqual((1 + 4.8 * relative) / 5.8, sheet, delta=2e-9)
+            self.assertAlmostEqual(expected, momentum, delta=1e-14)
+            errors.append(abs(relative - exact))
+        self.assertAlmostEqual(2.0, errors[0] / errors[1], delta=0.05)
+
+    def test_option_prices(self):
+        """Prices are within their stated errors of a binomial tree and of the series of Merton (1976)."""
+        output = self.run_command(self.build("option_prices", "option_prices"), "serial")
+        prices = [tuple(map(float, line.split())) for line in output.splitlines()[1:]]
+        (american, error, delta), (with_jumps, *_), (european, european_error, _) = prices
+        tree = 0.5 * (binomial_put(40, 40, 0.05, 0.3, 0.5, 1000) + binomial_put(40, 40, 0.05, 0.3, 0.5, 1001))
+        self.assertAlmostEqual(tree, american, delta=5e-4 + error)
+        self.assertLess(error, 40 * 1e-5)
+        self.assertTrue(-0.5 < delta < 0, delta)
+        self.assertAlmostEqual(merton_put(40, 40, 0.05, 0.3, 0.5, 0.5, -0.1, 0.2), european, delta=1e-5 + european_error)
+        self.assertGreater(with_jumps, max(american, european))
+
+    def test_mini_app(self):
         """A mini-app outside of the repository has the command line, files and exit codes of the shipped ones."""
-        files = [path for path in (SOURCE / "tests/install/mini_app").rglob("*") if path.is_file()]
-        lines = {path.name: path.read_text(encoding="utf-8").splitlines() for path in files}
-        self.assertLessEqual(sum(map(len, lines.values())), 120, {name: len(text) for name, text in lines.items()})
-        self.assertEqual([], [line for text in lines.values() for line in text if len(line) > 120])
-        program = self.build("mini_app") / "drogue-heat"
+        program = self.build("mini_app", "drogue-heat")
 
         def run(code, *words):
             result = subprocess.run([program, *words], cwd=self.work, capture_output=True, text=True)

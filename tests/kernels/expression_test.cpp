@@ -174,6 +174,7 @@ TEST(PortableMath, MatchesCmathAtSpecialValues) {
   EXPECT_EQ(value_at("acos", -1.0), std::acos(-1.0));
 }
 
+// ctest-label: smoke
 TEST(ExpressionProgram, AgreesWithTheReferenceOnRandomExpressions) {
   Sample sample(-2.0, 3.0);
   int compared = 0;

@@ -2,7 +2,7 @@
 
 import re
 
-LABELS = ("no-sanitizer", "exact")
+LABELS = ("no-sanitizer", "exact", "smoke")
 CASE = re.compile(r"(?:TYPED_)?TEST(?:_F|_P)?\(")
 
 

@@ -8,7 +8,7 @@ import unittest
 import layers
 
 SOURCE = layers.repository(os.environ)
-FILE = r"`((?:common|kernels|miniapps|perf|tests)/[\w/.]+\.(?:[ch]pp|py))`"
+FILE = r"`((?:common|examples|kernels|miniapps|perf|scripts|tests)/[\w/.]+\.(?:[ch]pp|py))`"
 NAMED = re.compile(FILE + r": (`[\w:]+`(?:, `[\w:]+`)*)")
 
 
@@ -82,7 +82,10 @@ class Documents(unittest.TestCase):
         declared = set(re.findall(r"\b(?:class|struct|using|concept)\s+(?:\[\[\w+\]\]\s+)?(\w+)", sources))
         count = 0
         for document, text in self.documents():
-            for diagram in re.findall(r"^```\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
+            # Blocks in pairs of marks: what stands between two blocks is no diagram.
+            for language, diagram in re.findall(r"^```(\w*)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
+                if language:
+                    continue
                 for name in re.findall(r"\b[A-Z][a-z]+(?:[A-Z][a-z]+)+\b(?!\.\w)|\b[A-Z]\w+(?=<|::)", diagram):
                     count += 1
                     self.assertTrue(name in declared, f"{document} draws {name}")

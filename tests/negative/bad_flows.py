@@ -100,6 +100,8 @@ BAD_LINES = [
     (10, 'boundary = { x = ["inflow", "wall"], y = ["wall", "slip"], z = "periodic" }', 6,
      ["fluid.velocity", "without an outflow"]),
     # values that are not finite
+    (11, 'wall_velocity = { y_low = ["t*besselj(1500, z)", 0, 0] }', 11,
+     ["grid.wall_velocity.y_low[0]", "at character 11", "besselj has integer orders from -1000 to 1000"]),
     (6, 'velocity = ["1/(t*y)", 0, 0]', 6, ["fluid.velocity[0]", "not finite", "x_low", "t = 0"]),
     (6, 'velocity = [1, "sqrt(y-0.3)", 0]', 6, ["fluid.velocity[1]", "not finite", "x_low"]),
     (11, 'wall_velocity = { y_low = ["log(x-1)", 0, 0] }', 11, ["grid.wall_velocity.y_low[0]", "not finite", "y_low"]),

@@ -79,6 +79,25 @@ class BadFlows(parachute_program.FlowTest):
         self.expect(0, self.scene, "--check", sets=["body[0].lengths=[0.65,0.8]", "run.max_dt=0.01"])
         self.expect(0, self.scene, "--check")
 
+    def test_notes_cloth_that_closes_a_channel_or_nearly_does(self):
+        drop = '[flow]\npressure_drop = [20, 0, 0]\n'
+        box = drop.join(('app = "parachute"\n[fluid]\n[grid]\ncells = [24, 12, 12]\ndomain = [[0, 2], [0, 1], [0, 1]]\n'
+                         'boundary = { x = "periodic", y = "periodic", z = "periodic" }\n',
+                         '[coupling]\ngravity = [0, 0, -0.5]\n[run]\nend_time = 0.3\n'))
+        drum = ('[[canopy]]\nkind = "drum"\ndiameter = 0.9\ngores = 8\nvent = 0\nedge_length = 0.05\n'
+                'centre = [1, 0.5, 0.5]\nangle = 90\ntension = 2000\ncloth = "custom"\narea_density = 5\n')
+        flag = ('[[flag]]\nleading_edge = [1, 0]\nlength = 1\nangle = 90\narea_density = 1\nbending_stiffness = 100\n'
+                'edge_length = 0.05\n')
+        for name, text, shape in (("canopy[0]", box + drum, "canopy[0].diameter=0.7"),
+                                  ("flag[0]", box.replace("12, 12]", "12, 1]") + flag, "flag[0].length=0.5")):
+            with self.subTest(name):
+                self.scene.write_text(text, encoding="utf-8")
+                process = self.start(self.scene, "--check")
+                self.assertEqual(0, process.returncode, process.stderr)
+                self.assertIn(f"{name} covers most of the channel along x at the start: its force follows", process.stderr)
+                for sets in ([shape], ["run.max_dt=0.01"]):
+                    self.assertNotIn("covers", self.start(self.scene, "--check", sets=sets).stderr)
+
     def test_rejects_oblique_sheets_that_close_a_channel_without_a_largest_step(self):
         closed = bad_bodies.GOOD.replace('y = "slip"', 'y = "periodic"').replace('x = ["inflow", "outflow"]', 'x = "periodic"')
         closed = closed.replace('kind = "plate"\nnormal = "x"', 'kind = "file"').replace("lengths = [0.4, 0.8]\nedge_length = 0.05", 'file = "oblique.obj"')

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import packages  # before modules that need the packages  isort: skip
-from plot.demo.__main__ import SLOW
+from plot.demo.__main__ import BATCH, SHOWN
 from plot.demo.page import pictures_by_role
 
 
@@ -39,12 +39,18 @@ class Demo(unittest.TestCase):
         ]
         return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
 
-    def test_slow_scenes_are_shipped(self):
-        shipped = {file.stem for file in (packages.SOURCE / "miniapps").glob("*/scenes/*.toml")}
-        self.assertEqual(set(), SLOW - shipped)
+    def test_shows_shipped_scenes_of_every_program(self):
+        shipped = {file.stem: file.parts[-3] for file in (packages.SOURCE / "miniapps").glob("*/scenes/*.toml")}
+        self.assertEqual({"gas", "springs", "parachute"}, {shipped[name] for name in SHOWN if name != BATCH})
+        self.assertIn(BATCH, SHOWN)
+
+    def test_runs_a_selection_unless_all_are_asked_for(self):
+        for words, names in (((), ["sod"]), (("--all",), ["sod", "lax"]), (("lax", "sod"), ["lax", "sod"])):
+            done = self._demo(*words)
+            self.assertEqual([line.split()[0] for line in done.stdout.split("\n\n")[0].splitlines()[1:]], names)
 
     def test_prints_table_and_writes_page_of_passed_scenes(self):
-        done = self._demo()
+        done = self._demo("--all")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         rows = [re.split(r"\s{2,}", line) for line in done.stdout.splitlines()[:3]]
         self.assertEqual(rows[0], ["scene", "backend", "steps", "error", "tolerance", "time"])

@@ -91,6 +91,28 @@ end_time = 2
 history_every = 1
 """
 
+# A plate in fluid so viscous that its motion changes far more slowly than the fluid.
+VISCOUS = """app = "parachute"
+[fluid]
+density = 1
+viscosity = 100
+[grid]
+cells = [32, 32, 1]
+domain = [[-3, 3], [-3, 3], [0, 0.1875]]
+boundary = { x = "periodic", y = "periodic" }
+[[body]]
+kind = "plate"
+normal = "x"
+centre = [0, 0, 0.09375]
+lengths = [1, 0.1875]
+edge_length = 0.1
+motion = { x = "0.05*sin(10*t)" }
+[run]
+end_time = 0.07
+[output]
+history_every = 1
+"""
+
 # A plate on a spring that moves 24.5 times its own mass.
 MOUNT = """app = "parachute"
 [fluid]
@@ -207,6 +229,18 @@ class Drives(parachute_program.FlowTest):
             with self.subTest(motion):
                 rows = self.check(PISTON, f"body[0].motion={{x='{motion}'}}", f"run.end_time={end}")
                 self.assertAlmostEqual(1, rows["momentum_x"][-1] / (0.2 * 1.2 * 1.6 * 0.64), delta=0.02)
+
+    def test_bodies_in_implicit_diffusion_have_the_force_of_explicit_diffusion(self):
+        """Without a bound of its own, a step would spread the force of the body over several cells."""
+        impulse = {}
+        for scheme in (SCHEMES[0], SCHEMES[2]):
+            rows = self.check(VISCOUS, flow(scheme))
+            steps = [after - before for before, after in zip(rows["time"], rows["time"][1:])]
+            impulse[scheme] = sum(dt * force for dt, force in zip(steps, rows["body_0_force_x"][1:]))
+        self.assertAlmostEqual(1, impulse[SCHEMES[0]] / impulse[SCHEMES[2]], delta=0.02)
+        noted = self.start(self.write(VISCOUS), "--check", sets=[flow(SCHEMES[0]), "run.dt=0.004"])
+        self.assertEqual(0, noted.returncode)
+        self.assertIn("run.dt = 0.004 s: viscosity spreads", noted.stderr)
 
     def test_implicit_diffusion_begins_anew_with_late_motion(self):
         # Nothing moves before t = 0.3 s, when a wall, or a cylinder, does at once.

@@ -1,4 +1,4 @@
-"""docs/examples/perf-regression.yml: the steps of the workflow, run by bash beside two trees whose builds are imitated."""
+"""examples/perf-regression.yml: the steps of the workflow, run by bash beside two trees whose builds are imitated."""
 
 import json
 import os
@@ -13,7 +13,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 import perf_program
 
 SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
-WORKFLOW = (SOURCE / "docs/examples/perf-regression.yml").read_text(encoding="utf-8")
+WORKFLOW = (SOURCE / "examples/perf-regression.yml").read_text(encoding="utf-8")
 # Measures as a tree whose steps take so long; all else is done by the program of this build.
 PERF = f"""#!/bin/sh
 case "$1" in

@@ -3,6 +3,7 @@
 #include "kernels/coupling/grid_transfer.hpp"
 #include "kernels/coupling/sharp/crossings.hpp"
 #include "kernels/coupling/sheet/closing_sheets.hpp"
+#include "kernels/device/backend_list.hpp"
 #include "kernels/device/relaxed_access.hpp"
 #include "kernels/fabric/surface/surface.hpp"
 #include "kernels/stepping/status.hpp"
@@ -24,7 +25,7 @@ struct SharpSheetViews {
   FaceArrays<const double> velocity, acceleration;  ///< of the air, m/s and m/s^2
   FaceArrays<int> count;                            ///< crossings at each face; zero between steps
   FaceArrays<FixedPoint> sums;                      ///< impulses per area; zero between steps
-  FaceArrays<double> density;                       ///< force on the air, N/m^3
+  FaceArrays<double> force_density;                 ///< force on the air, N/m^3
   ClosingSheetViews<ExecutionSpace> closing;
   FaceArrays<double> foretold;  ///< force of closing sheets on the air, N/m^3; zero between steps
   GridAxes axes;
@@ -48,18 +49,20 @@ struct SharpSheetViews {
       const double air = velocity.at(d, at.face) + dt * acceleration.at(d, at.face);
       // Flow through the sheet is along its normal: its component along the axis is this part of it.
       const double part = Kokkos::fabs(along[d]) / length, sign = along[d] > 0.0 ? 1.0 : -1.0;
-      const double compliance = count.at(d, at.face) * inverse_density * axes.axis[d].inverse_spacing / part;
-      const double relative = moving - air - closing_change(vertex[0], d, count.at(d, at.face), compliance);
-      visit(at, sign * porous_impulse(law(vertex[0]), sign * relative / part, dt, compliance));
+      const double inverse_air_mass =
+          count.at(d, at.face) * inverse_density * axes.axis[d].inverse_spacing / part;
+      const double relative =
+          moving - air - closing_change(vertex[0], d, count.at(d, at.face), inverse_air_mass);
+      visit(at, sign * porous_impulse(law(vertex[0]), sign * relative / part, dt, inverse_air_mass));
     });
   }
 
   /// As for the vertices of an immersed sheet, at a face with a number of crossings. Where there are several,
   /// the filtered acceleration foretells what they change beside each other.
-  KOKKOS_FUNCTION double closing_change(int vertex, int d, int crossings, double compliance) const {
+  KOKKOS_FUNCTION double closing_change(int vertex, int d, int crossings, double inverse_air_mass) const {
     const int k = closing(vertex);
     if (k < 0 || closing.sheets(k).axis != d) return 0.0;
-    return closing.column(d) - (crossings == 1 ? compliance * closing.impulse(k) : 0.0);
+    return closing.column(d) - (crossings == 1 ? inverse_air_mass * closing.impulse(k) : 0.0);
   }
 
   /// Area of a face normal to an axis, m^2.
@@ -166,7 +169,7 @@ struct FlushSumsFunctor {
       device::relaxed_store(&s.count.at(d, at.face), 0);
       const FixedPoint taken = Kokkos::atomic_exchange(&s.sums.at(d, at.face), FixedPoint{0});
       if (taken != 0)
-        s.density.at(d, at.face) += unit * s.axes.axis[d].inverse_spacing * from_fixed_point(taken);
+        s.force_density.at(d, at.face) += unit * s.axes.axis[d].inverse_spacing * from_fixed_point(taken);
     });
   }
 };
@@ -209,7 +212,7 @@ struct SaveFacesFunctor {
 /// Updates the acceleration of the air at all faces without the force of the sheet, unless the flow failed.
 template <class ExecutionSpace, class Control>
 struct EndSharpStepFunctor {
-  FaceArrays<const double> before, after, density;
+  FaceArrays<const double> before, after, force_density;
   FaceArrays<double> acceleration;
   int faces[3][3];
   double inverse_dt, inverse_density, filter;
@@ -225,7 +228,7 @@ struct EndSharpStepFunctor {
       if (i >= faces[d][0] || j >= faces[d][1] || k >= faces[d][2]) continue;
       const FaceIndex face{index[d], index[cyclic_axis(d, 1)], index[cyclic_axis(d, 2)]};
       double present =
-          inverse_dt * (after.at(d, face) - before.at(d, face)) - inverse_density * density.at(d, face);
+          inverse_dt * (after.at(d, face) - before.at(d, face)) - inverse_density * force_density.at(d, face);
       if (closes) {
         present += inverse_density * foretold.at(d, face) - inverse_dt * closing.column(d);
         foretold.at(d, face) = 0.0;
@@ -283,31 +286,31 @@ class SharpSheet {
     launch_faces(space, "drogue::coupling::save_faces", save);
   }
 
-  /// Enqueues the forces of the sheet during dt, s: adds them to `density`, N/m^3, and stores those of the
-  /// vertices in `force`, N. `velocities`: of the vertices at the end of the step, m/s. Throws as
+  /// Enqueues the forces of the sheet during dt, s: adds them to `force_density`, N/m^3, and stores those of
+  /// the vertices in `force`, N. `velocities`: of the vertices at the end of the step, m/s. Throws as
   /// `begin_step`.
   template <class View>
-  void exchange(const ExecutionSpace& space, const Vectors& velocities, const FaceViews<View>& density,
+  void exchange(const ExecutionSpace& space, const Vectors& velocities, const FaceViews<View>& force_density,
                 const Vectors& force, double dt) const {
     const StaggeredGrid& grid = _transfer.grid;
     const int triangles = _surface.triangles();
-    const Views views{_surface,
-                      _transfer.positions,
-                      velocities,
-                      _law,
-                      _transfer.largest,
-                      _corner_force,
-                      constant(_before),
-                      constant(_acceleration),
-                      face_arrays(_transfer.window, _count),
-                      face_arrays(_transfer.window, _transfer.sums),
-                      face_arrays(_transfer.window, density),
-                      _closing.views(),
-                      face_arrays(_transfer.window, _foretold),
-                      grid_axes(grid),
-                      dt,
-                      1.0 / _density,
-                      summand_bound(3 * triangles)};
+    const Views views{.surface = _surface,
+                      .positions = _transfer.positions,
+                      .velocities = velocities,
+                      .law = _law,
+                      .largest = _transfer.largest,
+                      .corner_force = _corner_force,
+                      .velocity = constant(_before),
+                      .acceleration = constant(_acceleration),
+                      .count = face_arrays(_transfer.window, _count),
+                      .sums = face_arrays(_transfer.window, _transfer.sums),
+                      .force_density = face_arrays(_transfer.window, force_density),
+                      .closing = _closing.views(),
+                      .foretold = face_arrays(_transfer.window, _foretold),
+                      .axes = grid_axes(grid),
+                      .dt = dt,
+                      .inverse_density = 1.0 / _density,
+                      .summands = summand_bound(3 * triangles)};
     const auto launch = [&](const char* label, const auto& functor) {
       device::launch_each(space, label, triangles, functor);
     };
@@ -321,22 +324,24 @@ class SharpSheet {
   }
 
   /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, with weight
-  /// `filter` in the mean. `density`, N/m^3, holds the forces of the sheet alone; `control`: of the flow.
-  /// Throws as `begin_step`.
+  /// `filter` in the mean. `force_density`, N/m^3, holds the forces of the sheet alone; `control`: of the
+  /// flow. Throws as `begin_step`.
   template <class View, class Control>
-  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
-                double dt, double filter, const Control& control) const {
-    EndSharpStepFunctor<ExecutionSpace, Control> end{constant(_before),
-                                                     constant(velocity),
-                                                     constant(density),
-                                                     face_arrays(_transfer.window, _acceleration),
-                                                     {},
-                                                     1.0 / dt,
-                                                     1.0 / _density,
-                                                     filter,
-                                                     control,
-                                                     face_arrays(_transfer.window, _foretold),
-                                                     _closing.views()};
+  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity,
+                const FaceViews<View>& force_density, double dt, double filter,
+                const Control& control) const {
+    EndSharpStepFunctor<ExecutionSpace, Control> end{
+        .before = constant(_before),
+        .after = constant(velocity),
+        .force_density = constant(force_density),
+        .acceleration = face_arrays(_transfer.window, _acceleration),
+        .faces = {},
+        .inverse_dt = 1.0 / dt,
+        .inverse_density = 1.0 / _density,
+        .filter = filter,
+        .control = control,
+        .foretold = face_arrays(_transfer.window, _foretold),
+        .closing = _closing.views()};
     launch_faces(space, "drogue::coupling::end_sharp_step", end);
   }
 
@@ -385,5 +390,7 @@ class SharpSheet {
   Faces<double> _before, _acceleration, _foretold;
   ClosingSheets<ExecutionSpace> _closing;
 };
+
+DROGUE_EXTERN_INSTANCES(class SharpSheet)
 
 }  // namespace drogue::coupling

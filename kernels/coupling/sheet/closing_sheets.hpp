@@ -142,11 +142,13 @@ class ClosingSheets {
   /// the vertices. Blocks. Throws std::invalid_argument for sheets out of range.
   ClosingSheets(const ExecutionSpace& space, const std::vector<ClosingSheet>& sheets,
                 const Kokkos::View<PorousLaw*, Memory>& law, std::span<const std::array<int, 3>> corners)
-      : _views{Kokkos::View<ClosingSheet*, Memory>("drogue::coupling::closing_sheets", sheets.size()), law,
-               Kokkos::View<int*, Memory>("drogue::coupling::closing_sheet_of",
-                                          sheets.empty() ? 0 : law.extent(0)),
-               Kokkos::View<double*, Memory>("drogue::coupling::closing_impulse", sheets.size()),
-               Kokkos::View<double[3], Memory>("drogue::coupling::closing_column")},
+      : _views{.sheets =
+                   Kokkos::View<ClosingSheet*, Memory>("drogue::coupling::closing_sheets", sheets.size()),
+               .law = law,
+               .sheet_of = Kokkos::View<int*, Memory>("drogue::coupling::closing_sheet_of",
+                                                      sheets.empty() ? 0 : law.extent(0)),
+               .impulse = Kokkos::View<double*, Memory>("drogue::coupling::closing_impulse", sheets.size()),
+               .column = Kokkos::View<double[3], Memory>("drogue::coupling::closing_column")},
         _relative("drogue::coupling::closing_velocity", sheets.size()) {
     if (sheets.empty()) return;
     const auto host_sheets = Kokkos::create_mirror_view(_views.sheets);
@@ -192,8 +194,10 @@ class ClosingSheets {
     device::launch_each(
         space, "drogue::coupling::add_closing_chunks", static_cast<int>(_chunks.extent(0)),
         AddClosingChunksFunctor<ExecutionSpace, Velocity>{velocity, _views.sheets, _chunks, _means});
-    device::launch_each(space, "drogue::coupling::foretell_impulses", 1,
-                        ForetellImpulsesFunctor<ExecutionSpace>{_views, _chunks, _means, _relative, dt});
+    device::launch_each(
+        space, "drogue::coupling::foretell_impulses", 1,
+        ForetellImpulsesFunctor<ExecutionSpace>{
+            .views = _views, .chunks = _chunks, .means = _means, .relative = _relative, .dt = dt});
   }
 
  private:

@@ -21,6 +21,10 @@
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
 
+namespace drogue::fabric {
+DROGUE_EXTERN_INSTANCES(class FabricSolver, coupling::AirRelaxation)
+}  // namespace drogue::fabric
+
 namespace drogue::coupling {
 
 /// Step of the flow at whose beginning the cloth was saved.
@@ -129,7 +133,7 @@ class CoupledSolver {
   CoupledSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
                 const linear::RankGroup& group = {})
       : _space(instance.space()),
-        _parameters(completed(parameters)),
+        _parameters(with_coupling_settings(parameters)),
         _group(group),
         _flow(instance, _parameters.flow, group),
         _sheet(_space, flow::coupling_grid(_flow.grid()), _parameters.fabric, _parameters.sheet,
@@ -191,7 +195,7 @@ class CoupledSolver {
   }
 
  private:
-  static Parameters completed(Parameters p) {
+  static Parameters with_coupling_settings(Parameters p) {
     if (!(p.flow.fixed_dt > 0.0 || p.flow.max_dt > 0.0))
       throw std::invalid_argument("coupled solver: either fixed_dt or max_dt must be positive");
     p.fabric.integrator = fabric::Integrator::symplectic_euler;
@@ -436,26 +440,38 @@ void CoupledSolver<ExecutionSpace>::adapt_batch(std::int64_t steps, const device
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
   const auto velocity = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.velocity()),
-             density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
+             force_density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
   // Not before: the pressure of an output contains the forces of the last step.
-  clear_spread(_space, _sheet.transfer(), density);
-  device::launch_each(
-      _space, "drogue::coupling::save_cloth", _fabric.vertices(),
-      SaveClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.state(), _sheet.acceleration(),
-                                       _sheet.defect(), _sheet.force(), _sheet.transfer().positions,
-                                       _saved_positions, _saved_velocities, _saved_acceleration,
-                                       _saved_defect, _saved_force, _saved_places});
+  clear_spread(_space, _sheet.transfer(), force_density);
+  device::launch_each(_space, "drogue::coupling::save_cloth", _fabric.vertices(),
+                      SaveClothFunctor<ExecutionSpace>{.control = _flow.control(),
+                                                       .saved_step = _saved_step,
+                                                       .cloth = _fabric.state(),
+                                                       .acceleration = _sheet.acceleration(),
+                                                       .defect = _sheet.defect(),
+                                                       .force = _sheet.force(),
+                                                       .places = _sheet.transfer().positions,
+                                                       .saved_positions = _saved_positions,
+                                                       .saved_velocities = _saved_velocities,
+                                                       .saved_acceleration = _saved_acceleration,
+                                                       .saved_defect = _saved_defect,
+                                                       .saved_force = _saved_force,
+                                                       .saved_places = _saved_places});
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
-  _sheet.spread_forces(_space, _fabric.state(), density, dt);
+  _sheet.spread_forces(_space, _fabric.state(), force_density, dt);
   _strength.check(_space, _fabric.state().positions);
-  device::launch_each(
-      _space, "drogue::coupling::check_cloth", 1,
-      CheckClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.monitor(), _sheet.transfer(),
-                                        _reason, _strength.broken(), _strength.failed()});
+  device::launch_each(_space, "drogue::coupling::check_cloth", 1,
+                      CheckClothFunctor<ExecutionSpace>{.control = _flow.control(),
+                                                        .saved_step = _saved_step,
+                                                        .cloth = _fabric.monitor(),
+                                                        .transfer = _sheet.transfer(),
+                                                        .reason = _reason,
+                                                        .broken_line = _strength.broken(),
+                                                        .failed_line = _strength.failed()});
   _flow.enqueue_step();
   record_pulls();
-  _sheet.end_step(_space, velocity, density, dt, is_first, _flow.control());
+  _sheet.end_step(_space, velocity, force_density, dt, is_first, _flow.control());
 }
 
 /// True if the state at the beginning of a batch of steps is not finite, say by prescribed motion: it would
@@ -500,11 +516,11 @@ void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& no
   Kokkos::deep_copy(_space, _sheet.acceleration(), _saved_acceleration);
   Kokkos::deep_copy(_space, _sheet.defect(), _saved_defect);
   _sheet.update_acceleration(_space);
-  const auto density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
-  clear_spread(_space, _sheet.transfer(), density);
+  const auto force_density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
+  clear_spread(_space, _sheet.transfer(), force_density);
   Kokkos::deep_copy(_space, _sheet.force(), _saved_force);
   Kokkos::deep_copy(_space, _sheet.transfer().positions, _saved_places);
-  spread(_space, _sheet.transfer(), _sheet.force(), density);
+  spread(_space, _sheet.transfer(), _sheet.force(), force_density);
   _space.fence("drogue::coupling::return_to_last_step");
 }
 

@@ -79,7 +79,12 @@ class EdgeInset {
                   const fabric::PointsView<ExecutionSpace>& points) const {
     if (_points == 0) return;
     device::launch_each(space, "drogue::coupling::inset_edges", _points,
-                        EdgeInsetFunctor<ExecutionSpace>{_vertex, _corner, _weight, cloth, time, points});
+                        EdgeInsetFunctor<ExecutionSpace>{.vertex = _vertex,
+                                                         .corner = _corner,
+                                                         .weight = _weight,
+                                                         .cloth = cloth,
+                                                         .time = time,
+                                                         .points = points});
   }
 
  private:

@@ -16,20 +16,21 @@
 #include "kernels/coupling/sheet/local_air.hpp"
 #include "kernels/coupling/sheet/parameters.hpp"
 #include "kernels/coupling/spread.hpp"
+#include "kernels/device/backend_list.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/surface/surface.hpp"
 
 namespace drogue::coupling {
 
 /// Change of the velocity beside vertex i that the foretold impulses of closing sheets make in the whole
-/// channel, less the part that the copy of the air, of inverse masses `response`, takes by itself, m/s.
+/// channel, less the part that the copy of the air, of inverse masses `inverse_air`, takes by itself, m/s.
 template <class ExecutionSpace>
 KOKKOS_FUNCTION spatial::Point closing_change(const ClosingSheetViews<ExecutionSpace>& closing,
-                                              const spatial::Point& response, int i) {
+                                              const spatial::Point& inverse_air, int i) {
   const int k = closing(i);
   if (k < 0) return {0.0, 0.0, 0.0};
   const int axis = closing.sheets(k).axis;
-  const double of_copy = dot(response, along_axis(axis, closing.impulse(k)));
+  const double of_copy = dot(inverse_air, along_axis(axis, closing.impulse(k)));
   return along_axis(axis, closing.column(axis) - of_copy);
 }
 
@@ -83,12 +84,13 @@ struct ClosingImpulseFunctor {
     const LocalAir<ExecutionSpace>& air = velocity.air;
     if (closing(i) < 0 || !(air.area(i) > 0.0)) return;
     const spatial::Point n = spatial::load_vector(air.normal, i),
-                         response = spatial::load_vector(air.compliance, i),
-                         w = velocity.at(i) - closing_change(closing, response, i);
+                         inverse_air = spatial::load_vector(air.inverse_air_mass, i),
+                         w = velocity.at(i) - closing_change(closing, inverse_air, i);
     if (air.is_no_slip(i))
-      spatial::store_vector(air.no_slip_impulse, i, no_slip_impulse(air.law(i), n, w, velocity.dt, response));
+      spatial::store_vector(air.no_slip_impulse, i,
+                            no_slip_impulse(air.law(i), n, w, velocity.dt, inverse_air));
     else
-      air.impulse(i) = porous_impulse(air.law(i), dot(w, n), velocity.dt, dot(n, product(response, n)));
+      air.impulse(i) = porous_impulse(air.law(i), dot(w, n), velocity.dt, dot(n, product(inverse_air, n)));
   }
 };
 
@@ -139,15 +141,16 @@ struct EndSheetStepFunctor {
   KOKKOS_FUNCTION void operator()(const int i) const {
     using spatial::load_vector;
     const spatial::Point by_sheet = inverse_density * load_vector(interpolated_force, i),
-                         present = inverse_dt * (load_vector(after, i) - load_vector(air.before, i) -
-                                                 closing_change(closing, load_vector(air.compliance, i), i)) -
-                                   by_sheet,
+                         present =
+                             inverse_dt * (load_vector(after, i) - load_vector(air.before, i) -
+                                           closing_change(closing, load_vector(air.inverse_air_mass, i), i)) -
+                             by_sheet,
                          mean = load_vector(filtered.mean, i);
     spatial::store_vector(filtered.mean, i, mean + filter * (present - mean));
     if (filtered.defect.extent(0) == 0) return;
     const spatial::Point impulse = air.is_no_slip(i) ? load_vector(air.no_slip_impulse, i)
                                                      : air.impulse(i) * load_vector(air.normal, i),
-                         of_copy = inverse_dt * product(load_vector(air.compliance, i), impulse),
+                         of_copy = inverse_dt * product(load_vector(air.inverse_air_mass, i), impulse),
                          defect = load_vector(filtered.defect, i);
     spatial::store_vector(filtered.defect, i, defect + defect_filter * (by_sheet - of_copy - defect));
     filtered(i);
@@ -184,21 +187,22 @@ class ImmersedSheet {
       : _parameters((check_parameters(parameters, density), parameters)),
         _density(density),
         _surface(space, cloth.mesh),
-        _transfer(space, grid, parameters.kernel, _surface.vertices(), own_faces),
+        _transfer(space, grid, parameters.delta, _surface.vertices(), own_faces),
         _inset(space, cloth.mesh, grid, parameters.edge_inset),
         _rank_sum(group, rows(), 2),
-        _air{scalars("drogue::coupling::area"),
-             vectors("drogue::coupling::normal"),
-             vectors("drogue::coupling::compliance"),
-             vectors("drogue::coupling::velocity_before"),
-             vectors("drogue::coupling::acceleration"),
-             vectors("drogue::coupling::inverse_mass"),
-             vectors("drogue::coupling::local_velocity"),
-             scalars("drogue::coupling::impulse"),
-             Vectors("drogue::coupling::no_slip_impulse", has_no_slip(parameters) ? rows() : 0),
-             Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::porosity",
-                                                                             rows()),
-             Vectors()},
+        _air{.area = scalars("drogue::coupling::area"),
+             .normal = vectors("drogue::coupling::normal"),
+             .inverse_air_mass = vectors("drogue::coupling::inverse_air_mass"),
+             .before = vectors("drogue::coupling::velocity_before"),
+             .acceleration = vectors("drogue::coupling::acceleration"),
+             .inverse_cloth_mass = vectors("drogue::coupling::inverse_mass"),
+             .velocity = vectors("drogue::coupling::local_velocity"),
+             .impulse = scalars("drogue::coupling::impulse"),
+             .no_slip_impulse =
+                 Vectors("drogue::coupling::no_slip_impulse", has_no_slip(parameters) ? rows() : 0),
+             .law = Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>(
+                 "drogue::coupling::porosity", rows()),
+             .last_force = Vectors()},
         _filtered{_air.acceleration, Vectors(), _air.acceleration},
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
@@ -267,19 +271,19 @@ class ImmersedSheet {
     if (_sharp) return _sharp->begin_step(space, velocity);
     fabric::vertex_geometry(space, _surface, _transfer.positions, _air.area, _air.normal);
     _inset(space, cloth, 0.5 * dt, _transfer.positions);
-    spread_row_sums(space, _transfer, _air.area, _density, _air.compliance);
+    spread_row_sums(space, _transfer, _air.area, _density, _air.inverse_air_mass);
     interpolate(space, _transfer, velocity, _air.before);
-    _rank_sum(space, {_air.compliance, _air.before});
+    _rank_sum(space, {_air.inverse_air_mass, _air.before});
     device::launch_each(space, "drogue::coupling::begin_sheet_step", _transfer.points,
                         BeginSheetStepFunctor<ExecutionSpace>{_air});
   }
 
-  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `density`, N/m^3. `cloth`:
-  /// after its steps. Throws as `begin_step`.
+  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `force_density`, N/m^3.
+  /// `cloth`: after its steps. Throws as `begin_step`.
   template <class View>
   void spread_forces(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
-                     const FaceViews<View>& density, double dt) const {
-    if (_sharp) return _sharp->exchange(space, cloth.velocities, density, _force, dt);
+                     const FaceViews<View>& force_density, double dt) const {
+    if (_sharp) return _sharp->exchange(space, cloth.velocities, force_density, _force, dt);
     if (_air.is_explicit())
       device::launch_each(space, "drogue::coupling::impose_velocity", _transfer.points,
                           ImposeVelocityFunctor<ExecutionSpace>{_air, cloth.velocities, dt});
@@ -291,24 +295,31 @@ class ImmersedSheet {
     }
     device::launch_each(space, "drogue::coupling::sheet_force", _transfer.points,
                         SheetForceFunctor<ExecutionSpace>{_air, _force, 1.0 / dt});
-    spread(space, _transfer, _force, density);
+    spread(space, _transfer, _force, force_density);
   }
 
   /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, under the forces
-  /// of the sheet alone in `density`, N/m^3. `is_first`: no step precedes this one; `control`: of the flow.
-  /// Throws as `begin_step`.
+  /// of the sheet alone in `force_density`, N/m^3. `is_first`: no step precedes this one; `control`: of the
+  /// flow. Throws as `begin_step`.
   template <class View, class Control>
-  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
-                double dt, bool is_first, const Control& control) const {
+  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity,
+                const FaceViews<View>& force_density, double dt, bool is_first,
+                const Control& control) const {
     const double filter = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
-    if (_sharp) return _sharp->end_step(space, velocity, density, dt, filter, control);
+    if (_sharp) return _sharp->end_step(space, velocity, force_density, dt, filter, control);
     interpolate(space, _transfer, velocity, _after);
-    interpolate(space, _transfer, density, _interpolated_force);
+    interpolate(space, _transfer, force_density, _interpolated_force);
     _rank_sum(space, {_after, _interpolated_force});
-    device::launch_each(
-        space, "drogue::coupling::end_sheet_step", _transfer.points,
-        EndSheetStepFunctor<ExecutionSpace>{_air, _filtered, _after, _interpolated_force, _closing->views(),
-                                            1.0 / dt, 1.0 / _density, filter, _parameters.defect_filter});
+    device::launch_each(space, "drogue::coupling::end_sheet_step", _transfer.points,
+                        EndSheetStepFunctor<ExecutionSpace>{.air = _air,
+                                                            .filtered = _filtered,
+                                                            .after = _after,
+                                                            .interpolated_force = _interpolated_force,
+                                                            .closing = _closing->views(),
+                                                            .inverse_dt = 1.0 / dt,
+                                                            .inverse_density = 1.0 / _density,
+                                                            .filter = filter,
+                                                            .defect_filter = _parameters.defect_filter});
   }
 
   /// Enqueues the velocity of the flow, m/s, interpolated to where the vertices at their present positions
@@ -364,7 +375,7 @@ class ImmersedSheet {
   [[nodiscard]] Vectors vectors(const std::string& label) const { return Vectors(label, rows()); }
 
   void copy_inverse_masses(const ExecutionSpace& space, const fabric::Parameters& cloth) const {
-    const auto mirror = Kokkos::create_mirror_view(_air.inverse_mass);
+    const auto mirror = Kokkos::create_mirror_view(_air.inverse_cloth_mass);
     for (std::size_t i = 0; i < rows(); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const bool is_pinned = !cloth.pinned.empty() && (cloth.pinned[i] >> axis & 1U) != 0U;
@@ -377,7 +388,7 @@ class ImmersedSheet {
         for (std::size_t axis = 0; axis < 3; ++axis)
           if (_parameters.method == CouplingMethod::sharp && mirror(static_cast<std::size_t>(i), axis) > 0.0)
             throw std::invalid_argument("immersed sheet: a sharp sheet needs prescribed motion");
-    Kokkos::deep_copy(space, _air.inverse_mass, mirror);
+    Kokkos::deep_copy(space, _air.inverse_cloth_mass, mirror);
     space.fence("drogue::coupling::immersed_sheet");
   }
 
@@ -405,5 +416,7 @@ class ImmersedSheet {
   std::optional<ClosingSheets<ExecutionSpace>> _closing;  ///< never empty
   std::optional<SharpSheet<ExecutionSpace>> _sharp;
 };
+
+DROGUE_EXTERN_INSTANCES(class ImmersedSheet)
 
 }  // namespace drogue::coupling

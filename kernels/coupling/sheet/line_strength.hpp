@@ -66,12 +66,12 @@ class LineStrength {
       length.push_back(mesh::rest_length(mesh, k));
       strength.push_back(p.line_strength[k]);
     }
-    _lines = {fabric::list_view(space, "drogue::coupling::limited_lines", number),
-              fabric::table_view(space, "drogue::coupling::limited_ends", ends),
-              fabric::list_view(space, "drogue::coupling::limited_stiffness", strength),
-              fabric::list_view(space, "drogue::coupling::limited_length", length),
-              fabric::list_view(space, "drogue::coupling::line_strength", strength),
-              _broken};
+    _lines = {.number = fabric::list_view(space, "drogue::coupling::limited_lines", number),
+              .ends = fabric::table_view(space, "drogue::coupling::limited_ends", ends),
+              .stiffness = fabric::list_view(space, "drogue::coupling::limited_stiffness", strength),
+              .length = fabric::list_view(space, "drogue::coupling::limited_length", length),
+              .strength = fabric::list_view(space, "drogue::coupling::line_strength", strength),
+              .broken = _broken};
     _numbers = number;
     reset(space);
   }

@@ -14,12 +14,12 @@ struct LocalAir {
   using Vectors = Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory>;
 
   // Constant during the steps of the cloth in one step of the flow.
-  Scalars area;          ///< m^2
-  Vectors normal;        ///< of unit length
-  Vectors compliance;    ///< change of the local velocity per impulse per area, m^2/kg: `spread_row_sums`
-  Vectors before;        ///< velocity at the beginning of the step of the flow, m/s
-  Vectors acceleration;  ///< of the copies of the air beside the force of the sheet, m/s^2
-  Vectors inverse_mass;  ///< of the cloth along each axis, 1/kg; zero along pinned axes
+  Scalars area;              ///< m^2
+  Vectors normal;            ///< of unit length
+  Vectors inverse_air_mass;  ///< change of the local velocity per impulse per area, m^2/kg: `spread_row_sums`
+  Vectors before;            ///< velocity at the beginning of the step of the flow, m/s
+  Vectors acceleration;      ///< of the copies of the air beside the force of the sheet, m/s^2
+  Vectors inverse_cloth_mass;  ///< along each axis, 1/kg; zero along pinned axes
 
   // Changed by each step of the cloth.
   Vectors velocity;  ///< local velocity, m/s
@@ -40,27 +40,27 @@ struct LocalAir {
   KOKKOS_FUNCTION bool is_explicit() const { return last_force.extent(0) > 0; }
 
   /// Velocity, m/s, of vertex i with area after it and the air beside it have relaxed against each other
-  /// during dt, s. `mobility`: its inverse mass along each axis, 1/kg. Updates the local velocity and the
+  /// during dt, s. `inverse_mass`: of the vertex along each axis, 1/kg. Updates the local velocity and the
   /// impulse of the vertex.
-  KOKKOS_FUNCTION spatial::Point relax(int i, const spatial::Point& of_vertex, const spatial::Point& mobility,
-                                       double dt) const {
+  KOKKOS_FUNCTION spatial::Point relax(int i, const spatial::Point& of_vertex,
+                                       const spatial::Point& inverse_mass, double dt) const {
     using spatial::load_vector;
-    const spatial::Point n = load_vector(normal, i), response = load_vector(compliance, i),
+    const spatial::Point n = load_vector(normal, i), inverse_air = load_vector(inverse_air_mass, i),
                          now = load_vector(velocity, i) + dt * load_vector(acceleration, i);
     const double size = area(i);
     if (is_no_slip(i)) {
       const spatial::Point each =
-          coupling::no_slip_impulse(law(i), n, of_vertex - now, dt, size * mobility + response);
-      spatial::store_vector(velocity, i, now + product(response, each));
+          coupling::no_slip_impulse(law(i), n, of_vertex - now, dt, size * inverse_mass + inverse_air);
+      spatial::store_vector(velocity, i, now + product(inverse_air, each));
       spatial::store_vector(no_slip_impulse, i, load_vector(no_slip_impulse, i) + each);
-      return of_vertex - size * product(mobility, each);
+      return of_vertex - size * product(inverse_mass, each);
     }
     const auto scaled = [&](const spatial::Point& by) { return product(by, n); };
-    const double of_cloth = size * dot(n, scaled(mobility)), of_air = dot(n, scaled(response));
-    const double given = porous_impulse(law(i), dot(of_vertex - now, n), dt, of_cloth + of_air);
-    spatial::store_vector(velocity, i, now + given * scaled(response));
-    impulse(i) += given;
-    return of_vertex - (given * size) * scaled(mobility);
+    const double of_cloth = size * dot(n, scaled(inverse_mass)), of_air = dot(n, scaled(inverse_air));
+    const double normal_impulse = porous_impulse(law(i), dot(of_vertex - now, n), dt, of_cloth + of_air);
+    spatial::store_vector(velocity, i, now + normal_impulse * scaled(inverse_air));
+    impulse(i) += normal_impulse;
+    return of_vertex - (normal_impulse * size) * scaled(inverse_mass);
   }
 };
 
@@ -75,10 +75,10 @@ struct AirRelaxation {
   /// and the impulse of the vertex unless the coupling is explicit.
   KOKKOS_FUNCTION fabric::Vector3<double> relaxed_velocity(const fabric::VertexStage& at) const {
     if (!(air.area(at.vertex) > 0.0)) return at.velocity;
-    const spatial::Point mobility = spatial::load_vector(air.inverse_mass, at.vertex);
+    const spatial::Point inverse_mass = spatial::load_vector(air.inverse_cloth_mass, at.vertex);
     if (air.is_explicit())
-      return at.velocity - at.dt * product(mobility, spatial::load_vector(air.last_force, at.vertex));
-    return air.relax(at.vertex, at.velocity, mobility, at.dt);
+      return at.velocity - at.dt * product(inverse_mass, spatial::load_vector(air.last_force, at.vertex));
+    return air.relax(at.vertex, at.velocity, inverse_mass, at.dt);
   }
 };
 

@@ -41,7 +41,7 @@ struct ClosingSheet {
 
 /// Parameters of the exchange between a sheet and the air.
 struct SheetParameters {
-  DeltaKernel kernel = DeltaKernel::cbs43;
+  DeltaFunction delta = DeltaFunction::cbs43;
   PorousLaw law;
   std::vector<PorousLaw> law_of_vertex;  ///< one per vertex, or empty: `law` for all
   /// Weight of the present step in the running mean of the acceleration of the air, 0 to 1. With 0 for this
@@ -54,7 +54,7 @@ struct SheetParameters {
   /// alone.
   double defect_filter = 0.0;
   /// Cells by which free edges lie farther inwards where the sheet exchanges forces with the air, 0 to 1:
-  /// `EdgeInset`. With `DeltaKernel::cbs43`, 0.55 takes most of the error of drag away, which is of first
+  /// `EdgeInset`. With `DeltaFunction::cbs43`, 0.55 takes most of the error of drag away, which is of first
   /// order in the cells with 0. Not for `CouplingMethod::sharp`.
   double edge_inset = 0.0;
   CouplingMethod method = CouplingMethod::spread;

@@ -114,7 +114,7 @@ struct ResetKickFunctor {
   ListView<ExecutionSpace, ContactWork> work;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    work(i) = {work(i).normal, work(i).friction, 0.0, 0.0, 0.0};
+    work(i) = {.normal = work(i).normal, .friction = work(i).friction};
   }
 };
 

@@ -21,7 +21,12 @@ struct Obstacle {
 
 [[nodiscard]] inline Obstacle obstacle(const Body& body) {
   const auto point = [](const Vector& a) { return Point{a[0], a[1], a[2]}; };
-  return {body.kind, point(body.centre), point(body.normal), body.radius, body.friction, body.level_set};
+  return {.kind = body.kind,
+          .centre = point(body.centre),
+          .normal = point(body.normal),
+          .radius = body.radius,
+          .friction = body.friction,
+          .level_set = body.level_set};
 }
 
 /// Distance of a point from a body, m, negative inside, and the outward unit vector.

@@ -141,18 +141,18 @@ BendingAdjacency bending_adjacency(const Mesh& mesh, double stiffness) {
   return sliced(of_vertex);
 }
 
-std::vector<Vector> rest_pull(const Mesh& mesh, const Material& material) {
+std::vector<Vector> rest_forces(const Mesh& mesh, const Material& material) {
   if (material.model != Model::linear_vector) return {};
-  std::vector<Vector> pull(mesh.rest.size(), Vector{});
+  std::vector<Vector> forces(mesh.rest.size(), Vector{});
   for (const auto& edge : triangle_edges(mesh)) {
     const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double force = material.stiffness * (mesh.rest[j][axis] - mesh.rest[i][axis]);
-      pull[i][axis] -= force;
-      pull[j][axis] += force;
+      forces[i][axis] -= force;
+      forces[j][axis] += force;
     }
   }
-  return pull;
+  return forces;
 }
 
 }  // namespace drogue::fabric

@@ -22,7 +22,7 @@ using DashpotAdjacency = SlicedEll<1>;
 [[nodiscard]] RingAdjacency ring_adjacency(const Mesh& mesh);
 
 /// Springs along lines and, in models without whole triangles, along the edges of triangles, each edge once.
-/// A spring of Model::linear_vector has length zero and a dead force, `rest_pull`. Throws only
+/// A spring of Model::linear_vector has length zero and a dead force, `rest_forces`. Throws only
 /// std::bad_alloc.
 [[nodiscard]] SpringAdjacency spring_adjacency(const Mesh& mesh, const Material& material);
 
@@ -43,6 +43,6 @@ using BendingAdjacency = SlicedEll<1>;
 
 /// Dead force -sum k (X_j - X_i) of the springs of every vertex, N, for Model::linear_vector; empty for other
 /// models. Throws only std::bad_alloc.
-[[nodiscard]] std::vector<Vector> rest_pull(const Mesh& mesh, const Material& material);
+[[nodiscard]] std::vector<Vector> rest_forces(const Mesh& mesh, const Material& material);
 
 }  // namespace drogue::fabric

@@ -66,11 +66,11 @@ struct FrequencyFunctor {
   KOKKOS_FUNCTION double row_sum(const int i) const {
     double diagonal[3][3] = {};
     double sum = 0.0;
-    // `pull(axis)` is the force on i while vertex j moves along the axis.
-    const auto add = [&](int j, const auto& pull) {
+    // `force_for(axis)` is the force on i while vertex j moves along the axis.
+    const auto add = [&](int j, const auto& force_for) {
       double block[3][3];
       for (int axis = 0; axis < 3; ++axis) {
-        const Vector3<Dual> p = pull(axis);
+        const Vector3<Dual> p = force_for(axis);
         const double change[3] = {p.x.derivative, p.y.derivative, p.z.derivative};
         for (int r = 0; r < 3; ++r) {
           // Forces are invariant under translations: the diagonal block is minus the sum of the others.
@@ -90,13 +90,13 @@ struct FrequencyFunctor {
             const RestTriangle<Dual> rest{{products.jj, products.jk, products.kk}, at_rest.inverse_area};
             const Vector3<double> third = k.to - j.to;
             const bool vanishes = j.squared == 0.0 || k.squared == 0.0 || dot(third, third) == 0.0;
-            const auto pull = [&](const EdgeVector<Dual>& to_j, const EdgeVector<Dual>& to_k) {
-              return vanishes ? triangle_pull<ConstitutiveModel{Model::biquadratic}>(fabric.moduli, to_j,
-                                                                                     to_k, rest)
-                              : triangle_pull<model>(fabric.moduli, to_j, to_k, rest);
+            const auto force_of = [&](const EdgeVector<Dual>& to_j, const EdgeVector<Dual>& to_k) {
+              return vanishes ? triangle_force<ConstitutiveModel{Model::biquadratic}>(fabric.moduli, to_j,
+                                                                                      to_k, rest)
+                              : triangle_force<model>(fabric.moduli, to_j, to_k, rest);
             };
-            add(j.neighbour, [&](int axis) { return pull(along(j, axis), along(k, -1)); });
-            add(k.neighbour, [&](int axis) { return pull(along(j, -1), along(k, axis)); });
+            add(j.neighbour, [&](int axis) { return force_of(along(j, axis), along(k, -1)); });
+            add(k.neighbour, [&](int axis) { return force_of(along(j, -1), along(k, axis)); });
           });
     fabric.springs.each(i, [&](int slot) {
       const int j = fabric.springs.neighbour(slot);
@@ -105,7 +105,7 @@ struct FrequencyFunctor {
       const bool vanishes = dot(edge, edge) == 0.0;
       add(j, [&](int axis) {
         return vanishes ? stiffness * along(edge, axis)
-                        : spring_pull<model>(stiffness, rest, along(edge, axis));
+                        : spring_force<model>(stiffness, rest, along(edge, axis));
       });
     });
     return sum + spectral_norm_bound(diagonal);

@@ -50,7 +50,12 @@ class StressEvaluator {
       Kokkos::parallel_for(
           "drogue::fabric::stress",
           Kokkos::RangePolicy<ExecutionSpace>(space, 0, static_cast<int>(p.mesh.triangles.size())),
-          StressFunctor<ExecutionSpace, model>{*_triangles, x, moduli, measure, to, tensor});
+          StressFunctor<ExecutionSpace, model>{.triangles = *_triangles,
+                                               .x = x,
+                                               .moduli = moduli,
+                                               .measure = measure,
+                                               .out = to,
+                                               .tensor = tensor});
     });
   }
 

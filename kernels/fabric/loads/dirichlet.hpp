@@ -28,10 +28,11 @@ template <class ExecutionSpace>
     }
     displacement.push_back(motion.displacement);
   }
-  return {rest, make_programs(space, displacement),
-          list_view(space, "drogue::fabric::dirichlet_vertices", vertex),
-          list_view(space, "drogue::fabric::dirichlet_axes", axis),
-          list_view(space, "drogue::fabric::dirichlet_programs", program)};
+  return {.rest = rest,
+          .displacement = make_programs(space, displacement),
+          .vertex = list_view(space, "drogue::fabric::dirichlet_vertices", vertex),
+          .axis = list_view(space, "drogue::fabric::dirichlet_axes", axis),
+          .program = list_view(space, "drogue::fabric::dirichlet_programs", program)};
 }
 
 /// Applies Dirichlet conditions: sets positions and their velocities, from central differences of fourth

@@ -19,13 +19,10 @@ struct External {
   Kokkos::View<double** [3], Kokkos::LayoutLeft, Memory> direction;  ///< (vertices, loads, 3), N
   ProgramsView<ExecutionSpace> pressure;                             ///< strengths of pressures, Pa
   Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;         ///< (vertices, pressures)
-  ListView<ExecutionSpace, double> pressure_values;                  ///< (vertices), Pa, set by the caller
   SlicedEllViews<ExecutionSpace, 3> surface;                         ///< rings; their values are not read
   SlicedEllViews<ExecutionSpace, 1> dashpots, bending;
 
-  [[nodiscard]] KOKKOS_FUNCTION bool has_pressure() const {
-    return pressure.extent(0) > 0 || pressure_values.extent(0) > 0;
-  }
+  [[nodiscard]] KOKKOS_FUNCTION bool has_pressure() const { return pressure.extent(0) > 0; }
 
   /// `sum`, N, and the timed loads on vertex i, at rest at `at_rest`, m, at time `t`, s.
   KOKKOS_INLINE_FUNCTION Vector3<double> with_timed_loads(Vector3<double> sum, int i,
@@ -42,7 +39,6 @@ struct External {
     double sum = 0.0;
     for (int k = 0; k < static_cast<int>(pressure.extent(0)); ++k)
       sum += weight(i, k) * device::evaluate(pressure(k), at_rest.x, at_rest.y, at_rest.z, t);
-    if (pressure_values.extent(0) > 0) sum += pressure_values(i);
     return sum;
   }
 };
@@ -64,8 +60,8 @@ KOKKOS_INLINE_FUNCTION Vector3<double> twice_area_vector(const Rings& rings, con
 
 /// Force of a dashpot, N, on the start of `edge`, m. It acts along the edge, so that the forces on both ends
 /// cancel and have no torque. `faster` is the velocity of the other end relative to this one, m/s.
-KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_pull(double dashpot, const Vector3<double>& edge,
-                                                    const Vector3<double>& faster) {
+KOKKOS_INLINE_FUNCTION Vector3<double> one_dashpot_force(double dashpot, const Vector3<double>& edge,
+                                                         const Vector3<double>& faster) {
   const double squared = dot(edge, edge);
   return (squared > 0.0 ? dashpot * dot(faster, edge) / squared : 0.0) * edge;
 }
@@ -88,7 +84,7 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlicedEllViews<Execut
         return Dashpot{dashpots.value(slot, 0), load_points<double>(x, j) - own,
                        load_points<double>(v, j) - velocity};
       },
-      [&](const Dashpot& of) { sum = sum + dashpot_pull(of.coefficient, of.edge, of.faster); });
+      [&](const Dashpot& of) { sum = sum + one_dashpot_force(of.coefficient, of.edge, of.faster); });
   return sum;
 }
 

@@ -11,9 +11,9 @@ namespace drogue::fabric {
 /// Forces that do not change with the state.
 template <class ExecutionSpace>
 struct DeadLoads {
-  PointsView<ExecutionSpace> pull;   ///< N, forces of Model::linear_vector springs at rest; may be empty
-  PointsView<ExecutionSpace> total;  ///< N, with `Parameters::load`; empty if all are zero
-  double rest_energy = 0.0;          ///< J, of these springs
+  PointsView<ExecutionSpace> rest_forces;  ///< N, of Model::linear_vector springs at rest; may be empty
+  PointsView<ExecutionSpace> total;        ///< N, with `Parameters::load`; empty if all are zero
+  double rest_energy = 0.0;                ///< J, of these springs
 };
 
 /// Blocks.
@@ -21,10 +21,10 @@ template <class ExecutionSpace>
 [[nodiscard]] DeadLoads<ExecutionSpace> make_dead_loads(const ExecutionSpace& space, const Parameters& p) {
   DeadLoads<ExecutionSpace> dead;
   const std::size_t n = p.mesh.rest.size();
-  std::vector<Vector> load = rest_pull(p.mesh, p.material);
+  std::vector<Vector> load = rest_forces(p.mesh, p.material);
   if (!load.empty()) {
-    dead.pull = make_points<ExecutionSpace>("drogue::fabric::pull", n);
-    copy_to_points<ExecutionSpace>(space, load, dead.pull);
+    dead.rest_forces = make_points<ExecutionSpace>("drogue::fabric::rest_forces", n);
+    copy_to_points<ExecutionSpace>(space, load, dead.rest_forces);
     // Sum of k (X_j - X_i)^2 / 2 over the springs.
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)

@@ -32,7 +32,7 @@ template <class ExecutionSpace>
   if (share(count) > max_ring_threads) return std::nullopt;
   const bool rings = has_triangles(p.material.model) || has_pressure;
   const Patches patches =
-      make_patches(p.mesh.rest, ring_adjacency(rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}, {}}),
+      make_patches(p.mesh.rest, ring_adjacency(rings ? p.mesh : Mesh{.rest = p.mesh.rest}),
                    spring_adjacency(p.mesh, p.material), count);
   const PatchViews<ExecutionSpace> views = patch_views(instance.space(), patches);
   const bool pairs = patches.team <= max_pair_vertices && !has_loads;
@@ -78,17 +78,17 @@ template <bool loads, class ExecutionSpace, class VertexForce>
   driver.epoch += stages * static_cast<std::uint64_t>(steps);
   PersistentLoads<ExecutionSpace, loads> load;
   if constexpr (loads) load = {in.external, in.time};
-  return {driver.patches,
-          in.fabric,
-          in.x,
-          in.v,
-          in.monitor,
-          in.time.dt,
-          captured ? -1 : in.time.step,
-          steps,
-          epoch,
-          in.vertex_force,
-          load};
+  return {.patches = driver.patches,
+          .fabric = in.fabric,
+          .x = in.x,
+          .v = in.v,
+          .monitor = in.monitor,
+          .dt = in.time.dt,
+          .previous_steps = captured ? -1 : in.time.step,
+          .steps = steps,
+          .epoch = epoch,
+          .vertex_force = in.vertex_force,
+          .load = load};
 }
 
 /// Enqueues `steps` Runge-Kutta steps as one launch; `captured` as above. Asynchronous.

@@ -41,7 +41,7 @@ struct PersistentEulerFunctor {
                                   const TeamTable& next) const {
     const auto& of = pairs.of;
     const Vector3<double> zero{0.0, 0.0, 0.0};
-    OwnVertex own{-1, -1, zero, zero, zero, zero, zero, zero, 0.0, zero};
+    OwnVertex own;
     if (const int rank = member.team_rank(); rank < of.patches.team) {
       const int at = member.league_rank() * of.patches.team + rank;
       own.vertex = of.patches.vertex(at), own.message = of.patches.message(at);
@@ -68,11 +68,12 @@ struct PersistentEulerFunctor {
                                 const Vector3<double>& elastic, const TeamTable& next) const {
     const auto& of = pairs.of;
     const std::int64_t step = of.steps_before() + done;
-    Vector3<double> pull = of.fabric.load.extent(0) > 0 ? elastic + own.load : elastic;
+    Vector3<double> total_force = of.fabric.load.extent(0) > 0 ? elastic + own.load : elastic;
     if constexpr (has_vertex_force<VertexForce>)
-      pull = of.vertex_force.add_to(pull, own.x, own.v, &own.inverse_mass, own.vertex, step, 0.0);
-    own.v = kicked(own.v, acceleration(of.fabric, pull, own.inverse_mass, own.v, own.free), own.free, damping,
-                   of.dt);
+      total_force =
+          of.vertex_force.add_to(total_force, own.x, own.v, &own.inverse_mass, own.vertex, step, 0.0);
+    own.v = kicked(own.v, acceleration(of.fabric, total_force, own.inverse_mass, own.v, own.free), own.free,
+                   damping, of.dt);
     if constexpr (has_vertex_force<VertexForce>)
       own.v = of.vertex_force.relaxed(own.x, own.v, own.free, &own.inverse_mass, own.vertex, step);
     own.x = own.x + of.dt * own.v;
@@ -82,8 +83,6 @@ struct PersistentEulerFunctor {
     store_points(next, member.team_rank(), own.x);
     // After the message, which other teams wait for.
     record_divergence(of.monitor, step + 1, own.vertex, own.x, own.v);
-    if constexpr (has_vertex_force<VertexForce>)
-      of.vertex_force.end_step(own.x, own.v, &own.inverse_mass, own.vertex, step + 1);
   }
 
   template <class Member>
@@ -93,9 +92,9 @@ struct PersistentEulerFunctor {
     const auto points = of.tables(member, halo, 2);
     const int rank = member.team_rank(), lane = rank % slice, team = of.patches.team, slices = team / slice,
               slots = static_cast<int>(of.patches.max_triangle_slots);
-    const TeamTable pulls{static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
-                              3 * of.patches.max_triangle_slots * sizeof(double), alignof(double))),
-                          slots};
+    const TeamTable forces{static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
+                               3 * of.patches.max_triangle_slots * sizeof(double), alignof(double))),
+                           slots};
     const struct { TeamSlicedEll<2> springs; } local{TeamSlicedEll<2>(member, slices, of.patches.springs)};
     OwnVertex own = begin(member, halo, points(0), points(1));
 
@@ -105,21 +104,21 @@ struct PersistentEulerFunctor {
               row = first_row + rank / slice;
     typename decltype(pairs)::Pair mine{};
     if (row < end) mine = pairs.pair(row, lane, first_slot);
-    int first_pull = 0, pulls_end = 0;
+    int first_force = 0, forces_end = 0;
     if (own.vertex >= 0) {
-      first_pull = (of.patches.triangles.first(first + rank / slice) + 1) * slice + lane - first_slot;
-      pulls_end = of.patches.triangles.first(first + rank / slice + 1) * slice - first_slot;
+      first_force = (of.patches.triangles.first(first + rank / slice) + 1) * slice + lane - first_slot;
+      forces_end = of.patches.triangles.first(first + rank / slice + 1) * slice - first_slot;
     }
     member.team_barrier();
     for (std::int64_t done = 0; done < of.steps; ++done) {
       const TeamTable now = points(static_cast<int>(done % 2)), next = points(static_cast<int>(1 - done % 2));
-      if (row < end) pairs.pull(mine, now, pulls);
+      if (row < end) pairs.store_forces(mine, now, forces);
       for (int more = row + stride; more < end; more += stride)
-        pairs.pull(pairs.pair(more, lane, first_slot), now, pulls);
+        pairs.store_forces(pairs.pair(more, lane, first_slot), now, forces);
       member.team_barrier();
       if (rank < team) {
-        const Vector3<double> elastic =
-            with_team_springs<model>(local, now, rank, decltype(pairs)::sum_of(pulls, first_pull, pulls_end));
+        const Vector3<double> elastic = with_team_springs<model>(
+            local, now, rank, decltype(pairs)::sum_of(forces, first_force, forces_end));
         if (own.vertex >= 0) end_step(member, own, done, elastic, next);
       }
       if (done + 1 == of.steps) break;

@@ -23,7 +23,7 @@ struct PersistentPairsFunctor {
 
   /// Pair of triangles of a lane.
   struct Pair {
-    int vertex, pulls, triangles;  ///< `pulls`: row of the first force in the table of forces
+    int vertex, first_force, triangles;  ///< `first_force`: row of the first force in the table of forces
     int neighbour[3];
     RestTriangle<double> rest[2];
   };
@@ -33,36 +33,38 @@ struct PersistentPairsFunctor {
     const PairRow at = of.patches.row(row);
     const int next = at.slot + lane, before = next - slice, last = at.triangles == 2 ? next + slice : next;
     const double squared = slots.value(next, 0);
-    return {at.vertex + lane,
-            next - first_slot,
-            at.triangles,
-            {slots.neighbour(before), slots.neighbour(next), slots.neighbour(last)},
-            {stored_triangle(slots.value, slots.value(before, 0), squared, next),
-             stored_triangle(slots.value, squared, slots.value(last, 0), last)}};
+    return {.vertex = at.vertex + lane,
+            .first_force = next - first_slot,
+            .triangles = at.triangles,
+            .neighbour = {slots.neighbour(before), slots.neighbour(next), slots.neighbour(last)},
+            .rest = {stored_triangle(slots.value, slots.value(before, 0), squared, next),
+                     stored_triangle(slots.value, squared, slots.value(last, 0), last)}};
   }
 
-  KOKKOS_FUNCTION void pull(const Pair& pair, const TeamTable& points, const TeamTable& pulls) const {
+  KOKKOS_FUNCTION void store_forces(const Pair& pair, const TeamTable& points,
+                                    const TeamTable& forces) const {
     if constexpr (whole_triangles<model>) {
       const Vector3<double> own = load_points<double>(points, pair.vertex);
       const auto to = [&](int k) { return edge_to<double>(points, own, pair.neighbour[k]); };
       const EdgeVector<double> middle = to(1);
-      store_points(pulls, pair.pulls, triangle_pull<model>(of.fabric.moduli, to(0), middle, pair.rest[0]));
+      store_points(forces, pair.first_force,
+                   triangle_force<model>(of.fabric.moduli, to(0), middle, pair.rest[0]));
       if (pair.triangles == 2)
-        store_points(pulls, pair.pulls + slice,
-                     triangle_pull<model>(of.fabric.moduli, middle, to(2), pair.rest[1]));
+        store_points(forces, pair.first_force + slice,
+                     triangle_force<model>(of.fabric.moduli, middle, to(2), pair.rest[1]));
     }
   }
 
   /// Sum of the forces from `begin` to `end`, one per slice, in their order. Four loads are in flight at
   /// once.
-  KOKKOS_FUNCTION static Vector3<double> sum_of(const TeamTable& pulls, int begin, int end) {
+  KOKKOS_FUNCTION static Vector3<double> sum_of(const TeamTable& forces, int begin, int end) {
     const Vector3<double> zero{0.0, 0.0, 0.0};
     Vector3<double> sum = zero;
     for (int k = begin; k < end; k += 4 * slice) {
       Vector3<double> four[4];
       for (int n = 0; n < 4; ++n)
-        four[n] = k + n * slice < end ? load_points<double>(pulls, k + n * slice) : zero;
-      for (const Vector3<double>& pull : four) sum = sum + pull;
+        four[n] = k + n * slice < end ? load_points<double>(forces, k + n * slice) : zero;
+      for (const Vector3<double>& force : four) sum = sum + force;
     }
     return sum;
   }
@@ -84,23 +86,23 @@ struct PersistentPairsFunctor {
               row = begin + rank / slice;
     Pair mine{};
     if (row < end) mine = pair(row, lane, first_slot);
-    int first_pull = 0, pulls_end = 0;
+    int first_force = 0, forces_end = 0;
     if (own.vertex >= 0) {
-      first_pull = (of.patches.triangles.first(first + rank / slice) + 1) * slice + lane - first_slot;
-      pulls_end = of.patches.triangles.first(first + rank / slice + 1) * slice - first_slot;
+      first_force = (of.patches.triangles.first(first + rank / slice) + 1) * slice + lane - first_slot;
+      forces_end = of.patches.triangles.first(first + rank / slice + 1) * slice - first_slot;
     }
     member.team_barrier();
     of.run(member, halo, points, own, of.patches.triangles,
            [&](const TeamTable& now, std::int64_t done, const auto& arrive) {
              // Two tables: some threads still sum the forces of the previous stage.
-             const TeamTable pulls{memory + done % 2 * 3 * slots, slots};
-             if (row < end) pull(mine, now, pulls);
+             const TeamTable forces{memory + done % 2 * 3 * slots, slots};
+             if (row < end) store_forces(mine, now, forces);
              for (int more = row + stride; more < end; more += stride)
-               pull(pair(more, lane, first_slot), now, pulls);
+               store_forces(pair(more, lane, first_slot), now, forces);
              arrive();
              Vector3<double> elastic{0.0, 0.0, 0.0};
              if (own.vertex >= 0)
-               elastic = with_springs<model>(local, now, rank, sum_of(pulls, first_pull, pulls_end));
+               elastic = with_springs<model>(local, now, rank, sum_of(forces, first_force, forces_end));
              return elastic;
            });
   }

@@ -23,28 +23,28 @@ struct PatchViews {
 
 template <class ExecutionSpace>
 [[nodiscard]] PatchViews<ExecutionSpace> patch_views(const ExecutionSpace& space, const Patches& from) {
-  return {list_view(space, "drogue::fabric::patch_vertices", from.vertex),
-          list_view(space, "drogue::fabric::patch_messages", from.message),
-          list_view(space, "drogue::fabric::first_halo", from.first_halo),
-          list_view(space, "drogue::fabric::halo_vertices", from.halo_vertex),
-          list_view(space, "drogue::fabric::halo_messages", from.halo_message),
-          sliced_ell_views(space, from.triangles),
-          sliced_ell_views(space, from.springs),
-          list_view(space, "drogue::fabric::pair_rows", from.row),
-          list_view(space, "drogue::fabric::first_row", from.first_row),
-          from.team,
-          from.max_halo,
-          max_slots(from, from.triangles),
-          max_slots(from, from.springs)};
+  return {.vertex = list_view(space, "drogue::fabric::patch_vertices", from.vertex),
+          .message = list_view(space, "drogue::fabric::patch_messages", from.message),
+          .first_halo = list_view(space, "drogue::fabric::first_halo", from.first_halo),
+          .halo_vertex = list_view(space, "drogue::fabric::halo_vertices", from.halo_vertex),
+          .halo_message = list_view(space, "drogue::fabric::halo_messages", from.halo_message),
+          .triangles = sliced_ell_views(space, from.triangles),
+          .springs = sliced_ell_views(space, from.springs),
+          .row = list_view(space, "drogue::fabric::pair_rows", from.row),
+          .first_row = list_view(space, "drogue::fabric::first_row", from.first_row),
+          .team = from.team,
+          .max_halo = from.max_halo,
+          .max_triangle_slots = max_slots(from, from.triangles),
+          .max_spring_slots = max_slots(from, from.springs)};
 }
 
 /// State of a thread's vertex, in registers.
 struct OwnVertex {
-  int vertex, message;
-  Vector3<double> x, v, load;
-  Vector3<double> v2, v3, v_now;  ///< velocities of stages 2 and 3, and of the present stage
-  double inverse_mass;
-  Vector3<double> free;  ///< 1 for free axes, 0 for pinned ones
+  int vertex = -1, message = -1;
+  Vector3<double> x{}, v{}, load{};
+  Vector3<double> v2{}, v3{}, v_now{};  ///< velocities of stages 2 and 3, and of the present stage
+  double inverse_mass = 0.0;
+  Vector3<double> free{};  ///< 1 for free axes, 0 for pinned ones
 };
 
 /// Loads that `PersistentSteps` evaluates in every stage; empty without.
@@ -124,7 +124,7 @@ struct PersistentSteps {
   template <class Member>
   KOKKOS_FUNCTION OwnVertex begin(const Member& member, const Halo& halo, const Tables& points) const {
     const Vector3<double> zero{0.0, 0.0, 0.0};
-    OwnVertex own{-1, -1, zero, zero, zero, zero, zero, zero, 0.0, zero};
+    OwnVertex own;
     const auto store = [&](int number, const Vector3<double>& at, const Vector3<double>& velocity) {
       store_points(points(0), number, at);
       const double part = fraction_after_stage(0) * dt;
@@ -199,11 +199,7 @@ struct PersistentSteps {
                  {{position.x, position.y, position.z}});
     store_points(points, member.team_rank(), position);
     // After the message, which other teams wait for.
-    if (stage == 3) {
-      record_divergence(monitor, steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
-      if constexpr (has_vertex_force<VertexForce>)
-        vertex_force.end_step(own.x, own.v, &own.inverse_mass, own.vertex, steps_before() + done / 4 + 1);
-    }
+    if (stage == 3) record_divergence(monitor, steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
   }
 
   /// Gets the positions of the halo that its teams put at the end of stage `done` and stores them in

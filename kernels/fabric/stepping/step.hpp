@@ -68,18 +68,16 @@ struct RungeKuttaFunctor {
     const int i = pack * lanes;
     // Registers limit the number of threads: values that the sum over neighbours does not need are read
     // later.
-    Vector3<R> pull = force<model, R>(fabric, at, i);
+    Vector3<R> total_force = force<model, R>(fabric, at, i);
     const Vector3<R> v_n = load_points<R>(v, i);
     const Vector3<R> v_now = stage == 0 ? v_n : load_points<R>(velocity[stage - 1], i);
-    if constexpr (has_vertex_force<VertexForce>) pull = with_vertex_force(pull, v_now, i);
-    const Vector3<R> a = acceleration(fabric, pull, v_now, i), x_n = load_points<R>(x, i);
+    if constexpr (has_vertex_force<VertexForce>) total_force = with_vertex_force(total_force, v_now, i);
+    const Vector3<R> a = acceleration(fabric, total_force, v_now, i), x_n = load_points<R>(x, i);
     if (stage == 3) {
       const Vector3<R> v2 = load_points<R>(velocity[0], i), v3 = load_points<R>(velocity[1], i);
       const Vector3<R> end_x = end_position(dt, x_n, v_n, v2, v3, v_now),
                        end_v = end_velocity(dt, v_n, v2, v3, v_now, a);
       store_end(monitor, x, v, i, end_x, end_v);
-      if constexpr (has_vertex_force<VertexForce>)
-        vertex_force.end_step(end_x, end_v, &fabric.inverse_mass(i), i, monitor.steps(1) + 1);
       return;
     }
     if (stage == 1 && pack == 0) monitor.steps(1) = monitor.steps(0);
@@ -88,10 +86,11 @@ struct RungeKuttaFunctor {
     store_points(velocity[stage], i, v_n + part * a);
   }
 
-  /// `pull` plus the force of the VertexForce on vertex i and the lanes after it, N. Does not throw.
-  KOKKOS_FUNCTION Vector3<R> with_vertex_force(const Vector3<R>& pull, const Vector3<R>& now, int i) const {
+  /// `total_force` plus the force of the VertexForce on vertex i and the lanes after it, N. Does not throw.
+  KOKKOS_FUNCTION Vector3<R> with_vertex_force(const Vector3<R>& total_force, const Vector3<R>& now,
+                                               int i) const {
     // The last stage writes one entry of the counter, the second stage the other.
-    return vertex_force.add_to(pull, load_points<R>(at, i), now, &fabric.inverse_mass(i), i,
+    return vertex_force.add_to(total_force, load_points<R>(at, i), now, &fabric.inverse_mass(i), i,
                                monitor.steps(stage == 3 ? 1 : 0), fraction_before_stage(stage));
   }
 };
@@ -125,11 +124,11 @@ struct RungeKuttaHalfFunctor {
   template <class Positions>
   KOKKOS_FUNCTION Vector acceleration_in(int stage, const Vector& elastic, const Positions& at,
                                          const Vector& now, int i) const {
-    Vector pull = with_load(fabric, elastic, i);
+    Vector total_force = with_load(fabric, elastic, i);
     if constexpr (has_vertex_force<VertexForce>)
-      pull = vertex_force.add_to(pull, load_points<double>(at, i), now, &fabric.inverse_mass(i), i,
-                                 monitor.steps(last ? 1 : 0), fraction_before_stage(stage));
-    return acceleration(fabric, pull, now, i);
+      total_force = vertex_force.add_to(total_force, load_points<double>(at, i), now, &fabric.inverse_mass(i),
+                                        i, monitor.steps(last ? 1 : 0), fraction_before_stage(stage));
+    return acceleration(fabric, total_force, now, i);
   }
 
   /// Velocity of the stage after `stage`, m/s; v_n is the velocity at the beginning of the step.
@@ -142,9 +141,9 @@ struct RungeKuttaHalfFunctor {
   /// First two stages of vertex i. Does not throw.
   KOKKOS_FUNCTION void begin(int i) const {
     const ExtrapolatedPoints<Points> second{x, v, fraction_after_stage(0) * dt};
-    const StatePair<Vector> pull = elastic_forces<model, double>(fabric, x, second, i);
-    const Vector v_n = load_points<double>(v, i), v2 = next_velocity(0, v_n, pull.first, x, v_n, i),
-                 v3 = next_velocity(1, v_n, pull.second, second, v2, i), x_n = load_points<double>(x, i);
+    const StatePair<Vector> elastic = elastic_forces<model, double>(fabric, x, second, i);
+    const Vector v_n = load_points<double>(v, i), v2 = next_velocity(0, v_n, elastic.first, x, v_n, i),
+                 v3 = next_velocity(1, v_n, elastic.second, second, v2, i), x_n = load_points<double>(x, i);
     store_points(third, i, x_n + (fraction_after_stage(1) * dt) * v2);
     store_points(fourth, i, x_n + (fraction_after_stage(2) * dt) * v3);
     store_points(velocity[0], i, v2);
@@ -154,16 +153,14 @@ struct RungeKuttaHalfFunctor {
 
   /// Last two stages of vertex i, and its state after the step. Does not throw.
   KOKKOS_FUNCTION void end(int i) const {
-    const StatePair<Vector> pull = elastic_forces<model, double>(fabric, third, fourth, i);
+    const StatePair<Vector> elastic = elastic_forces<model, double>(fabric, third, fourth, i);
     const Vector v_n = load_points<double>(v, i), v2 = load_points<double>(velocity[0], i),
                  v3 = load_points<double>(velocity[1], i),
-                 v4 = next_velocity(2, v_n, pull.first, third, v3, i),
-                 a4 = acceleration_in(3, pull.second, fourth, v4, i),
+                 v4 = next_velocity(2, v_n, elastic.first, third, v3, i),
+                 a4 = acceleration_in(3, elastic.second, fourth, v4, i),
                  end_x = end_position(dt, load_points<double>(x, i), v_n, v2, v3, v4),
                  end_v = end_velocity(dt, v_n, v2, v3, v4, a4);
     store_end(monitor, x, v, i, end_x, end_v);
-    if constexpr (has_vertex_force<VertexForce>)
-      vertex_force.end_step(end_x, end_v, &fabric.inverse_mass(i), i, monitor.steps(1) + 1);
   }
 };
 
@@ -222,23 +219,23 @@ struct VerletFunctor {
     store_points(v, i, velocity);
   }
 
-  /// Both half kicks, in m/s, with a VertexForce, which is evaluated for each since `end_step` may change its
-  /// state.
+  /// Both half kicks, in m/s, with a VertexForce, which is evaluated for each since the first changes the
+  /// velocity.
   KOKKOS_FUNCTION void with_vertex_force(int pack, Vector3<R> velocity) const {
     if constexpr (has_vertex_force<VertexForce>) {
       const int i = pack * lanes;
-      const Vector3<R> pull = force<model, R>(fabric, x, i), free = free_axes<R>(fabric, i),
+      const Vector3<R> total_force = force<model, R>(fabric, x, i), free = free_axes<R>(fabric, i),
                        position = load_points<R>(x, i);
       const std::int64_t step = monitor.steps(parity);
       const double* const inverse_mass = &fabric.inverse_mass(i);
       const auto kick = [&] {
-        const Vector3<R> sum = vertex_force.add_to(pull, position, velocity, inverse_mass, i, step, 0.0);
+        const Vector3<R> sum =
+            vertex_force.add_to(total_force, position, velocity, inverse_mass, i, step, 0.0);
         velocity = kicked(velocity, acceleration(fabric, sum, velocity, i), free, damping, 0.5 * dt);
       };
       if (ends) {
         kick();
         record_divergence(monitor, step, i, position, velocity);
-        vertex_force.end_step(position, velocity, inverse_mass, i, step);
       }
       if (begins) {
         kick();
@@ -268,22 +265,20 @@ struct SymplecticEulerFunctor {
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * lanes;
-    Vector3<R> pull = force<model, R>(fabric, x, i);
+    Vector3<R> total_force = force<model, R>(fabric, x, i);
     const Vector3<R> position = load_points<R>(x, i), before = load_points<R>(v, i),
                      free = free_axes<R>(fabric, i);
     const std::int64_t step = monitor.steps(parity);
     const double* const inverse_mass = &fabric.inverse_mass(i);
     if constexpr (has_vertex_force<VertexForce>)
-      pull = vertex_force.add_to(pull, position, before, inverse_mass, i, step, 0.0);
-    Vector3<R> velocity = kicked(before, acceleration(fabric, pull, before, i), free, damping, dt);
+      total_force = vertex_force.add_to(total_force, position, before, inverse_mass, i, step, 0.0);
+    Vector3<R> velocity = kicked(before, acceleration(fabric, total_force, before, i), free, damping, dt);
     if constexpr (has_vertex_force<VertexForce>)
       velocity = vertex_force.relaxed(position, velocity, free, inverse_mass, i, step);
     const Vector3<R> end = position + dt * velocity;
     store_points(next, i, end);
     store_points(v, i, velocity);
     record_divergence(monitor, step + 1, i, end, velocity);
-    if constexpr (has_vertex_force<VertexForce>)
-      vertex_force.end_step(end, velocity, inverse_mass, i, step + 1);
     if (pack == 0) monitor.steps(1 - parity) = step + 1;
   }
 };

@@ -62,32 +62,6 @@ KOKKOS_INLINE_FUNCTION spatial::Point doubled_area_vector(const SurfaceViews<Exe
                              spatial::load_vector(x, surface.corner(t, 2)));
 }
 
-template <class ExecutionSpace, class Positions, class Areas, class Normals>
-struct TriangleGeometryFunctor {
-  SurfaceViews<ExecutionSpace> surface;
-  Positions x;
-  Areas area;
-  Normals normal;
-
-  KOKKOS_FUNCTION void operator()(const int t) const {
-    const AreaAndNormal<double> triangle = area_and_normal(doubled_area_vector(surface, x, t));
-    area(t) = triangle.area;
-    spatial::store_vector(normal, t, triangle.normal);
-  }
-};
-
-template <class ExecutionSpace, class Velocities, class Results>
-struct TriangleVelocityFunctor {
-  SurfaceViews<ExecutionSpace> surface;
-  Velocities v;
-  Results velocity;
-
-  KOKKOS_FUNCTION void operator()(const int t) const {
-    const auto corner = [&](int k) { return spatial::load_vector(v, surface.corner(t, k)); };
-    spatial::store_vector(velocity, t, (1.0 / 3.0) * (corner(0) + corner(1) + corner(2)));
-  }
-};
-
 /// Gathers over the triangles around a vertex, in ascending order, without atomics.
 template <class ExecutionSpace, class Positions, class Areas, class Normals>
 struct VertexGeometryFunctor {
@@ -105,7 +79,7 @@ struct VertexGeometryFunctor {
       doubled_area += device::square_root(dot(doubled, doubled));
     }
     area(i) = (1.0 / 6.0) * doubled_area;
-    spatial::store_vector(normal, i, area_and_normal(sum).normal);
+    spatial::store_vector(normal, i, unit_normal(sum));
   }
 };
 
@@ -114,32 +88,6 @@ template <class View>
 void require_rows(const View& view, int rows) {
   if (view.extent(0) < static_cast<std::size_t>(rows))
     throw std::invalid_argument("fabric surface: View '" + view.label() + "' has too few rows");
-}
-
-/// Area, m^2, and unit normal of each triangle at positions x, m: `area` (triangles), `normal` (triangles,
-/// 3). A degenerate triangle has neither. Asynchronous. Throws std::invalid_argument for too few rows.
-template <class ExecutionSpace, class Positions, class Areas, class Normals>
-void triangle_geometry(const ExecutionSpace& space, const SurfaceViews<ExecutionSpace>& surface,
-                       const Positions& x, const Areas& area, const Normals& normal) {
-  static_assert(spatial::accessible_from<ExecutionSpace, Positions, Areas, Normals>);
-  require_rows(x, surface.vertices());
-  require_rows(area, surface.triangles());
-  require_rows(normal, surface.triangles());
-  device::launch_each(
-      space, "drogue::fabric::triangle_geometry", surface.triangles(),
-      TriangleGeometryFunctor<ExecutionSpace, Positions, Areas, Normals>{surface, x, area, normal});
-}
-
-/// Velocity of the centroid of each triangle, m/s, from velocities v of the vertices, m/s: `velocity`
-/// (triangles, 3). Asynchronous. Throws std::invalid_argument for too few rows.
-template <class ExecutionSpace, class Velocities, class Results>
-void triangle_velocities(const ExecutionSpace& space, const SurfaceViews<ExecutionSpace>& surface,
-                         const Velocities& v, const Results& velocity) {
-  static_assert(spatial::accessible_from<ExecutionSpace, Velocities, Results>);
-  require_rows(v, surface.vertices());
-  require_rows(velocity, surface.triangles());
-  device::launch_each(space, "drogue::fabric::triangle_velocities", surface.triangles(),
-                      TriangleVelocityFunctor<ExecutionSpace, Velocities, Results>{surface, v, velocity});
 }
 
 /// Area of each vertex, a third of the triangles around it, m^2, and its unit normal, the mean of their

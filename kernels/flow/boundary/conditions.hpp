@@ -198,9 +198,15 @@ class BoundaryTables {
     for (int side = 0; side < 6; ++side) {
       if (_conditions.first[side] < 0) continue;
       device::launch_each(space, "drogue::flow::boundary_table", static_cast<int>(entries_of(side)),
-                          BoundaryTableFunctor<ExecutionSpace>{_grid, _conditions.table, _programs[side],
-                                                               control, stage, side, _conditions.first[side],
-                                                               constants.motion, constants.motions});
+                          BoundaryTableFunctor<ExecutionSpace>{.grid = _grid,
+                                                               .table = _conditions.table,
+                                                               .programs = _programs[side],
+                                                               .control = control,
+                                                               .stage = stage,
+                                                               .side = side,
+                                                               .first = _conditions.first[side],
+                                                               .motion = constants.motion,
+                                                               .motions = constants.motions});
     }
   }
 

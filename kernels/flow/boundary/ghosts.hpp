@@ -107,7 +107,12 @@ template <class ExecutionSpace>
 void launch_ghosts(const ExecutionSpace& space, const MacGrid& g,
                    const BoundaryConditions<ExecutionSpace>& boundary, const List<ExecutionSpace>& velocity,
                    const ControlView<ExecutionSpace>& control) {
-  GhostFunctor<ExecutionSpace> functor{g, boundary, velocity, control, {}, {}};
+  GhostFunctor<ExecutionSpace> functor{.grid = g,
+                                       .boundary = boundary,
+                                       .velocity = velocity,
+                                       .control = control,
+                                       .slab = {},
+                                       .slab_cells = {}};
   std::int64_t total = 0;  // below 2^31 for any grid that fits a device
   for (int axis = 0; axis < 3; ++axis) {
     // Layers -ghost .. 0 and n .. n + ghost - 1: the low boundary face belongs to the slab.

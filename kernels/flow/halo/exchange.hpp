@@ -58,7 +58,7 @@ class Exchange {
   /// Adds a message of `size` numbers from `peer` that stays in a buffer, in host memory that kernels access.
   /// Returns the buffer, which lives as long as this object.
   const double* add_receive(int peer, int tag, int size) {
-    const ArrayBox none{0, {0, 0, 0}, 0, {0, 0, 0}, 0};
+    const ArrayBox none{};
     _received.push_back({peer, tag, none, buffer(size)});
     return _received.back().buffer.data();
   }
@@ -69,12 +69,20 @@ class Exchange {
     std::vector<linear::Message> messages;
     for (const Port& port : _sent) {
       copy(space, port, array, true);
-      messages.push_back({port.peer, port.tag, 0, {port.buffer.data(), port.buffer.size()}, {}});
+      messages.push_back({.peer = port.peer,
+                          .send_tag = port.tag,
+                          .receive_tag = 0,
+                          .send = {port.buffer.data(), port.buffer.size()},
+                          .receive = {}});
     }
     // Also the kernels before, which may still read the buffers of the last exchange.
     space.fence("drogue::flow::exchange: packed");
     for (const Port& port : _received)
-      messages.push_back({port.peer, 0, port.tag, {}, {port.buffer.data(), port.buffer.size()}});
+      messages.push_back({.peer = port.peer,
+                          .send_tag = 0,
+                          .receive_tag = port.tag,
+                          .send = {},
+                          .receive = {port.buffer.data(), port.buffer.size()}});
     return group.begin(messages);
   }
 

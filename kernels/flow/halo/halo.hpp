@@ -149,17 +149,21 @@ class Halo {
   [[nodiscard]] ArrayBox velocity_box(const std::array<int, 3>& begin, const std::array<int, 3>& extent,
                                       int first, int components) const {
     const MacGrid& g = _grid;
-    return {first * g.component + g.offset(begin[0], begin[1], begin[2]),
-            {g.stride[0], g.stride[1], g.stride[2]},
-            g.component,
-            {extent[0], extent[1], extent[2]},
-            components};
+    return {.first = first * g.component + g.offset(begin[0], begin[1], begin[2]),
+            .stride = {g.stride[0], g.stride[1], g.stride[2]},
+            .component = g.component,
+            .extent = {extent[0], extent[1], extent[2]},
+            .components = components};
   }
 
   [[nodiscard]] ArrayBox pressure_box(std::size_t axis, int layer) const {
     const MacGrid& g = _grid;
     const std::int64_t stride[3] = {1, g.n[0], static_cast<std::int64_t>(g.n[0]) * g.n[1]};
-    ArrayBox box{layer * stride[axis], {1, stride[1], stride[2]}, 0, {g.n[0], g.n[1], g.n[2]}, 1};
+    ArrayBox box{.first = layer * stride[axis],
+                 .stride = {1, stride[1], stride[2]},
+                 .component = 0,
+                 .extent = {g.n[0], g.n[1], g.n[2]},
+                 .components = 1};
     box.extent[axis] = 1;
     return box;
   }

@@ -100,7 +100,7 @@ struct CorrectionFunctor {
         const double rate = correct(i, j, k, dt);
         largest = rate > largest || !(rate == rate) ? rate : largest;
       }
-    if (setup.ends_step) device::raise_to_team_maximum(member, control.next_rate, largest);
+    if (setup.ends_step) device::raise_to_team_maximum(member, control.next_rate_bits, largest);
   }
 
  private:
@@ -180,7 +180,12 @@ void launch_correction(const ExecutionSpace& space, const ProjectionSetup<Execut
   const typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes),
                                         on_host ? 1 : width * height);
   device::launch_teams("drogue::flow::correction", policy,
-                       Functor{setup, width, height, tiles_x, tiles_y, planes});
+                       Functor{.setup = setup,
+                               .tile_width = width,
+                               .tile_height = height,
+                               .tiles_x = tiles_x,
+                               .tiles_y = tiles_y,
+                               .planes = planes});
 }
 
 }  // namespace drogue::flow

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "kernels/flow/launch.hpp"
 #include "kernels/flow/observables/gradient.hpp"
 #include "kernels/flow/views.hpp"

@@ -85,7 +85,13 @@ class BaselineSolver final : public Solver {
       if (_progress.step >= _p.max_steps) return Stop::max_steps;
       if (!step(target)) return Stop::failed;
       if (rows && row_every > 0 && _progress.step % row_every == 0) rows(totals());
-      if (poll && !poll({0, _progress.step, _progress.time, _progress.last_dt, 0, Stop::running, 0}))
+      if (poll && !poll({.launches = 0,
+                         .step = _progress.step,
+                         .time = _progress.time,
+                         .dt = _progress.last_dt,
+                         .variant = 0,
+                         .stop = Stop::running,
+                         .outputs = 0}))
         return Stop::interrupted;
       if (_progress.step == pause_step) return Stop::pause;
     }
@@ -175,10 +181,13 @@ class BaselineSolver final : public Solver {
                   device::is_host<ExecutionSpace> ? 1 : team);
     policy.set_scratch_size(
         0, Kokkos::PerTeam(static_cast<int>(Tiles::scratch_bytes(shape, cell_rows)) + scratch_margin));
-    Kokkos::parallel_for(
-        "drogue::gas::baseline_flux", policy,
-        BaselineFluxFunctor<ExecutionSpace>{
-            _device_state, _device_flux, shape, {_p.cells, _p.left, _p.right}, _p.gamma, alpha});
+    Kokkos::parallel_for("drogue::gas::baseline_flux", policy,
+                         BaselineFluxFunctor<ExecutionSpace>{.state = _device_state,
+                                                             .flux = _device_flux,
+                                                             .shape = shape,
+                                                             .boundaries = {_p.cells, _p.left, _p.right},
+                                                             .gamma = _p.gamma,
+                                                             .alpha = alpha});
     space.fence("drogue::gas::baseline_flux");
   }
 
@@ -193,7 +202,11 @@ class BaselineSolver final : public Solver {
     const bool reaches_target = dt >= (target - _progress.time) * (1.0 - 1e-12);
     if (reaches_target) dt = target - _progress.time;
     if (!(_progress.time + dt > _progress.time)) {
-      _failure = {FailureReason::time_step, -1, _progress.step + 1, _progress.time, dt};
+      _failure = {.reason = FailureReason::time_step,
+                  .index = -1,
+                  .step = _progress.step + 1,
+                  .time = _progress.time,
+                  .dt = dt};
       return false;
     }
     _start = _state;
@@ -234,7 +247,11 @@ class BaselineSolver final : public Solver {
       const FailureReason what = rho <= 0.0 ? FailureReason::density
                                  : p <= 0.0 ? FailureReason::pressure
                                             : FailureReason::not_finite;
-      _failure = {what, static_cast<std::int64_t>(i), _progress.step + 1, _progress.time, dt};
+      _failure = {.reason = what,
+                  .index = static_cast<std::int64_t>(i),
+                  .step = _progress.step + 1,
+                  .time = _progress.time,
+                  .dt = dt};
       return false;
     }
     return true;

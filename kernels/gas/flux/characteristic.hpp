@@ -29,8 +29,13 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
   const R kinetic = S(0.5) * (u * u);
   const N unit = To::from(enthalpy - kinetic);
   const device::Root<N> c = device::root(gamma_1 * unit);
-  return {To::from(u),     c.value, To::from(enthalpy), To::from(kinetic), unit, gamma_1 * c.reciprocal,
-          unit * c.inverse};
+  return {.u = To::from(u),
+          .c = c.value,
+          .enthalpy = To::from(enthalpy),
+          .kinetic = To::from(kinetic),
+          .unit = unit,
+          .inverse_unit = gamma_1 * c.reciprocal,
+          .width = unit * c.inverse};
 }
 
 /// Quantities of a cell beside a face that the averages use.

@@ -24,7 +24,13 @@ KOKKOS_INLINE_FUNCTION CellState<R> cell_state(S gamma, R rho, R m, R energy) {
   const R inverse = device::reciprocal(rho);
   const R u = m * inverse;
   const R p = pressure(gamma, m, energy, u);
-  return {rho, m, energy, u, p, (energy + p) * inverse, device::root(gamma * (p * inverse)).value};
+  return {.rho = rho,
+          .m = m,
+          .energy = energy,
+          .u = u,
+          .p = p,
+          .enthalpy = (energy + p) * inverse,
+          .c = device::root(gamma * (p * inverse)).value};
 }
 
 /// Magnitudes of the eigenvalues per characteristic field: |u - c|, |u|, |u + c|, m/s.

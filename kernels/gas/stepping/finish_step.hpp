@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
 KOKKOS_INLINE_FUNCTION void fail(const Progress& now, StepTrial& trial, StepFailure& failure,
                                  FailureReason reason, std::int64_t cell) {
   trial.stop = Stop::failed;
-  failure = {reason, cell, now.step + 1, now.time, trial.dt};
+  failure = {.reason = reason, .index = cell, .step = now.step + 1, .time = now.time, .dt = trial.dt};
 }
 
 /// Prepares the next trial, or records a failure if dt is too small.

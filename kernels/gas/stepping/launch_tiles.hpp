@@ -44,18 +44,18 @@ template <Reconstruction scheme, Precision precision, bool limited, class Execut
 void launch_stage_as(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, int stage) {
   const bool last = stage == setup.table.stages - 1;
   const StageFunctor<ExecutionSpace, scheme, precision, limited> functor{
-      {setup.buffer[0], setup.buffer[1], setup.buffer[2]},
-      setup.control,
-      setup.limited_cells,
-      setup.table.stage[stage],
-      setup.stage_shape,
-      setup.boundaries,
-      setup.gamma,
-      1.0 / setup.dx,
-      stage,
-      setup.splitting,
-      setup.average,
-      last || limited || setup.splitting != Splitting::lf_stencil};
+      .buffer = {setup.buffer[0], setup.buffer[1], setup.buffer[2]},
+      .control = setup.control,
+      .limited_cells = setup.limited_cells,
+      .weights = setup.table.stage[stage],
+      .shape = setup.stage_shape,
+      .boundaries = setup.boundaries,
+      .gamma = setup.gamma,
+      .inverse_dx = 1.0 / setup.dx,
+      .stage = stage,
+      .splitting = setup.splitting,
+      .average = setup.average,
+      .reduce_speed = last || limited || setup.splitting != Splitting::lf_stencil};
   launch<false>(limited ? "drogue::gas::stage_limited" : "drogue::gas::stage", space, setup,
                 setup.stage_shape, functor);
 }
@@ -79,15 +79,15 @@ void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>&
 template <Reconstruction scheme, Precision precision, bool limited, class ExecutionSpace>
 StepFunctor<ExecutionSpace, scheme, precision, limited> step_functor(const StageSetup<ExecutionSpace>& setup,
                                                                      const TileShape& shape) {
-  return {{setup.buffer[0], setup.buffer[1], setup.buffer[2]},
-          setup.control,
-          setup.limited_cells,
-          setup.table,
-          shape,
-          setup.boundaries,
-          setup.gamma,
-          1.0 / setup.dx,
-          setup.average};
+  return {.buffer = {setup.buffer[0], setup.buffer[1], setup.buffer[2]},
+          .control = setup.control,
+          .limited_cells = setup.limited_cells,
+          .table = setup.table,
+          .shape = shape,
+          .boundaries = setup.boundaries,
+          .gamma = setup.gamma,
+          .inverse_dx = 1.0 / setup.dx,
+          .average = setup.average};
 }
 
 template <Reconstruction scheme, Precision precision, class ExecutionSpace>
@@ -105,8 +105,10 @@ void launch_persistent_steps_as(const StageSetup<ExecutionSpace>& setup,
                                 const PersistentSetup<ExecutionSpace>& persistent,
                                 std::int64_t max_steps_per_launch) {
   const PersistentStepFunctor<ExecutionSpace, scheme, precision> functor{
-      step_functor<scheme, precision, false>(setup, persistent.shape), persistent.status,
-      persistent.constants, max_steps_per_launch};
+      .step = step_functor<scheme, precision, false>(setup, persistent.shape),
+      .status = persistent.status,
+      .constants = persistent.constants,
+      .max_steps_per_launch = max_steps_per_launch};
   persistent.grid.template launch<largest_persistent_team, 1>(functor);
 }
 

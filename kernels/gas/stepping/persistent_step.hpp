@@ -124,7 +124,7 @@ struct PersistentStepFunctor {
     TeamControl& team = *static_cast<TeamControl*>(
         member.team_scratch(0).get_shmem_aligned(sizeof(TeamControl), alignof(TeamControl)));
     const Tile<ExecutionSpace> tile(member, step.shape, step.boundaries.cells);
-    const std::uint64_t begun = member.epoch();
+    const std::uint64_t first_epoch = member.epoch();
     Control& control = step.control();
     if (member.team_rank() == 0) {
       team.restart = control.restart;
@@ -136,10 +136,17 @@ struct PersistentStepFunctor {
     member.team_barrier();
     int current = team.restart.current;
     double dt = 0.0;
-    std::uint64_t epoch = begun;
+    std::uint64_t epoch = first_epoch;
     for (std::int64_t done = 0;; ++done, ++epoch) {
       if (!step.run(member, tile, current,
-                    PersistentStepHooks<Member>{*this, member, tile, team, epoch, done, dt}, team.reduction))
+                    PersistentStepHooks<Member>{.self = *this,
+                                                .member = member,
+                                                .tile = tile,
+                                                .team = team,
+                                                .epoch = epoch,
+                                                .done = done,
+                                                .dt = dt},
+                    team.reduction))
         break;
       dt = team.trial.dt;
       current = (current + result_buffer()) % 3;

@@ -203,7 +203,14 @@ struct StepFunctor {
   }
   template <class P>
   KOKKOS_FUNCTION static CellState<P> reflected(const SlotImage& image, const CellState<P>& s) {
-    return image.reflected ? CellState<P>{s.rho, -s.m, s.energy, -s.u, s.p, s.enthalpy, s.c} : s;
+    return image.reflected ? CellState<P>{.rho = s.rho,
+                                          .m = -s.m,
+                                          .energy = s.energy,
+                                          .u = -s.u,
+                                          .p = s.p,
+                                          .enthalpy = s.enthalpy,
+                                          .c = s.c}
+                           : s;
   }
 
   /// Fills the ghost slots of this tile from their image cells.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/gas/tile/face_window.hpp"
+#include "kernels/gas/tile/sliding_stencil.hpp"
 
 namespace drogue::gas {
 
@@ -103,7 +103,7 @@ KOKKOS_INLINE_FUNCTION void for_face_fluxes(const Member& member, const Tile& ti
   } else if constexpr (!std::is_same_v<N, R>) {
     const int run = (last - first + member.team_size()) / member.team_size();
     for (int begin = first + member.team_rank() * run; begin <= last; begin += member.team_size() * run) {
-      FaceWindow<N, Tile> window(tile, begin);
+      SlidingStencil<N, Tile> window(tile, begin);
       for (int face = begin; face < begin + run && face <= last; ++face) {
         window.advance();
         store(face, weno5_face<scheme, N>(

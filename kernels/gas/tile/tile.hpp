@@ -136,8 +136,11 @@ class Tile {
   }
   template <class P>
   KOKKOS_FUNCTION FaceCell<P> face_cell(int i) const {
-    return {load<P>(TileField::rho, i), load<P>(TileField::m, i), load<P>(TileField::energy, i),
-            load<P>(TileField::u, i), load<P>(TileField::enthalpy, i)};
+    return {.rho = load<P>(TileField::rho, i),
+            .m = load<P>(TileField::m, i),
+            .energy = load<P>(TileField::energy, i),
+            .u = load<P>(TileField::u, i),
+            .enthalpy = load<P>(TileField::enthalpy, i)};
   }
   template <class P>
   KOKKOS_FUNCTION ConservedVector<P> flux(int face) const {

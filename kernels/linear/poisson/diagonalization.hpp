@@ -85,9 +85,13 @@ class DiagonalizationSolver {
       _lines->solve(from);
     } else {
       transform(2, true);
-      scale_spectrum(_space,
-                     SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0], _eigenvalues[1],
-                                                            _eigenvalues[2], 1, 1.0, spectral_operator});
+      scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{.coefficients = from.data(),
+                                                                    .x = _eigenvalues[0],
+                                                                    .y = _eigenvalues[1],
+                                                                    .z = _eigenvalues[2],
+                                                                    .parts = 1,
+                                                                    .normalisation = 1.0,
+                                                                    .spectral_operator = spectral_operator});
       transform(2, false);
     }
     transform(0, false);

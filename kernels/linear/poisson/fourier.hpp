@@ -114,9 +114,19 @@ class AxisTransforms {
 
   [[nodiscard]] static Planes planes(const std::array<int, 3>& cells, std::size_t axis) {
     const int nx = cells[0], ny = cells[1], nz = cells[2];
-    if (axis == 0) return {nz, static_cast<std::int64_t>(nx) * ny, ny, nx, 1};
-    if (axis == 1) return {nz, static_cast<std::int64_t>(nx) * ny, nx, 1, nx};
-    return {ny, nx, nx, 1, nx * ny};
+    if (axis == 0)
+      return {.count = nz,
+              .distance = static_cast<std::int64_t>(nx) * ny,
+              .lines = ny,
+              .line_distance = nx,
+              .stride = 1};
+    if (axis == 1)
+      return {.count = nz,
+              .distance = static_cast<std::int64_t>(nx) * ny,
+              .lines = nx,
+              .line_distance = 1,
+              .stride = nx};
+    return {.count = ny, .distance = nx, .lines = nx, .line_distance = 1, .stride = nx * ny};
   }
 
   struct TransformFunctor {
@@ -181,9 +191,13 @@ class FourierSolver {
         transforms.forward(_space, from, solution.data());
         from = solution.data();
       }
-    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{solution.data(), _eigenvalues[0],
-                                                                  _eigenvalues[1], _eigenvalues[2], 1,
-                                                                  _normalisation, spectral_operator});
+    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{.coefficients = solution.data(),
+                                                                  .x = _eigenvalues[0],
+                                                                  .y = _eigenvalues[1],
+                                                                  .z = _eigenvalues[2],
+                                                                  .parts = 1,
+                                                                  .normalisation = _normalisation,
+                                                                  .spectral_operator = spectral_operator});
     for (const AxisTransforms<ExecutionSpace>& transforms : _transforms)
       transforms.backward(_space, solution.data());
   }
@@ -249,9 +263,13 @@ class FourierSolver<Kokkos::Cuda> {
     auto* spectrum = reinterpret_cast<cufftDoubleComplex*>(_spectrum.data());
     // cuFFT keeps the input of an out-of-place forward transform, though its interface lacks const.
     check(cufftExecD2Z(*_forward, right_hand_side.data(), spectrum));
-    scale_spectrum(
-        _space, SpectralScalingFunctor<Kokkos::Cuda>{_spectrum.data(), _eigenvalues[0], _eigenvalues[1],
-                                                     _eigenvalues[2], 2, _normalisation, spectral_operator});
+    scale_spectrum(_space, SpectralScalingFunctor<Kokkos::Cuda>{.coefficients = _spectrum.data(),
+                                                                .x = _eigenvalues[0],
+                                                                .y = _eigenvalues[1],
+                                                                .z = _eigenvalues[2],
+                                                                .parts = 2,
+                                                                .normalisation = _normalisation,
+                                                                .spectral_operator = spectral_operator});
     check(cufftExecZ2D(*_backward, spectrum, solution.data()));
   }
 

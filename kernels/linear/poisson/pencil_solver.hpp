@@ -83,9 +83,13 @@ class PencilSolver {
       }
     }
     if (_boxes[2].size() > 0)
-      scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{_arrays[0].data(), _eigenvalues[0],
-                                                                    _eigenvalues[1], _eigenvalues[2], 1,
-                                                                    _normalisation, spectral_operator});
+      scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{.coefficients = _arrays[0].data(),
+                                                                    .x = _eigenvalues[0],
+                                                                    .y = _eigenvalues[1],
+                                                                    .z = _eigenvalues[2],
+                                                                    .parts = 1,
+                                                                    .normalisation = _normalisation,
+                                                                    .spectral_operator = spectral_operator});
     for (std::size_t axis = 3; axis-- > 0;) {
       transform(axis, false);
       if (axis > 0 && _turns[axis - 1]) {

@@ -112,13 +112,13 @@ class PencilTranspose {
     const int count = n[0] * n[1] * n[2];
     if (count == 0) return;
     device::launch_each(space, "drogue::linear::pencil_transpose", count,
-                        BlockCopyFunctor{{n[0], n[1], n[2]},
-                                         static_cast<int>(before ? _split : _gathered),
-                                         _group.size(),
-                                         before ? 0 : _missing,
-                                         to_blocks,
-                                         array.data(),
-                                         blocks.data()});
+                        BlockCopyFunctor{.cells = {n[0], n[1], n[2]},
+                                         .axis = static_cast<int>(before ? _split : _gathered),
+                                         .parts = _group.size(),
+                                         .missing = before ? 0 : _missing,
+                                         .to_blocks = to_blocks,
+                                         .array = array.data(),
+                                         .blocks = blocks.data()});
   }
 
   RankGroup _group;

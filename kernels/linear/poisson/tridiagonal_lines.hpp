@@ -142,16 +142,17 @@ class TridiagonalLines {
     const auto addition = [&](EndCondition end) {
       return axis.on_faces ? 0.0 : end == EndCondition::neumann ? -1.0 : 1.0;
     };
-    _systems = {problem.cells[2],
-                static_cast<std::int64_t>(problem.cells[0]) * problem.cells[1],
-                problem.spacing[2] * problem.spacing[2],
-                x,
-                y,
-                addition(axis.low),
-                addition(axis.high),
-                problem.is_singular(),
-                List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::inverse_pivots"),
-                     problem.size())};
+    _systems = {.length = problem.cells[2],
+                .modes = static_cast<std::int64_t>(problem.cells[0]) * problem.cells[1],
+                .square_spacing = problem.spacing[2] * problem.spacing[2],
+                .x = x,
+                .y = y,
+                .low = addition(axis.low),
+                .high = addition(axis.high),
+                .is_singular = problem.is_singular(),
+                .inverse_pivots = List(
+                    Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::inverse_pivots"),
+                    problem.size())};
     launch("drogue::linear::factor_lines", FactorLinesFunctor<ExecutionSpace>{_systems});
     space.fence("drogue::linear::TridiagonalLines");
   }

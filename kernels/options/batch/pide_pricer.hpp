@@ -20,8 +20,8 @@
 namespace drogue::options {
 
 /// Finite-difference pricer on the caller's instance of an execution space, which must outlive it. Contracts
-/// come from host memory, since tables of their jump measures are computed there; prices stay on the device
-/// as well. Functions that `Pricer` declares are documented in `Pricer`.
+/// come from host memory, since tables of their jump measures are computed there. Functions that `Pricer`
+/// declares are documented in `Pricer`.
 template <class ExecutionSpace>
 class PidePricer {
   using Space = typename ExecutionSpace::memory_space;
@@ -32,11 +32,6 @@ class PidePricer {
   /// Allocates nothing. Does not throw.
   PidePricer(const device::Instance<ExecutionSpace>& instance, const Settings& settings)
       : _settings(settings), _instance(instance) {}
-
-  /// Prices of the last batch, money, one per contract in its order, for kernels; a View of at least that
-  /// many rows, in device memory or, for a small batch, in pinned host memory. Valid until the next batch,
-  /// and as long as the span that received the prices. Does not throw.
-  [[nodiscard]] const View<Price>& prices() const { return _last_prices; }
 
   WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) {
     if (contracts.size() != prices.size())
@@ -108,7 +103,6 @@ class PidePricer {
     const int mesh =
         _settings.mesh == 0 && _settings.method == Method::baseline ? baseline_mesh : _settings.mesh;
     reserve(contracts.size());
-    _last_prices = _prices;
     if (mesh != 0 && is_priced_in_place(contracts.size()))
       return price_in_place(contracts, prices, {mesh, steps_of(mesh)});
     const device::Stopwatch copying_in;
@@ -131,10 +125,9 @@ class PidePricer {
   void price_in_place(std::span<const Contract> contracts, std::span<Price> prices,
                       const Resolution& resolution) {
     Price* const to = landing_buffer(prices);
-    _last_prices = View<Price>(to, prices.size());
-    launch_all(
-        {Kokkos::View<const Contract*, Space>(staging_buffer(contracts), contracts.size()), _last_prices},
-        contracts, resolution);
+    launch_all({Kokkos::View<const Contract*, Space>(staging_buffer(contracts), contracts.size()),
+                View<Price>(to, prices.size())},
+               contracts, resolution);
     wait_for_prices(to, prices);
   }
 
@@ -299,7 +292,7 @@ class PidePricer {
   Settings _settings;
   const device::Instance<ExecutionSpace>& _instance;
   View<Contract> _contracts;
-  View<Price> _prices, _last_prices;
+  View<Price> _prices;
   View<int> _order;
   device::PinnedMemory<ExecutionSpace> _pinned;
   std::pmr::vector<int> _host_order{&_pinned};  ///< contents of _order

@@ -71,7 +71,14 @@ void AmericanPut::prepare(double expiry, int dates, double tolerance) {
   for (int level = 0; level < levels; ++level) {
     const int level_dates = dates << level;
     while (log_terms < max_log_terms && decay(level_dates, log_terms) > negligible) ++log_terms;
-    puts.push_back({x, rate, maturity, low, width, level_dates, log_terms, 0});
+    puts.push_back({.x = x,
+                    .rate = rate,
+                    .maturity = maturity,
+                    .low = low,
+                    .width = width,
+                    .dates = level_dates,
+                    .log_terms = log_terms,
+                    .table = 0});
   }
   const int terms = 1 << log_terms;
   psi_re.resize(terms);

@@ -64,15 +64,15 @@ class BermudanSolverImpl final : public BermudanSolver {
     if (puts.empty()) return;
     const auto& space = _instance.space();
     PriceBermudansFunctor<ExecutionSpace> kernel{
-        to_device("drogue::options::puts", puts),
-        to_device("drogue::options::psi_re", psi_re),
-        to_device("drogue::options::psi_im", psi_im),
-        _roots_re,
-        _roots_im,
-        {},
-        View<BermudanValue>("drogue::options::bermudans", puts.size()),
-        0,
-        0};
+        .puts = to_device("drogue::options::puts", puts),
+        .psi_re = to_device("drogue::options::psi_re", psi_re),
+        .psi_im = to_device("drogue::options::psi_im", psi_im),
+        .roots_re = _roots_re,
+        .roots_im = _roots_im,
+        .workspace = {},
+        .values = View<BermudanValue>("drogue::options::bermudans", puts.size()),
+        .first = 0,
+        .log_terms = 0};
     const int count = static_cast<int>(puts.size());
     for (kernel.first = 0; kernel.first < count;) {
       kernel.log_terms = puts[kernel.first].log_terms;

@@ -22,8 +22,11 @@ struct Integrals {
 
 /// Trapezoidal sums of half the step, from the sums over the even and the odd nodes.
 Integrals merge(const Integrals& a, const Integrals& b) {
-  return {0.5 * (a.value + b.value), 0.5 * (a.first + b.first), 0.5 * (a.second + b.second),
-          0.5 * (a.by_maturity + b.by_maturity), a.nodes + b.nodes};
+  return {.value = 0.5 * (a.value + b.value),
+          .first = 0.5 * (a.first + b.first),
+          .second = 0.5 * (a.second + b.second),
+          .by_maturity = 0.5 * (a.by_maturity + b.by_maturity),
+          .nodes = a.nodes + b.nodes};
 }
 
 /// Contour u(y) = i centre + scale sinh(i tilt + y), or the line u(y) = y - i/2 if it does not bend.
@@ -47,12 +50,17 @@ constexpr double digits = 40.0;  // errors of step and truncation are exp(-digit
 /// grow too fast off the real axis, so their contour does not bend.
 Contour choose_contour(const Contract& c, double log_moneyness) {
   using std::numbers::pi;
-  if (c.model == JumpModel::merton) return {false, 0.0, 0.0, 0.0, pi / digits};
+  if (c.model == JumpModel::merton)
+    return {.bends = false, .tilt = 0.0, .centre = 0.0, .scale = 0.0, .step = pi / digits};
   const double half_width = 0.95 * (c.variance > 0.0 ? pi / 8.0 : pi / 4.0);
   const double tilt = log_moneyness >= 0.0 ? half_width : -half_width;
   const double low = std::sin(tilt - half_width), high = std::sin(tilt + half_width);
   const double scale = 1.0 / (high - low);  // the poles lie on the edges of the strip of the quadrature
-  return {true, tilt, -scale * high, scale, 2.0 * pi * half_width / digits};
+  return {.bends = true,
+          .tilt = tilt,
+          .centre = -scale * high,
+          .scale = scale,
+          .step = 2.0 * pi * half_width / digits};
 }
 
 /// Integral of exp(i u log_moneyness + T psi(u)) / (u (u + i)) du / (2 pi) by the trapezoidal rule. The

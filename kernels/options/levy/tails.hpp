@@ -24,8 +24,12 @@ KOKKOS_INLINE_FUNCTION Tails<R> make_tails(const ThreadGroup& group, const PutPa
     const R a = put.jump[0] * p * exponential(-up * length),
             b = put.jump[0] * (1.0 - p) * exponential(-down * length);
     const R i = 1.0 / up, j = 1.0 / down;
-    return {b, b * down / (down + 1.0) * exponential(-length), a, a * up / (up - 1.0) * exponential(length),
-            a * (length * length + 2.0 * i * (length + i)) + b * (length * length + 2.0 * j * (length + j))};
+    return {.down = b,
+            .down_price = b * down / (down + 1.0) * exponential(-length),
+            .up = a,
+            .up_price = a * up / (up - 1.0) * exponential(length),
+            .variance = a * (length * length + 2.0 * i * (length + i)) +
+                        b * (length * length + 2.0 * j * (length + j))};
   }
   if (put.model == JumpModel::merton) {
     const R rate = put.jump[0], m = put.jump[1], s = merton_deviation(put);
@@ -33,11 +37,15 @@ KOKKOS_INLINE_FUNCTION Tails<R> make_tails(const ThreadGroup& group, const PutPa
     const R z_up = (length - m) / s, z_down = (length + m) / s;
     const R up = normal_upper_tail(z_up), down = normal_upper_tail(z_down);
     const auto density = [](R z) { return 0.3989422804014327 * exponential(-0.5 * z * z); };
-    return {
-        rate * down, price * normal_upper_tail(z_down + s), rate * up, price * normal_upper_tail(z_up - s),
-        rate * (square * (up + down) + s * ((length + m) * density(z_up) + (length - m) * density(z_down)))};
+    return {.down = rate * down,
+            .down_price = price * normal_upper_tail(z_down + s),
+            .up = rate * up,
+            .up_price = price * normal_upper_tail(z_up - s),
+            .variance = rate * (square * (up + down) +
+                                s * ((length + m) * density(z_up) + (length - m) * density(z_down)))};
   }
-  if (put.model != JumpModel::generalized_hyperbolic) return {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
+  if (put.model != JumpModel::generalized_hyperbolic)
+    return {.down = R(0.0), .down_price = R(0.0), .up = R(0.0), .up_price = R(0.0), .variance = R(0.0)};
   const R shrink = exponential(-length);
   const Kokkos::Array<R, 5> tails = sums(group, [&](int lane) {
     Kokkos::Array<R, 5> sum = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
@@ -54,7 +62,8 @@ KOKKOS_INLINE_FUNCTION Tails<R> make_tails(const ThreadGroup& group, const PutPa
     }
     return sum;
   });
-  return {tails[0], tails[1], tails[2], tails[3], tails[4]};
+  return {
+      .down = tails[0], .down_price = tails[1], .up = tails[2], .up_price = tails[3], .variance = tails[4]};
 }
 
 }  // namespace drogue::options

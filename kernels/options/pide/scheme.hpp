@@ -57,8 +57,11 @@ KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>
                                            int steps) {
   const R h = grid.h, lowest = -grid.strike * h;
   const R advection = 0.5 * jumps.drift / h, diffusion = jumps.diffusion / (h * h);
-  return {diffusion - advection, diffusion + advection, optimal_exercise_time(put, lowest),
-          exponential(lowest), steps};
+  return {.lower = diffusion - advection,
+          .upper = diffusion + advection,
+          .exercise_time = optimal_exercise_time(put, lowest),
+          .lowest_asset = exponential(lowest),
+          .steps = steps};
 }
 
 /// Implicit diffusion beyond D that the explicit jumps require for stability; the same amount is subtracted
@@ -152,18 +155,18 @@ struct StepTable {
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION StepFactors<R> load(int n) const {
     const R* at = factors + (n - 1) % max_lanes;
-    return {at[0],
-            at[max_lanes],
-            at[2 * max_lanes],
-            at[3 * max_lanes],
-            at[4 * max_lanes],
-            at[5 * max_lanes],
-            at[6 * max_lanes],
-            at[7 * max_lanes],
-            at[8 * max_lanes],
-            at[9 * max_lanes],
-            {at[10 * max_lanes], at[11 * max_lanes]},
-            at[12 * max_lanes]};
+    return {.value = at[0],
+            .before = at[max_lanes],
+            .explicit_now = at[2 * max_lanes],
+            .explicit_before = at[3 * max_lanes],
+            .compensation = at[4 * max_lanes],
+            .compensation_before = at[5 * max_lanes],
+            .inverse_pivot = at[6 * max_lanes],
+            .diagonal = at[7 * max_lanes],
+            .from_left = at[8 * max_lanes],
+            .from_right = at[9 * max_lanes],
+            .discount = {at[10 * max_lanes], at[11 * max_lanes]},
+            .left_value = at[12 * max_lanes]};
   }
 };
 

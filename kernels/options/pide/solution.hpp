@@ -133,7 +133,15 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_below_grid(const NormalizedPut& p
   const double strike = discount.strike, price = discount.asset * asset;
   const bool immediate = put.early && strike == 1.0 && discount.asset == 1.0;
   const double time_derivative = immediate ? 0.0 : put.dividend * price - put.rate * strike;
-  return {strike - price, -price, -price, time_derivative, boundary, 0.0, 0.0, 0.0, 0.0};
+  return {.value = strike - price,
+          .first_derivative = -price,
+          .second_derivative = -price,
+          .time_derivative = time_derivative,
+          .boundary = boundary,
+          .interpolation_error = 0.0,
+          .time_value_step = 0.0,
+          .time_value_rate = 0.0,
+          .standing_error = 0.0};
 }
 
 /// Interpolates the solution of one member. `time_derivative` holds dV/dtau.
@@ -143,7 +151,8 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
   const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
-  SolutionAtSpot solution{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0, 0.0, 0.0};
+  SolutionAtSpot solution{};
+  solution.boundary = device::portable::not_a_number();
   if (!(h < 1e30)) {
     solution.value = device::portable::not_a_number();
     return solution;
@@ -161,15 +170,15 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
   }
   if (put.early && (x <= solution.boundary) && !(put.split && t < 1.0)) {
     if (!put.split || is_exercised(value(static_cast<int>(t)), static_cast<int>(t) - strike, h))
-      return {1.0 - asset,
-              -asset,
-              -asset,
-              0.0,
-              solution.boundary,
-              0.0,
-              solution.time_value_step,
-              solution.time_value_rate,
-              solution.standing_error};
+      return {.value = 1.0 - asset,
+              .first_derivative = -asset,
+              .second_derivative = -asset,
+              .time_derivative = 0.0,
+              .boundary = solution.boundary,
+              .interpolation_error = 0.0,
+              .time_value_step = solution.time_value_step,
+              .time_value_rate = solution.time_value_rate,
+              .standing_error = solution.standing_error};
   }
   if (t <= 0.0) return solution_below_grid(put, asset, solution.boundary);
   if (t >= mesh) return solution;

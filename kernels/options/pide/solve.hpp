@@ -57,12 +57,12 @@ struct SolveMemory {
     return coarse_weights(mesh) + WeightLayout<R>(mesh / 2).size();
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION LevyMeasure<R> measure_memory() const {
-    return {tables,
-            tables + Mixture::size,
-            tables + 2 * Mixture::size,
-            tables + 2 * Mixture::size + Mixture::low,
-            R(0.0),
-            R(0.0)};
+    return {.s = tables,
+            .c = tables + Mixture::size,
+            .up = tables + 2 * Mixture::size,
+            .down = tables + 2 * Mixture::size + Mixture::low,
+            .variance = R(0.0),
+            .high = R(0.0)};
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* ratio() const { return tables + 3 * Mixture::size; }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* symbol() const { return tables + StepFactors<R>::size * max_lanes; }
@@ -105,13 +105,13 @@ template <class ThreadGroup, class R>
                                                            const MarchRecord& record) {
   const int mesh = grid.mesh, count = node_count(mesh), steps = scheme.steps;
   const R h = grid.h;
-  March<R> march{{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh)},
-                 {memory.row(3, mesh), memory.row(4, mesh)},
-                 memory.row(5, mesh),
-                 memory.row(6, mesh),
-                 memory.row(7, mesh),
-                 memory.row(8, mesh),
-                 memory.scratch};
+  March<R> march{.value = {memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh)},
+                 .jump = {memory.row(3, mesh), memory.row(4, mesh)},
+                 .other = memory.row(5, mesh),
+                 .y = memory.row(6, mesh),
+                 .floor = memory.row(7, mesh),
+                 .multiplier = memory.row(8, mesh),
+                 .scratch = memory.scratch};
   group.each([=](int thread) {
     for (int k = thread; k < 9 * count; k += group.threads()) memory.nodes[k] = 0.0;
   });
@@ -199,17 +199,23 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_on_grid(const ThreadGroup& group, const Pu
                                               const R* finer = nullptr) {
   const int mesh = mesh_for<fixed>(grid.mesh);
   constexpr int left = fixed > 0 ? 3 : 9;
-  return discretize_jumps(
-      group, put, measure, tails, grid,
-      {weights, memory.row(left, mesh), memory.row(left + 1, mesh), memory.symbol(), memory.row(1, mesh),
-       memory.row(2, mesh), memory.row(0, mesh), memory.ratio(), memory.scratch},
-      finer);
+  return discretize_jumps(group, put, measure, tails, grid,
+                          {.w = weights,
+                           .exit_mass = memory.row(left, mesh),
+                           .exit_price = memory.row(left + 1, mesh),
+                           .symbol = memory.symbol(),
+                           .even = memory.row(1, mesh),
+                           .odd = memory.row(2, mesh),
+                           .both = memory.row(0, mesh),
+                           .ratio = memory.ratio(),
+                           .scratch = memory.scratch},
+                          finer);
 }
 
-/// Variance by which the finite differences spread the payoff until maturity.
+/// Variance by which Brownian motion and jumps within a step spread the payoff until maturity.
 template <class R>
 KOKKOS_INLINE_FUNCTION R payoff_spread(const PutPack<R>& put, const Jumps<R>& jumps) {
-  return 2.0 * jumps.diffusion * put.maturity;
+  return 2.0 * (jumps.diffusion - jumps.moved) * put.maturity;
 }
 
 /// Error estimate of a solve on `grid` that is compared with one on the coarser grid.

@@ -47,8 +47,12 @@ double annual_variance(const Contract& contract, const double* panels, const int
   const NormalizedPut put = normalize(contract);
   std::vector<double> memory(2 * Mixture::size + 2 * Mixture::low);
   double* const at = memory.data();
-  const LevyMeasure<double> place{
-      at, at + Mixture::size, at + 2 * Mixture::size, at + 2 * Mixture::size + Mixture::low, 0.0, 0.0};
+  const LevyMeasure<double> place{.s = at,
+                                  .c = at + Mixture::size,
+                                  .up = at + 2 * Mixture::size,
+                                  .down = at + 2 * Mixture::size + Mixture::low,
+                                  .variance = 0.0,
+                                  .high = 0.0};
   const LevyMeasure<double> measure = make_levy_measure(SerialThreadGroup<double>{}, pack_puts<double>(&put),
                                                         &put, panels, panel_slot, place);
   return put.variance + measure.variance;

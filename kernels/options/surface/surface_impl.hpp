@@ -160,8 +160,14 @@ class SurfaceImpl final : public Pricer {
       launch(static_cast<JumpModel>(model), resolution, begin, end[model]);
     const int count = static_cast<int>(_staged_queries.size());
     interpolate_prices(space,
-                       {_contracts, _strike_groups, _values, _queries, _prices, resolution.mesh,
-                        resolution.steps, tolerance_of(_settings)},
+                       {.contracts = _contracts,
+                        .strike_groups = _strike_groups,
+                        .values = _values,
+                        .queries = _queries,
+                        .prices = _prices,
+                        .mesh = resolution.mesh,
+                        .steps = resolution.steps,
+                        .tolerance = tolerance_of(_settings)},
                        count);
     space.fence("drogue::options: strikes are priced");
     times.compute += computing.seconds();

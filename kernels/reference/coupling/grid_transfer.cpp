@@ -7,14 +7,14 @@ namespace drogue::reference {
 
 namespace {
 
-using coupling::DeltaKernel;
+using coupling::DeltaFunction;
 using coupling::StaggeredGrid;
 
-double delta_factor(DeltaKernel kernel, bool along, double x) {
-  switch (kernel) {
-    case DeltaKernel::cbs43:
+double delta_factor(DeltaFunction delta, bool along, double x) {
+  switch (delta) {
+    case DeltaFunction::cbs43:
       return b_spline(along ? 4 : 3, x);
-    case DeltaKernel::cbs32:
+    case DeltaFunction::cbs32:
       return b_spline(along ? 3 : 2, x);
     default:
       return peskin_four_point(x);
@@ -22,7 +22,7 @@ double delta_factor(DeltaKernel kernel, bool along, double x) {
 }
 
 /// Weights of all faces of a component along one axis.
-std::vector<double> axis_weights(const StaggeredGrid& grid, DeltaKernel kernel, std::size_t component,
+std::vector<double> axis_weights(const StaggeredGrid& grid, DeltaFunction delta, std::size_t component,
                                  std::size_t axis, double x) {
   const bool along = component == axis;
   const int count = faces_along(grid, component, axis);
@@ -32,7 +32,7 @@ std::vector<double> axis_weights(const StaggeredGrid& grid, DeltaKernel kernel, 
     const double cells = grid.cells[axis];
     const double face = grid.periodic[axis] ? sample - cells * std::floor(sample / cells)
                                             : std::clamp(sample, 0.0, count - 1.0);
-    weights[static_cast<std::size_t>(face)] += delta_factor(kernel, along, sample - position);
+    weights[static_cast<std::size_t>(face)] += delta_factor(delta, along, sample - position);
   }
   return weights;
 }
@@ -68,11 +68,11 @@ FaceField zero_field(const StaggeredGrid& grid) {
   return field;
 }
 
-std::vector<double> face_weights(const StaggeredGrid& grid, DeltaKernel kernel, std::size_t component,
+std::vector<double> face_weights(const StaggeredGrid& grid, DeltaFunction delta, std::size_t component,
                                  const Vector& point) {
   std::array<std::vector<double>, 3> of_axis;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    of_axis[axis] = axis_weights(grid, kernel, component, axis, point[axis]);
+    of_axis[axis] = axis_weights(grid, delta, component, axis, point[axis]);
   std::vector<double> weights;
   for (const double z : of_axis[2])
     for (const double y : of_axis[1])
@@ -80,13 +80,13 @@ std::vector<double> face_weights(const StaggeredGrid& grid, DeltaKernel kernel, 
   return weights;
 }
 
-std::vector<Vector> interpolate(const StaggeredGrid& grid, DeltaKernel kernel, const FaceField& field,
+std::vector<Vector> interpolate(const StaggeredGrid& grid, DeltaFunction delta, const FaceField& field,
                                 const std::vector<Vector>& points) {
   std::vector<Vector> result;
   for (const Vector& point : points) {
     Vector value{};
     for (std::size_t d = 0; d < 3; ++d) {
-      const std::vector<double> weights = face_weights(grid, kernel, d, point);
+      const std::vector<double> weights = face_weights(grid, delta, d, point);
       for (std::size_t n = 0; n < weights.size(); ++n) value[d] += weights[n] * field[d][n];
     }
     result.push_back(value);
@@ -94,24 +94,24 @@ std::vector<Vector> interpolate(const StaggeredGrid& grid, DeltaKernel kernel, c
   return result;
 }
 
-FaceField spread(const StaggeredGrid& grid, DeltaKernel kernel, const std::vector<Vector>& points,
+FaceField spread(const StaggeredGrid& grid, DeltaFunction delta, const std::vector<Vector>& points,
                  const std::vector<Vector>& forces) {
   const double volume = grid.spacing[0] * grid.spacing[1] * grid.spacing[2];
   FaceField field = zero_field(grid);
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t d = 0; d < 3; ++d) {
-      const std::vector<double> weights = face_weights(grid, kernel, d, points[i]);
+      const std::vector<double> weights = face_weights(grid, delta, d, points[i]);
       for (std::size_t n = 0; n < weights.size(); ++n) field[d][n] += weights[n] * forces[i][d] / volume;
     }
   return field;
 }
 
-std::vector<Vector> spread_row_sums(const StaggeredGrid& grid, DeltaKernel kernel,
+std::vector<Vector> spread_row_sums(const StaggeredGrid& grid, DeltaFunction delta,
                                     const std::vector<Vector>& points, const std::vector<double>& areas,
                                     double density) {
   std::vector<Vector> forces;
   for (const double area : areas) forces.push_back({area / density, area / density, area / density});
-  return interpolate(grid, kernel, spread(grid, kernel, points, forces), points);
+  return interpolate(grid, delta, spread(grid, delta, points, forces), points);
 }
 
 }  // namespace drogue::reference

@@ -28,21 +28,21 @@ using FaceField = std::array<std::vector<double>, 3>;
 /// Weights of all faces of a component for a point (m), axis 0 fastest: products of delta functions. Faces
 /// beyond a bounded side give their weight to the nearest face.
 [[nodiscard]] std::vector<double> face_weights(const coupling::StaggeredGrid& grid,
-                                               coupling::DeltaKernel kernel, std::size_t component,
+                                               coupling::DeltaFunction delta, std::size_t component,
                                                const Vector& point);
 
 /// Values at points (m), in the unit of the field.
 [[nodiscard]] std::vector<Vector> interpolate(const coupling::StaggeredGrid& grid,
-                                              coupling::DeltaKernel kernel, const FaceField& field,
+                                              coupling::DeltaFunction delta, const FaceField& field,
                                               const std::vector<Vector>& points);
 
 /// Force densities, N/m^3, of forces (N) on points (m).
-[[nodiscard]] FaceField spread(const coupling::StaggeredGrid& grid, coupling::DeltaKernel kernel,
+[[nodiscard]] FaceField spread(const coupling::StaggeredGrid& grid, coupling::DeltaFunction delta,
                                const std::vector<Vector>& points, const std::vector<Vector>& forces);
 
 /// Row sums of interpolation after spreading over the fluid density (kg/m^3), from areas (m^2): m^2/kg.
 [[nodiscard]] std::vector<Vector> spread_row_sums(const coupling::StaggeredGrid& grid,
-                                                  coupling::DeltaKernel kernel,
+                                                  coupling::DeltaFunction delta,
                                                   const std::vector<Vector>& points,
                                                   const std::vector<double>& areas, double density);
 

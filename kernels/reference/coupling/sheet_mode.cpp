@@ -7,19 +7,19 @@
 namespace drogue::reference {
 
 SheetMode coupled_step(const SheetMode& state, const SheetModeParameters& p, bool is_first) {
-  const double tau = p.dt / p.substeps, inverse_mass = 1.0 / p.mass + p.compliance;
+  const double tau = p.dt / p.substeps, inverse_mass = 1.0 / p.mass + p.inverse_air_mass;
   SheetMode next = state;
   double beside = state.air, impulse = 0.0;
   for (int substep = 0; substep < p.substeps; ++substep) {
     next.velocity -= tau * p.stiffness / p.mass * next.displacement;
     beside += tau * (state.acceleration + state.defect);
     const double relative = next.velocity - beside;
-    const double given = std::isinf(p.alpha)
-                             ? relative / inverse_mass
-                             : tau * p.alpha * relative / (1.0 + tau * p.alpha * inverse_mass);
-    next.velocity -= given / p.mass;
-    beside += p.compliance * given;
-    impulse += given;
+    const double normal_impulse = std::isinf(p.alpha)
+                                      ? relative / inverse_mass
+                                      : tau * p.alpha * relative / (1.0 + tau * p.alpha * inverse_mass);
+    next.velocity -= normal_impulse / p.mass;
+    beside += p.inverse_air_mass * normal_impulse;
+    impulse += normal_impulse;
     next.displacement += tau * next.velocity;
   }
   next.air = state.air + p.response * impulse;
@@ -29,7 +29,7 @@ SheetMode coupled_step(const SheetMode& state, const SheetModeParameters& p, boo
   next.defect = 0.0;
   if (p.defect_filter > 0.0)
     next.defect =
-        state.defect + p.defect_filter * ((p.spread - p.compliance) * impulse / p.dt - state.defect);
+        state.defect + p.defect_filter * ((p.spread - p.inverse_air_mass) * impulse / p.dt - state.defect);
   return next;
 }
 
@@ -37,8 +37,12 @@ SheetModeMatrix amplification(const SheetModeParameters& p) {
   SheetModeMatrix matrix{};
   for (std::size_t column = 0; column < 5; ++column) {
     const auto unit = [column](std::size_t k) { return k == column ? 1.0 : 0.0; };
-    const SheetMode image =
-        coupled_step({p.dt * unit(0), unit(1), unit(2), unit(3) / p.dt, unit(4) / p.dt}, p);
+    const SheetMode image = coupled_step({.displacement = p.dt * unit(0),
+                                          .velocity = unit(1),
+                                          .air = unit(2),
+                                          .acceleration = unit(3) / p.dt,
+                                          .defect = unit(4) / p.dt},
+                                         p);
     matrix[0][column] = image.displacement / p.dt;
     matrix[1][column] = image.velocity;
     matrix[2][column] = image.air;

@@ -19,7 +19,7 @@ struct SheetModeParameters {
   double mass = 1.0;       ///< of the sheet, kg/m^2
   double stiffness = 0.0;  ///< restoring pressure per displacement, Pa/m
   /// Change of a vertex's copy of the air per impulse per area, m^2/kg: the row sum, unless that is scaled.
-  double compliance = 1.0;
+  double inverse_air_mass = 1.0;
   /// Change of the interpolated velocity by spreading alone, m^2/kg; at most the row sum.
   double spread = 1.0;
   /// Such a change after a projection: the inverse of the added mass, m^2/kg; at most `spread`.

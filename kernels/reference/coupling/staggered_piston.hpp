@@ -14,7 +14,7 @@ struct Piston {
 struct PistonParameters {
   double mass = 1.0;               ///< of the piston, kg/m^2
   double fluid_mass = 1.0;         ///< of the fluid in the channel, kg/m^2
-  double compliance = 1.0;         ///< row sum of interpolation after spreading, m^2/kg
+  double inverse_air_mass = 1.0;   ///< row sum of interpolation after spreading, m^2/kg
   double alpha = 0.0, beta = 0.0;  ///< porous law, Pa s/m and Pa s^2/m^2
   double filter = 0.5;             ///< weight of the present step in the acceleration
   double dt = 0.01;                ///< s
@@ -25,8 +25,8 @@ struct PistonParameters {
 [[nodiscard]] Piston explicit_step(const Piston& state, const PistonParameters& parameters, bool is_first);
 
 /// Largest magnitude by which a step multiplies small motions of an impermeable piston: of the roots z of
-/// (z - 1)^2 + (r + s + f s) (z - 1) + f (r + s) = 0 with the filter f, r = 1 / (compliance mass) and s = 1 /
-/// (compliance fluid_mass). Above 1 the coupling is unstable.
+/// (z - 1)^2 + (r + s + f s) (z - 1) + f (r + s) = 0 with the filter f, r = 1 / (inverse_air_mass mass) and s
+/// = 1 / (inverse_air_mass fluid_mass). Above 1 the coupling is unstable.
 [[nodiscard]] double explicit_growth(const PistonParameters& parameters);
 
 }  // namespace drogue::reference

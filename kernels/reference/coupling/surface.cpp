@@ -33,10 +33,6 @@ Extended unit_normal(const Extended& u, const Extended& v) {
   return n;
 }
 
-Vector rounded(const Extended& a) {
-  return {static_cast<double>(a[0]), static_cast<double>(a[1]), static_cast<double>(a[2])};
-}
-
 }  // namespace
 
 SurfaceGeometry surface_geometry(const Mesh& mesh, const std::vector<Vector>& x) {
@@ -50,8 +46,6 @@ SurfaceGeometry surface_geometry(const Mesh& mesh, const std::vector<Vector>& x)
                    bc = extended_difference(c, b);
     const Real size = heron({norm(ab), norm(ac), norm(bc)});
     const Extended normal = unit_normal(ab, ac);
-    result.triangle_area.push_back(static_cast<double>(size));
-    result.triangle_normal.push_back(rounded(normal));
     for (const int corner : triangle) {
       const auto i = static_cast<std::size_t>(corner);
       area[i] += size / 3.0L;
@@ -59,10 +53,11 @@ SurfaceGeometry surface_geometry(const Mesh& mesh, const std::vector<Vector>& x)
     }
   }
   for (std::size_t i = 0; i < x.size(); ++i) {
-    result.vertex_area.push_back(static_cast<double>(area[i]));
+    result.area.push_back(static_cast<double>(area[i]));
     const Real size = norm(weighted[i]);
-    for (Real& value : weighted[i]) value = size > 0.0L ? value / size : 0.0L;
-    result.vertex_normal.push_back(rounded(weighted[i]));
+    Vector& normal = result.normal.emplace_back();
+    if (size > 0.0L)
+      for (std::size_t k = 0; k < 3; ++k) normal[k] = static_cast<double>(weighted[i][k] / size);
   }
   return result;
 }

@@ -6,10 +6,10 @@
 
 namespace drogue::reference {
 
-/// Areas (m^2) and unit normals of a surface of triangles.
+/// Areas (m^2) and unit normals of the vertices of a surface of triangles.
 struct SurfaceGeometry {
-  std::vector<double> triangle_area, vertex_area;
-  std::vector<Vector> triangle_normal, vertex_normal;
+  std::vector<double> area;
+  std::vector<Vector> normal;
 };
 
 /// Geometry at positions x, m: areas by Heron's formula, a third of each triangle scattered to its corners,

@@ -49,10 +49,10 @@ std::vector<Vector> dashpot_forces(const Mesh& mesh, const std::vector<double>& 
     double lengthening = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
       lengthening += (v[j][axis] - v[i][axis]) * (x[j][axis] - x[i][axis]) / length;
-    const double pull = rate / (1.0 / mass[i] + 1.0 / mass[j]) * lengthening;
+    const double tension = rate / (1.0 / mass[i] + 1.0 / mass[j]) * lengthening;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      force[i][axis] += pull * (x[j][axis] - x[i][axis]) / length;
-      force[j][axis] -= pull * (x[j][axis] - x[i][axis]) / length;
+      force[i][axis] += tension * (x[j][axis] - x[i][axis]) / length;
+      force[j][axis] -= tension * (x[j][axis] - x[i][axis]) / length;
     }
   }
   return force;

@@ -78,6 +78,7 @@ struct GasScene {
   double end_time = 0.0;  ///< s
   Output output;
   Verify verify;
+  std::vector<std::string> notices;  ///< `framework::Scene::notices`
 };
 
 /// Source of the numerical scheme. `--seed-mode` replaces the scene's scheme by the baseline of [Shi].

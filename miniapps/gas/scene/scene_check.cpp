@@ -8,6 +8,7 @@
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
 #include "kernels/reference/gas/exact_riemann.hpp"
+#include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/gas/scene/scene_survey.hpp"
 #include "miniapps/gas/simulation/simulation.hpp"
 
@@ -152,8 +153,23 @@ Survey require_gas(const Table& root, const GasScene& scene) {
   return seen;
 }
 
-void check_initial(const Table& root, const GasScene& scene) {
+/// Refuses a given dt with which the run would need more steps than it may take. Notes one that follows from
+/// the CFL condition at the start, since it may grow.
+void check_steps(const Table& root, GasScene& scene, double largest_speed) {
+  const gas::Parameters& p = scene.parameters;
+  const bool is_fixed = p.fixed_dt > 0.0;
+  const double cells = static_cast<double>(p.cells), dx = (p.x_max - p.x_min) / cells;
+  const std::string text = framework::too_many_steps(
+      root, is_fixed ? "scheme.fixed_dt = " : "the CFL condition limits the first steps to ",
+      is_fixed ? p.fixed_dt : p.cfl * dx / largest_speed, scene.end_time, p.max_steps);
+  if (text.empty()) return;
+  if (is_fixed) contradict(root, "scheme.fixed_dt", text);
+  scene.notices.push_back(text + ", at which a run fails");
+}
+
+void check_initial(const Table& root, GasScene& scene) {
   const Survey seen = require_gas(root, scene);
+  check_steps(root, scene, seen.speed_max);
   if (scene.verify.reference) {
     GasScene finer = scene;
     finer.parameters = *scene.verify.reference;

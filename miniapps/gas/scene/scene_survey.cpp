@@ -28,7 +28,8 @@ Survey survey_cells(const InitialState& state, const gas::Parameters& parameters
       seen.first_bad = i;
       return seen;
     }
-    seen.merge({cell.p, cell.p, cell.u, cell.u});
+    const double sound = std::sqrt(parameters.gamma * cell.p / cell.rho);
+    seen.merge({cell.p, cell.p, cell.u, cell.u, std::abs(cell.u) + sound});
   }
   return seen;
 }
@@ -44,6 +45,7 @@ void Survey::merge(const Survey& other) {
   p_max = std::max(p_max, other.p_max);
   u_min = std::min(u_min, other.u_min);
   u_max = std::max(u_max, other.u_max);
+  speed_max = std::max(speed_max, other.speed_max);
   first_bad = std::min(first_bad, other.first_bad);
 }
 

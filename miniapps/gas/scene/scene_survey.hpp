@@ -14,6 +14,7 @@ struct Survey {
   double p_max = 0.0;
   double u_min = std::numeric_limits<double>::infinity();
   double u_max = -std::numeric_limits<double>::infinity();
+  double speed_max = 0.0;                                             ///< of |u| + c, m/s
   std::int64_t first_bad = std::numeric_limits<std::int64_t>::max();  ///< first invalid cell
 
   [[nodiscard]] bool uniform_flow() const;

@@ -18,16 +18,16 @@ double value_of(const Primitive& state, const std::string& field) {
   return field == "rho" ? state.rho : field == "u" ? state.u : state.p;
 }
 
-framework::Stop framework_stop(gas::Stop stop) {
+framework::StopReason framework_stop(gas::Stop stop) {
   switch (stop) {
     case gas::Stop::target:
-      return framework::Stop::target;
+      return framework::StopReason::target;
     case gas::Stop::pause:
-      return framework::Stop::pause;
+      return framework::StopReason::pause;
     case gas::Stop::interrupted:
-      return framework::Stop::interrupted;
+      return framework::StopReason::interrupted;
     default:
-      return framework::Stop::failed;
+      return framework::StopReason::failed;
   }
 }
 
@@ -45,13 +45,19 @@ std::string precision_name(const gas::Parameters& parameters) {
 
 run::DatasetSpec field_spec(const std::string& name, std::int64_t cells) {
   const std::vector<std::uint64_t> shape = {static_cast<std::uint64_t>(cells)};
-  if (name == "rho") return {name, shape, "kg/m^3", "cell", "density"};
-  if (name == "u") return {name, shape, "m/s", "cell", "velocity"};
-  return {name, shape, "Pa", "cell", "pressure"};
+  if (name == "rho")
+    return {.name = name, .shape = shape, .units = "kg/m^3", .centering = "cell", .description = "density"};
+  if (name == "u")
+    return {.name = name, .shape = shape, .units = "m/s", .centering = "cell", .description = "velocity"};
+  return {.name = name, .shape = shape, .units = "Pa", .centering = "cell", .description = "pressure"};
 }
 
 run::DatasetSpec cell_centre_spec(std::int64_t cells) {
-  return {"x", {static_cast<std::uint64_t>(cells)}, "m", "cell", "cell centres"};
+  return {.name = "x",
+          .shape = {static_cast<std::uint64_t>(cells)},
+          .units = "m",
+          .centering = "cell",
+          .description = "cell centres"};
 }
 
 Simulation::Simulation(const GasScene& scene, const framework::SimulationSettings& settings)
@@ -82,8 +88,8 @@ framework::SimulationTime Simulation::now() {
   return {now.step, now.time};
 }
 
-framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                                    const framework::Poll& poll) {
+framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits,
+                                          const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
   _stop = _solver->advance(
       limits.target_time, limits.pause_step, limits.row_every,
@@ -91,9 +97,9 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
       [&](const gas::Status& status) {
         return poll({status.step, status.time});
       });
-  const framework::Stop stop = framework_stop(_stop);
+  const framework::StopReason stop = framework_stop(_stop);
   // The last good state of a failed run ends its history.
-  if (stop == framework::Stop::failed && limits.row_every > 0) rows(history_row(_solver->totals()));
+  if (stop == framework::StopReason::failed && limits.row_every > 0) rows(history_row(_solver->totals()));
   return stop;
 }
 

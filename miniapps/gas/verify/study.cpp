@@ -12,11 +12,11 @@ namespace drogue::gas_app {
 
 namespace {
 
-const study::Columns columns = {{"weno", "weno_power", "splitting", "time_scheme", "precision"},
-                                "cells",
-                                {"l1_density", "l1_velocity", "l1_pressure", "conservation"},
-                                "l1_density",
-                                "L1 density"};
+const study::Columns columns = {.settings = {"weno", "weno_power", "splitting", "time_scheme", "precision"},
+                                .mesh = "cells",
+                                .errors = {"l1_density", "l1_velocity", "l1_pressure", "conservation"},
+                                .shown = "l1_density",
+                                .shown_title = "L1 density"};
 
 study::Axes parse(const std::string& text) {
   return study::parse_axes(text, {"cells", 8, 28},

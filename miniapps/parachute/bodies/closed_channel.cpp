@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/scene/read.hpp"
+#include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -157,24 +158,6 @@ bool are_jointly_closing(const FlowScene& scene, const Body& body, std::size_t a
   return section.is_covered();
 }
 
-/// Notes bodies that leave so little of a channel open that nearly all of the fluid has to stop before them,
-/// which the coupling follows within many steps.
-void note_narrow_gaps(FlowScene& scene) {
-  constexpr double wide = 0.6;
-  const flow::Parameters& p = scene.parameters;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!has_sides(p, axis) || scene.bodies[i].mount) continue;
-      Section section(p, axis);
-      cover(section, scene.bodies[i]);
-      if (section.is_covered() || section.covered_part() < wide) continue;
-      scene.notices.push_back("body[" + std::to_string(i) + "] covers most of the channel along " +
-                              axis_names[axis] +
-                              ": its force follows sudden changes of the flow within some " +
-                              std::to_string(p.cells[axis]) + " steps; run.max_dt shortens them");
-    }
-}
-
 }  // namespace
 
 std::vector<coupling::ClosingSheet> closing_sheets(const FlowScene& scene) {
@@ -198,10 +181,9 @@ std::vector<coupling::ClosingSheet> closing_sheets(const FlowScene& scene) {
   return sheets;
 }
 
-void check_closed_channels(const scene::Table& root, FlowScene& scene) {
+void check_closed_channels(const scene::Table& root, const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   const bool has_own_step = p.fixed_dt > 0.0 || root.given("run.max_dt");
-  if (!has_own_step) note_narrow_gaps(scene);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::string moved;  // by the first impermeable body
     bool has_impermeable = false;
@@ -232,6 +214,33 @@ void check_closed_channels(const scene::Table& root, FlowScene& scene) {
                               " and is impermeable, as another body that moves otherwise: the fluid "
                               "between them, which is incompressible, would have to pass");
       has_impermeable = true, moved = body.motion[axis];
+    }
+  }
+}
+
+void note_narrow_channels(const scene::Table& root, FlowScene& scene) {
+  constexpr double wide = 0.6;
+  const flow::Parameters& p = scene.parameters;
+  if (!scene.has_sheets() || p.fixed_dt > 0.0 || root.given("run.max_dt")) return;
+  const Sheets sheets = make_all_sheets(scene.bodies, scene.canopies, p.density, p.viscosity, scene.flags);
+  const SheetParts parts = parts_of(scene.bodies, sheets);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!has_sides(p, axis)) continue;
+    std::vector<Section> sections(parts.ends.size(), Section(p, axis));
+    for (const auto& corners : sheets.fabric.mesh.triangles) {
+      std::array<mesh::Vector, 3> corner{};
+      for (std::size_t k = 0; k < 3; ++k) corner[k] = sheets.positions[static_cast<std::size_t>(corners[k])];
+      sections[parts.of(corners[0])].cover(corner);
+    }
+    for (std::size_t part = 0; part < sections.size(); ++part) {
+      // Of bodies that close a channel, the step is exact or needs a given bound.
+      const bool is_body = part < parts.bodies,
+                 is_treated = is_body && (scene.bodies[part].mount || sections[part].is_covered());
+      if (is_treated || sections[part].covered_part() < wide) continue;
+      scene.notices.push_back(parts.name(part) + " covers most of the channel along " + axis_names[axis] +
+                              (is_body ? "" : " at the start") +
+                              ": its force follows sudden changes of the flow within some " +
+                              std::to_string(p.cells[axis]) + " steps; run.max_dt shortens them");
     }
   }
 }

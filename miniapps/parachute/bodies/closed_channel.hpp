@@ -12,8 +12,12 @@ namespace drogue::parachute_app {
 [[nodiscard]] std::vector<coupling::ClosingSheet> closing_sheets(const FlowScene& scene);
 
 /// Refuses bodies that close a channel where no flow is possible, or whose flow the coupling would follow
-/// only after many steps, without a given bound of dt. Notes bodies that nearly close one, likewise. Throws
-/// `Failure` (invalid_scene).
-void check_closed_channels(const scene::Table& root, FlowScene& scene);
+/// only after many steps, without a given bound of dt. Throws `Failure` (invalid_scene).
+void check_closed_channels(const scene::Table& root, const FlowScene& scene);
+
+/// Notes sheets of a complete scene that leave so little of a channel open that nearly all of the fluid has
+/// to stop before them, which the coupling follows within many steps, without a given bound of dt. Throws
+/// only std::bad_alloc.
+void note_narrow_channels(const scene::Table& root, FlowScene& scene);
 
 }  // namespace drogue::parachute_app

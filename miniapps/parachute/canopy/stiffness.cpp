@@ -99,7 +99,11 @@ StiffPart cloth_part(const Canopy& canopy, const fabric::Parameters& p) {
     const double frequency = std::sqrt(rows[i].sum() / p.mass[i]);
     if (!(frequency > part.frequency)) continue;
     const bool by_vent = canopy.vent > 0.0 && rows[i].least_height < much_smaller * canopy.edge_length;
-    part = by_vent ? StiffPart{"vent", canopy.vent, "m", frequency, "another"}
+    part = by_vent ? StiffPart{.key = "vent",
+                               .value = canopy.vent,
+                               .unit = "m",
+                               .frequency = frequency,
+                               .remedy = "another"}
                    : StiffPart{"membrane_modulus", canopy.membrane_modulus, "N/m", frequency};
   }
   return part;

@@ -64,8 +64,8 @@ auto members(IsMaybeConst<fabric::Parameters> auto& parameters) {
 }
 
 auto members(IsMaybeConst<coupling::SheetParameters> auto& sheet) {
-  auto& [kernel, law, law_of_vertex, filter, defect_filter, edge_inset, method, closing] = sheet;
-  return std::tie(kernel, law, law_of_vertex, filter, defect_filter, edge_inset, method, closing);
+  auto& [delta, law, law_of_vertex, filter, defect_filter, edge_inset, method, closing] = sheet;
+  return std::tie(delta, law, law_of_vertex, filter, defect_filter, edge_inset, method, closing);
 }
 
 auto members(IsMaybeConst<coupling::LineCut> auto& cut) {

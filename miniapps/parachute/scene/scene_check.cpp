@@ -12,6 +12,7 @@
 #include "kernels/flow/diffusive_step.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
 #include "miniapps/parachute/bodies/body_overlap.hpp"
+#include "miniapps/parachute/bodies/closed_channel.hpp"
 #include "miniapps/parachute/canopy/canopy_check.hpp"
 #include "miniapps/parachute/canopy/image_check.hpp"
 #include "miniapps/parachute/flags/flag_check.hpp"
@@ -238,6 +239,29 @@ void check_initial(const Table& root, const FlowScene& scene) {
   }
 }
 
+/// Notes the one scheme without any dissipation whose steps amplify waves.
+void note_growing_energy(FlowScene& scene) {
+  const flow::Parameters& p = scene.parameters;
+  if (p.time_scheme == flow::TimeScheme::ab2 && p.advection == flow::Advection::central &&
+      p.viscosity == 0.0 && p.turbulence == flow::Turbulence::none)
+    scene.notices.emplace_back(
+        "fluid.viscosity = 0.0: with flow.advection = \"central\" the kinetic energy grows by about a "
+        "percent "
+        "in steps of \"ab2\", which \"crank-nicolson\" takes too; flow.time = \"rk3\" keeps it from growing");
+}
+
+/// Notes bodies whose first forces the defect would hold: what a vertex expects and the grid does not see
+/// stays, and steps of implicit diffusion begin short, where the forces of a start are largest.
+void note_lasting_forces(FlowScene& scene) {
+  if (scene.bodies.empty() || scene.coupling.defect_filter == 0.0 ||
+      scene.parameters.diffusion != flow::Diffusion::crank_nicolson)
+    return;
+  scene.notices.emplace_back(
+      "coupling.defect_filter: with flow.diffusion = \"crank-nicolson\", forces of a body that meets the "
+      "fluid at once do not decay, and its drag may be 40 % too large; 0 avoids that, and so does a motion "
+      "that begins from rest");
+}
+
 double least_width(const flow::Parameters& p) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -308,14 +332,37 @@ void bound_step_by_mounts(FlowScene& scene) {
   }
 }
 
+/// Largest dt, s, in which implicit diffusion spreads the force of a sheet over a cell: the coupling takes
+/// the response of the fluid to it for that without diffusion, and corrects this within some nu dt / h^2
+/// steps. Infinite for explicit diffusion, whose steps are shorter.
+double dt_of_sheets_in_implicit_diffusion(const flow::Parameters& p) {
+  if (p.diffusion != flow::Diffusion::crank_nicolson) return std::numeric_limits<double>::infinity();
+  const double h = least_width(p);
+  return h * h * p.density / p.viscosity;
+}
+
+/// Notes a given largest dt, s, beyond the one that sheets need in implicit diffusion.
+void note_slow_sheets(FlowScene& scene, double given, double enough) {
+  if (given <= 2.0 * enough) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << (scene.parameters.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ") << given
+       << " s: viscosity spreads the force of a sheet over several cells in a step, so that forces follow "
+          "changes of the flow late; "
+       << enough << " s do not";
+  scene.notices.push_back(text.str());
+}
+
 /// Gives run.max_dt its default. Fluid at rest would leave dt without a bound, while sheets that it moves
 /// need one; steps resolve prescribed motion by themselves.
 void complete_time_step(const Table& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  const bool is_given = p.fixed_dt > 0.0 || p.max_dt > 0.0;
+  const double given = p.fixed_dt > 0.0 ? p.fixed_dt : p.max_dt;
   bound_step_by_mounts(scene);
-  if (!scene.has_sheets() || is_given) return;
-  p.max_dt = p.max_dt > 0.0 ? std::min(p.max_dt, scene.end_time) : scene.end_time;
+  if (!scene.has_sheets()) return;
+  const double resolved = dt_of_sheets_in_implicit_diffusion(p);
+  if (given > 0.0) return note_slow_sheets(scene, given, resolved);
+  p.max_dt = std::min({p.max_dt > 0.0 ? p.max_dt : scene.end_time, scene.end_time, resolved});
   const double speed = known_speed(scene);
   if (speed > 0.0)
     p.max_dt = std::min(p.max_dt, scene.cfl() * least_width(p) / speed);
@@ -329,24 +376,15 @@ void complete_time_step(const Table& root, FlowScene& scene) {
 /// it may take.
 void check_steps(const Table& root, const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
-  const auto most = static_cast<double>(p.max_steps);
-  std::ostringstream text;
-  text.precision(3);
-  const auto refuse_step = [&](const char* key, double dt) {
-    const double steps = scene.end_time / dt;
-    if (steps <= most || root.given("run.max_steps")) return;
-    text << key << " = " << dt << " s: " << steps
-         << " steps to run.end_time, more than run.max_steps = " << most;
-    contradict(root, key, text.str());
+  const auto refuse = [&](const std::string& key, const char* sets, double dt, const char* remedy) {
+    const std::string text = framework::too_many_steps(root, key + sets, dt, scene.end_time, p.max_steps);
+    if (!text.empty()) contradict(root, key, text + remedy);
   };
-  if (p.fixed_dt > 0.0) return refuse_step("run.dt", p.fixed_dt);
-  if (p.max_dt > 0.0) refuse_step("run.max_dt", p.max_dt);
-  const double dt = flow::largest_diffusive_dt(p), steps = scene.end_time / dt;
-  if (steps <= most || root.given("run.max_steps")) return;
-  text << "fluid.viscosity: limits a step to " << dt << " s, " << steps
-       << " steps to run.end_time, more than run.max_steps = " << most
-       << "; flow.diffusion = \"crank-nicolson\" has no such limit";
-  contradict(root, "fluid.viscosity", text.str());
+  if (p.fixed_dt > 0.0) return refuse("run.dt", " = ", p.fixed_dt, "");
+  if (!scene.has_fluid()) return;
+  if (p.max_dt > 0.0) refuse("run.max_dt", " = ", p.max_dt, "");
+  refuse("fluid.viscosity", " limits a step to ", flow::largest_diffusive_dt(p),
+         "; flow.diffusion = \"crank-nicolson\" has no such limit");
 }
 
 /// Refuses gravity under which an edge of cloth would double its length by its own weight: neither the cloth
@@ -391,6 +429,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
       contradict(root, "", "missing table \"fluid\": the fluid, without which a scene needs a [[canopy]]");
     check_and_place_canopies(root, scene.canopies);
     check_canopies(root, scene);
+    check_steps(root, scene);
     check_gravity(root, scene);
     complete_fields(root, scene);
     check_verify(root, scene);
@@ -404,6 +443,8 @@ void complete_and_check(const Table& root, FlowScene& scene) {
                 : scene.weights == Weights::js ? flow::Advection::weno_js
                                                : flow::Advection::weno_z;
   check_scheme(root, p);
+  note_growing_energy(scene);
+  note_lasting_forces(scene);
   complete_velocities(root, scene);
   complete_time_step(root, scene);
   p.horizon = scene.end_time;
@@ -416,6 +457,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   check_canopies_beside_bodies(root, scene);
   complete_and_check_flags(root, scene);
   check_images(root, scene);
+  note_narrow_channels(root, scene);
   check_gravity(root, scene);
   complete_fields(root, scene);
   check_verify(root, scene);

@@ -120,29 +120,29 @@ bool ClothSimulation::take_steps(std::int64_t steps) {
   return !_failure;
 }
 
-framework::Stop ClothSimulation::advance(const framework::AdvanceLimits& limits,
-                                         const framework::RowSink& rows, const framework::Poll& poll) {
+framework::StopReason ClothSimulation::advance(const framework::AdvanceLimits& limits,
+                                               const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
   // The last good state of a failed run ends its history.
   const auto fail_with_row = [&](std::int64_t step) {
     if (limits.row_every > 0 && step % limits.row_every != 0) rows(row());
-    return framework::Stop::failed;
+    return framework::StopReason::failed;
   };
   while (true) {
     const auto [step, time] = now();
-    if (time >= limits.target_time) return framework::Stop::target;
-    if (!poll({step, time})) return framework::Stop::interrupted;
+    if (time >= limits.target_time) return framework::StopReason::target;
+    if (!poll({step, time})) return framework::StopReason::interrupted;
     if (step >= _scene.parameters.max_steps) return fail_with_row(step);
     // A run that continues may have other outputs.
     if ((step >= _block.end || _block.time > limits.target_time) && !plan(limits.target_time))
       return fail_with_row(step);
     if (!take_steps(steps_to_event(limits))) {
       return_to_checkpoint();
-      return framework::Stop::failed;
+      return framework::StopReason::failed;
     }
     const std::int64_t after = _solver->time_state().step;
     if (limits.row_every > 0 && after % limits.row_every == 0) rows(row());
-    if (after == limits.pause_step) return framework::Stop::pause;
+    if (after == limits.pause_step) return framework::StopReason::pause;
   }
 }
 

@@ -31,8 +31,8 @@ class ClothSimulation final : public framework::Simulation {
   void restore(const run::RestartReader& reader) override;
   void write_restart(run::RestartWriter& writer) override;
   [[nodiscard]] framework::SimulationTime now() override;
-  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                          const framework::Poll& poll) override;
+  framework::StopReason advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                const framework::Poll& poll) override;
   [[nodiscard]] std::vector<run::Column> history_columns() const override {
     return parachute_app::history_columns(_scene);
   }

@@ -39,7 +39,12 @@ std::vector<std::array<int, n>> elements_between(const std::vector<std::array<in
 void add_triangles(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
                    run::FieldSink& fields) {
   const auto triangles = elements_between(mesh.triangles, begin, end);
-  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
+  fields.add_mesh({.name = "triangles",
+                   .shape = {triangles.size(), 3},
+                   .units = "1",
+                   .centering = "face",
+                   .description = "vertices of every triangle",
+                   .grid = grid},
                   source_of(triangles));
 }
 
@@ -47,14 +52,24 @@ void add_triangles(const fabric::Mesh& mesh, std::size_t begin, std::size_t end,
 void add_edges(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
                run::FieldSink& fields) {
   const auto edges = elements_between(mesh::edges_of(mesh), begin, end);
-  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line", grid},
+  fields.add_mesh({.name = "edges",
+                   .shape = {edges.size(), 2},
+                   .units = "1",
+                   .centering = "edge",
+                   .description = "vertices of every edge and line",
+                   .grid = grid},
                   source_of(edges));
 }
 
 /// Adds the vertices at rest in a range. Add them last: they complete fields.xdmf.
 void add_vertices(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
                   run::FieldSink& fields) {
-  fields.add_mesh({"vertices", {end - begin, 3}, "m", "vertex", "vertices at rest", grid},
+  fields.add_mesh({.name = "vertices",
+                   .shape = {end - begin, 3},
+                   .units = "m",
+                   .centering = "vertex",
+                   .description = "vertices at rest",
+                   .grid = grid},
                   [&](std::uint64_t from, std::span<double> values) {
                     for (std::size_t k = 0; k < values.size(); ++k)
                       values[k] = mesh.rest[begin + (from + k) / 3][(from + k) % 3];
@@ -107,10 +122,18 @@ double count_intersections(const FlowScene& scene, const Sheets& sheets, std::sp
 run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name) {
   const CanopyRows& first = sheets.canopies.front();
   if (name == "position")
-    return {name,    {sheets.positions.size() - first.begin, 3}, "m", "vertex", "positions of the vertices",
-            "canopy"};
-  return {name,   {sheets.fabric.mesh.triangles.size() - first.triangles_begin},      "N/m",
-          "face", "von Mises stress of the triangles, Cauchy stress times thickness", "canopy"};
+    return {.name = name,
+            .shape = {sheets.positions.size() - first.begin, 3},
+            .units = "m",
+            .centering = "vertex",
+            .description = "positions of the vertices",
+            .grid = "canopy"};
+  return {.name = name,
+          .shape = {sheets.fabric.mesh.triangles.size() - first.triangles_begin},
+          .units = "N/m",
+          .centering = "face",
+          .description = "von Mises stress of the triangles, Cauchy stress times thickness",
+          .grid = "canopy"};
 }
 
 void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
@@ -120,9 +143,13 @@ void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
   const std::string grid = "canopy";
   add_triangles(mesh, first, end, grid, fields);
   add_edges(mesh, first, end, grid, fields);
-  fields.add_mesh(
-      {"strings", {strings.size(), 2}, "1", "edge", "vertices of every reinforcement and line", grid},
-      source_of(strings));
+  fields.add_mesh({.name = "strings",
+                   .shape = {strings.size(), 2},
+                   .units = "1",
+                   .centering = "edge",
+                   .description = "vertices of every reinforcement and line",
+                   .grid = grid},
+                  source_of(strings));
   add_vertices(mesh, first, end, grid, fields);
 }
 
@@ -150,7 +177,12 @@ std::vector<SheetGrid> grids_beside_canopies(const FlowScene& scene, const Sheet
 }
 
 run::DatasetSpec position_spec(const SheetGrid& grid) {
-  return {"position", {grid.end - grid.begin, 3}, "m", "vertex", "positions of the vertices", grid.name};
+  return {.name = "position",
+          .shape = {grid.end - grid.begin, 3},
+          .units = "m",
+          .centering = "vertex",
+          .description = "positions of the vertices",
+          .grid = grid.name};
 }
 
 void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSink& fields) {
@@ -159,7 +191,13 @@ void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSin
   add_edges(mesh, grid.begin, grid.end, grid.name, fields);
   // A grid of triangles has strings too.
   const std::vector<std::array<int, 2>> strings;
-  fields.add_mesh({"strings", {0, 2}, "1", "edge", "vertices of every line", grid.name}, source_of(strings));
+  fields.add_mesh({.name = "strings",
+                   .shape = {0, 2},
+                   .units = "1",
+                   .centering = "edge",
+                   .description = "vertices of every line",
+                   .grid = grid.name},
+                  source_of(strings));
   add_vertices(mesh, grid.begin, grid.end, grid.name, fields);
 }
 

@@ -28,12 +28,18 @@ CellField cell_field(const std::string& name) {
 
 run::DatasetSpec field_spec(const std::string& name, const std::array<int, 3>& cells) {
   std::vector<std::uint64_t> shape(cells.begin(), cells.end());
-  if (name == "pressure") return {name, shape, "Pa", "cell", "pressure"};
+  if (name == "pressure")
+    return {.name = name, .shape = shape, .units = "Pa", .centering = "cell", .description = "pressure"};
   if (name == "q_criterion")
-    return {name, shape, "1/s^2", "cell", "half of squared rotation rate less squared strain rate"};
+    return {.name = name,
+            .shape = shape,
+            .units = "1/s^2",
+            .centering = "cell",
+            .description = "half of squared rotation rate less squared strain rate"};
   shape.push_back(3);
-  if (name == "velocity") return {name, shape, "m/s", "cell", "velocity"};
-  return {name, shape, "1/s", "cell", "vorticity"};
+  if (name == "velocity")
+    return {.name = name, .shape = shape, .units = "m/s", .centering = "cell", .description = "velocity"};
+  return {.name = name, .shape = shape, .units = "1/s", .centering = "cell", .description = "vorticity"};
 }
 
 /// Flow with all sheets of a scene. Sheets whose motion is prescribed need no steps of their own.
@@ -115,8 +121,8 @@ framework::SimulationTime Simulation::now() {
   return {progress.step, progress.time};
 }
 
-framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                                    const framework::Poll& poll) {
+framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits,
+                                          const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
   const auto forward = [&](const flow::Status& status) { return poll({status.step, status.time}); };
   const auto at_pause = [&](std::int64_t step) {
@@ -130,7 +136,7 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
   while (true) {
     const std::int64_t before = _solver->progress().step;
     std::int64_t pause = limits.pause_step;
-    if (before >= _images.next() && fails_by_image()) return framework::Stop::failed;
+    if (before >= _images.next() && fails_by_image()) return framework::StopReason::failed;
     if (_images.applies() && (pause < 0 || _images.next() < pause)) pause = _images.next();
     if (limits.row_every > 0) {
       const std::int64_t next_row = (before / limits.row_every + 1) * limits.row_every;
@@ -141,11 +147,12 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
     const bool failed = _stop == flow::Stop::failed || _stop == flow::Stop::max_steps;
     // The last good state of a failed run ends its history.
     if (limits.row_every > 0 && (failed || (step > before && step % limits.row_every == 0))) rows(row());
-    if (failed) return framework::Stop::failed;
+    if (failed) return framework::StopReason::failed;
     if (_stop == flow::Stop::target)
-      return _images.applies() && fails_by_image() ? framework::Stop::failed : framework::Stop::target;
-    if (_stop == flow::Stop::interrupted) return framework::Stop::interrupted;
-    if (at_pause(step)) return framework::Stop::pause;
+      return _images.applies() && fails_by_image() ? framework::StopReason::failed
+                                                   : framework::StopReason::target;
+    if (_stop == flow::Stop::interrupted) return framework::StopReason::interrupted;
+    if (at_pause(step)) return framework::StopReason::pause;
   }
 }
 

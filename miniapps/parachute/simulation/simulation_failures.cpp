@@ -199,9 +199,15 @@ std::string Simulation::leaving_vertex_text() {
       if (distance < least) least = distance, vertex = i, closest = side;
     }
   const bool is_sharp = _scene.coupling.method == coupling::CouplingMethod::sharp;
+  // The grid takes over the velocity of the payload at the beginning of each block of steps.
+  const std::string lag = _scene.frame != Frame::follow
+                              ? ""
+                              : std::string("a smaller ") + (p.fixed_dt > 0.0 ? "run.dt" : "run.max_dt") +
+                                    ", with which the grid follows sooner, ";
   return leaving_part_text(vertex) + " at " + place_text(positions[vertex]) + " m " +
          (is_sharp ? "lies beyond" : "comes closer than a cell to") + " the side " + side_names[closest] +
-         " after " + now_text() + "; a larger grid.domain or a shorter run.end_time may save the run";
+         " after " + now_text() + "; " + lag +
+         "a larger grid.domain or a shorter run.end_time may save the run";
 }
 
 /// Motion of the body with the failed vertex that is not finite near the failed step; empty if there is none.
@@ -259,7 +265,11 @@ bool Simulation::meets_image() {
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
   _coupled->download_cloth(positions, velocities);
   const flow::Progress now = _solver->progress();
-  _met_image = _images.look({now.step, now.time, now.last_dt, positions, velocities});
+  _met_image = _images.look({.step = now.step,
+                             .time = now.time,
+                             .dt = now.last_dt,
+                             .positions = positions,
+                             .velocities = velocities});
   return _met_image.has_value();
 }
 

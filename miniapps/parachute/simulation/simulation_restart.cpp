@@ -23,8 +23,8 @@ void visit(Progress& progress, const Number& number, const Integer& integer) {
   number("last_dt", progress.last_dt);
   number("dt_min", progress.dt_min);
   number("dt_max", progress.dt_max);
-  integer("rate_bits", progress.rate);
-  integer("velocity_rate_bits", progress.velocity_rate);
+  integer("rate_bits", progress.rate_bits);
+  integer("velocity_rate_bits", progress.velocity_rate_bits);
   number("longest_dt", progress.longest_dt);
 }
 
@@ -75,9 +75,12 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   if (_scene.is_explicit()) read("sheet_force", state.forces);
   if (!state.face_acceleration.empty()) reader.read("face_acceleration", 0, state.face_acceleration);
   _peaks.read(reader, *_coupled);
-  state.block = {reader.number("block_dt"),     reader.integer("block_substeps"),
-                 reader.integer("block_end"),   reader.integer("block_cloth_step"),
-                 reader.integer("block_since"), reader.number("block_start")};
+  state.block = {.dt = reader.number("block_dt"),
+                 .substeps = reader.integer("block_substeps"),
+                 .end = reader.integer("block_end"),
+                 .cloth_step = reader.integer("block_cloth_step"),
+                 .since = reader.integer("block_since"),
+                 .start = reader.number("block_start")};
   if (_scene.frame == Frame::follow) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       state.frame.velocity[axis] = reader.number(std::string("frame_velocity_") + axis_names[axis]);

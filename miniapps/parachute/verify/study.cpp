@@ -13,12 +13,12 @@
 namespace drogue::parachute_app {
 namespace {
 
-const study::Columns columns = {{"advection", "time_scheme", "diffusion", "pressure"},
-                                "cells",
-                                {"l1_velocity", "l2_velocity", "linf_velocity", "l2_pressure",
-                                 "order_l2_velocity", "order_l2_pressure", "divergence"},
-                                "l2_velocity",
-                                "L2 velocity"};
+const study::Columns columns = {.settings = {"advection", "time_scheme", "diffusion", "pressure"},
+                                .mesh = "cells",
+                                .errors = {"l1_velocity", "l2_velocity", "linf_velocity", "l2_pressure",
+                                           "order_l2_velocity", "order_l2_pressure", "divergence"},
+                                .shown = "l2_velocity",
+                                .shown_title = "L2 velocity"};
 
 /// Cells along the longest axis.
 int longest(const flow::Parameters& p) { return *std::ranges::max_element(p.cells); }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <stdexcept>
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"

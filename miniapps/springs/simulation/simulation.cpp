@@ -228,26 +228,26 @@ bool Simulation::take_steps(std::int64_t steps, const framework::Poll& poll) {
   return true;
 }
 
-framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                                    const framework::Poll& poll) {
+framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits,
+                                          const framework::RowSink& rows, const framework::Poll& poll) {
   if (!_too_long) _too_long = too_long_step();
   while (_too_long->empty()) {
-    if (!poll(now())) return framework::Stop::interrupted;
+    if (!poll(now())) return framework::StopReason::interrupted;
     if (!take_steps(steps_to_event(limits), poll)) {
-      if (!_failure) return framework::Stop::interrupted;
+      if (!_failure) return framework::StopReason::interrupted;
       return_to_last_good(_failure->step);
-      return framework::Stop::failed;
+      return framework::StopReason::failed;
     }
     const std::int64_t step = _solver->time_state().step;
     if (limits.row_every > 0 && step % limits.row_every == 0) rows(row());
-    if (step == _stop_step) return framework::Stop::target;
+    if (step == _stop_step) return framework::StopReason::target;
     if (step % bound_every(step) == 0) {
       replan_if_stiffer();
       _too_long = too_long_step();
     }
-    if (step == limits.pause_step) return framework::Stop::pause;
+    if (step == limits.pause_step) return framework::StopReason::pause;
   }
-  return framework::Stop::failed;
+  return framework::StopReason::failed;
 }
 
 bool Simulation::plan_next_interval() {

@@ -37,8 +37,8 @@ class Simulation final : public framework::Simulation {
   void restore(const run::RestartReader& reader) override;
   void write_restart(run::RestartWriter& writer) override;
   [[nodiscard]] framework::SimulationTime now() override;
-  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
-                          const framework::Poll& poll) override;
+  framework::StopReason advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                const framework::Poll& poll) override;
   bool plan_next_interval() override;
   [[nodiscard]] std::vector<run::Column> history_columns() const override;
   [[nodiscard]] framework::HistoryRow row() override;

@@ -54,7 +54,12 @@ RequestedSteps requested_steps(const SpringsScene& scene) {
 }  // namespace
 
 void Simulation::write_restart(run::RestartWriter& writer) {
-  PlanState plan{_solver->time_state(), _stop_step, _stop_time, _dt_min, _dt_max, requested_steps(_scene)};
+  PlanState plan{.clock = _solver->time_state(),
+                 .stop_step = _stop_step,
+                 .stop_time = _stop_time,
+                 .dt_min = _dt_min,
+                 .dt_max = _dt_max,
+                 .requested = requested_steps(_scene)};
   visit(
       plan, [&](const std::string& name, double value) { writer.number(name, value); },
       [&](const std::string& name, std::int64_t value) { writer.integer(name, value); });

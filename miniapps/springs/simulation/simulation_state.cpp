@@ -20,8 +20,18 @@ namespace {
 
 run::DatasetSpec field_spec(const std::string& name, const fabric::Mesh& mesh) {
   const std::uint64_t vertices = mesh.rest.size();
-  if (name == "position") return {name, {vertices, 3}, "m", "vertex", "positions of the vertices"};
-  if (name == "velocity") return {name, {vertices, 3}, "m/s", "vertex", "velocities of the vertices"};
+  if (name == "position")
+    return {.name = name,
+            .shape = {vertices, 3},
+            .units = "m",
+            .centering = "vertex",
+            .description = "positions of the vertices"};
+  if (name == "velocity")
+    return {.name = name,
+            .shape = {vertices, 3},
+            .units = "m/s",
+            .centering = "vertex",
+            .description = "velocities of the vertices"};
   return stress_spec(name, mesh);
 }
 
@@ -62,9 +72,15 @@ std::vector<Vector> Simulation::positions() {
 
 StateTotals Simulation::totals() {
   const fabric::Totals sum = _solver->totals();
-  StateTotals totals{sum.kinetic,  sum.elastic,          sum.gravity + sum.load,
-                     sum.momentum, sum.angular_momentum, {},
-                     sum.contact,  sum.friction,         0};
+  StateTotals totals{.kinetic = sum.kinetic,
+                     .elastic = sum.elastic,
+                     .potential = sum.gravity + sum.load,
+                     .momentum = sum.momentum,
+                     .angular_momentum = sum.angular_momentum,
+                     .probes = {},
+                     .contact_work = sum.contact,
+                     .friction_work = sum.friction,
+                     .intersections = 0};
   const bool counts = _scene.verify.intersections.has_value();
   if (_scene.output.probes.empty() && !counts && _pressure == 0.0) return totals;
   std::vector<Vector> x(_problem.x.size()), v(x.size());
@@ -104,19 +120,32 @@ std::vector<run::DatasetSpec> Simulation::field_specs() const {
 void Simulation::write_mesh(run::FieldSink& fields) const {
   const fabric::Mesh& mesh = _scene.mesh;
   const auto edges = edges_of(mesh);
-  fields.add_mesh({"triangles", {mesh.triangles.size(), 3}, "1", "face", "vertices of every triangle"},
+  fields.add_mesh({.name = "triangles",
+                   .shape = {mesh.triangles.size(), 3},
+                   .units = "1",
+                   .centering = "face",
+                   .description = "vertices of every triangle"},
                   source_of(mesh.triangles));
-  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line"},
+  fields.add_mesh({.name = "edges",
+                   .shape = {edges.size(), 2},
+                   .units = "1",
+                   .centering = "edge",
+                   .description = "vertices of every edge and line"},
                   source_of(edges));
   // The dataset `edges` does not distinguish strings.
-  fields.add_mesh({"strings",
-                   {mesh.lines.size(), 2},
-                   "1",
-                   "edge",
-                   "vertices of every piece of a string, those that reinforce edges of cloth alone last"},
-                  source_of(mesh.lines));
+  fields.add_mesh(
+      {.name = "strings",
+       .shape = {mesh.lines.size(), 2},
+       .units = "1",
+       .centering = "edge",
+       .description = "vertices of every piece of a string, those that reinforce edges of cloth alone last"},
+      source_of(mesh.lines));
   // Add `vertices` last: it completes fields.xdmf.
-  fields.add_mesh({"vertices", {mesh.rest.size(), 3}, "m", "vertex", "vertices at rest"},
+  fields.add_mesh({.name = "vertices",
+                   .shape = {mesh.rest.size(), 3},
+                   .units = "m",
+                   .centering = "vertex",
+                   .description = "vertices at rest"},
                   [&mesh](std::uint64_t first, std::span<double> values) {
                     const auto from = numbers(mesh.rest).subspan(first, values.size());
                     std::ranges::copy(from, values.begin());

@@ -79,9 +79,12 @@ run::DatasetSpec stress_spec(const std::string& field, const fabric::Mesh& mesh)
   const std::string measure = kind.measure == StressMeasure::cauchy
                                   ? "Cauchy stress times thickness"
                                   : "nominal stress, force per length at rest, turned to where the cloth is";
-  return {field, part.columns == 1 ? std::vector{rows} : std::vector{rows, part.columns}, part.unit,
-          kind.at_vertices ? "vertex" : "face",
-          part.description + " of the " + (kind.at_vertices ? "vertices" : "triangles") + ", " + measure};
+  return {.name = field,
+          .shape = part.columns == 1 ? std::vector{rows} : std::vector{rows, part.columns},
+          .units = part.unit,
+          .centering = kind.at_vertices ? "vertex" : "face",
+          .description =
+              part.description + " of the " + (kind.at_vertices ? "vertices" : "triangles") + ", " + measure};
 }
 
 std::vector<double> stress_values(const std::string& field, const std::vector<Stress>& stress) {

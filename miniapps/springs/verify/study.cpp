@@ -109,7 +109,11 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
     threads = std::max(threads, fabric::host_threads(point.scene.mesh.rest.size()));
   framework::StudySession session(options, "drogue-springs", base.name, print_springs_scene(base), threads);
   ScratchDirectory scratch(session.directory().path() / "point");
-  study::Columns columns{{"model", "mass", "integrator"}, "vertices", {}, "", ""};
+  study::Columns columns{.settings = {"model", "mass", "integrator"},
+                         .mesh = "vertices",
+                         .errors = {},
+                         .shown = "",
+                         .shown_title = ""};
   const auto run_point = [&](std::size_t i, std::vector<study::StudyRow>& rows) {
     const StudyPoint& point = points[i];
     framework::RepeatedRun runs = run_repeatedly(silent(point.scene), session.backend(), repeats, scratch);

@@ -113,9 +113,13 @@ double catenary_error(const SpringsScene& scene, const FinalState& state) {
   std::vector<double> arc = {0.0};
   for (std::size_t i = 1; i < state.x.size(); ++i)
     arc.push_back(arc.back() + distance(scene.mesh.rest[i], scene.mesh.rest[i - 1]));
-  const std::vector<CatenaryPoint> points = catenary_points(
-      {span, drop, arc.back(), scene.fabric.line_density * strength, scene.fabric.material.axial_stiffness},
-      arc);
+  const std::vector<CatenaryPoint> points =
+      catenary_points({.span = span,
+                       .drop = drop,
+                       .length = arc.back(),
+                       .weight = scene.fabric.line_density * strength,
+                       .axial_stiffness = scene.fabric.material.axial_stiffness},
+                      arc);
   double error = points.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Vector expected;

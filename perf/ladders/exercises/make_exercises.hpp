@@ -31,13 +31,13 @@ Exercise faster_weno(ExerciseCode code) {
   using Own = PackedDifferencesRung<ExecutionSpace, DifferenceFluxWith<DivisionsExercise>>;
   using Solution = PackedDifferencesRung<ExecutionSpace, DifferenceFluxWith<OneDivisionCorrection>>;
   const auto problem = std::make_shared<const WenoProblem>(make_weno_problem(4096, 4));
-  return {"divisions",
-          "perf/ladders/exercises/divisions.hpp",
-          "Leave one division of five.",
-          code == ExerciseCode::own ? make_rung<Own>(problem, weno_tolerance)
-                                    : make_rung<Solution>(problem, weno_tolerance),
-          device::is_host<ExecutionSpace> ? 1.3 : 1.1,
-          make_rung<Slow>(problem, weno_tolerance)};
+  return {.name = "divisions",
+          .file = "perf/ladders/exercises/divisions.hpp",
+          .task = "Leave one division of five.",
+          .rung = code == ExerciseCode::own ? make_rung<Own>(problem, weno_tolerance)
+                                            : make_rung<Solution>(problem, weno_tolerance),
+          .factor = device::is_host<ExecutionSpace> ? 1.3 : 1.1,
+          .slow = make_rung<Slow>(problem, weno_tolerance)};
 }
 
 template <class ExecutionSpace>
@@ -48,12 +48,12 @@ Exercise faster_springs(ExerciseCode code) {
     const auto problem = std::make_shared<const SpringProblem>(make_spring_problem(80'000, 2, reorder));
     return make_rung<Same>(problem, spring_tolerance);
   };
-  return {"order",
-          "perf/ladders/exercises/order.hpp",
-          "Number the vertices so that neighbours share lines.",
-          made(order),
-          device::is_host<ExecutionSpace> ? 1.5 : 1.15,
-          made(nullptr)};
+  return {.name = "order",
+          .file = "perf/ladders/exercises/order.hpp",
+          .task = "Number the vertices so that neighbours share lines.",
+          .rung = made(order),
+          .factor = device::is_host<ExecutionSpace> ? 1.5 : 1.15,
+          .slow = made(nullptr)};
 }
 
 template <class ExecutionSpace>
@@ -63,13 +63,13 @@ Exercise faster_options(ExerciseCode code) {
   using Solution = OptionRegistersRung<ExecutionSpace>;
   constexpr bool host = device::is_host<ExecutionSpace>;
   const auto problem = std::make_shared<const OptionsProblem>(make_options_problem(host ? 16 : 1024));
-  return {"sums",
-          "perf/ladders/exercises/sums.hpp",
-          "Sum for several nodes at once.",
-          code == ExerciseCode::own ? make_rung<Own>(problem, options_tolerance)
-                                    : make_rung<Solution>(problem, options_tolerance),
-          host ? 3.0 : 1.2,
-          make_rung<Slow>(problem, options_tolerance)};
+  return {.name = "sums",
+          .file = "perf/ladders/exercises/sums.hpp",
+          .task = "Sum for several nodes at once.",
+          .rung = code == ExerciseCode::own ? make_rung<Own>(problem, options_tolerance)
+                                            : make_rung<Solution>(problem, options_tolerance),
+          .factor = host ? 3.0 : 1.2,
+          .slow = make_rung<Slow>(problem, options_tolerance)};
 }
 
 template <class ExecutionSpace>
@@ -78,13 +78,14 @@ Exercise faster_transfers(ExerciseCode code) {
   constexpr bool host = device::is_host<ExecutionSpace>;
   const auto problem =
       std::make_shared<const TransferProblem>(make_transfer_problem(host ? 300'007 : 4'000'103, 20));
-  return {"uploads",
-          "perf/ladders/exercises/uploads.hpp",
-          "Leave the values on the device between the steps.",
-          code == ExerciseCode::own ? make_rung<Own>(problem, transfer_tolerance)
-                                    : make_rung<OneUploadRung<ExecutionSpace>>(problem, transfer_tolerance),
-          host ? 1.3 : 4.0,
-          make_rung<PinnedRung<ExecutionSpace>>(problem, transfer_tolerance)};
+  return {.name = "uploads",
+          .file = "perf/ladders/exercises/uploads.hpp",
+          .task = "Leave the values on the device between the steps.",
+          .rung = code == ExerciseCode::own
+                      ? make_rung<Own>(problem, transfer_tolerance)
+                      : make_rung<OneUploadRung<ExecutionSpace>>(problem, transfer_tolerance),
+          .factor = host ? 1.3 : 4.0,
+          .slow = make_rung<PinnedRung<ExecutionSpace>>(problem, transfer_tolerance)};
 }
 
 template <class ExecutionSpace>

@@ -15,17 +15,17 @@ template <class ExecutionSpace>
 Ladder make_options(bool small) {
   const int options = small ? 5 : device::is_host<ExecutionSpace> ? 64 : 4096;
   const auto problem = std::make_shared<const OptionsProblem>(make_options_problem(options));
-  return {"options",
-          "batch",
-          "European puts under jumps of normal logarithms, 128 nodes and 32 implicit steps",
-          options,
-          1,
-          {make_rung<OneThreadRung<ExecutionSpace>>(problem, options_tolerance),
-           make_rung<InterleavedRung<ExecutionSpace>>(problem, options_tolerance),
-           make_rung<OneTeamRung<ExecutionSpace>>(problem, options_tolerance),
-           make_rung<ScratchRung<ExecutionSpace>>(problem, options_tolerance),
-           make_rung<OptionRegistersRung<ExecutionSpace>>(problem, options_tolerance),
-           make_rung<MatrixProductRung<ExecutionSpace>>(problem, options_tolerance)}};
+  return {.name = "options",
+          .unit = "batch",
+          .problem = "European puts under jumps of normal logarithms, 128 nodes and 32 implicit steps",
+          .size = options,
+          .units = 1,
+          .rungs = {make_rung<OneThreadRung<ExecutionSpace>>(problem, options_tolerance),
+                    make_rung<InterleavedRung<ExecutionSpace>>(problem, options_tolerance),
+                    make_rung<OneTeamRung<ExecutionSpace>>(problem, options_tolerance),
+                    make_rung<ScratchRung<ExecutionSpace>>(problem, options_tolerance),
+                    make_rung<OptionRegistersRung<ExecutionSpace>>(problem, options_tolerance),
+                    make_rung<MatrixProductRung<ExecutionSpace>>(problem, options_tolerance)}};
 }
 
 }  // namespace drogue::perf::ladder

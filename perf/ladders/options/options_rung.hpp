@@ -58,12 +58,12 @@ class OptionsRung : public RungRun {
     const auto values = [&](const std::string& label) {
       return typename Arrays::Values(label, problem.steps.size(), option_nodes);
     };
-    _arrays = {values("drogue::perf::ladder::values"),
-               values("drogue::perf::ladder::right"),
-               values("drogue::perf::ladder::pivots"),
-               decltype(_arrays.step)("drogue::perf::ladder::steps", problem.steps.size()),
-               decltype(_arrays.weights)("drogue::perf::ladder::weights", problem.weights.size()),
-               problem.low};
+    _arrays = {.v = values("drogue::perf::ladder::values"),
+               .right = values("drogue::perf::ladder::right"),
+               .pivots = values("drogue::perf::ladder::pivots"),
+               .step = decltype(_arrays.step)("drogue::perf::ladder::steps", problem.steps.size()),
+               .weights = decltype(_arrays.weights)("drogue::perf::ladder::weights", problem.weights.size()),
+               .low = problem.low};
     device::copy_in(space(), _arrays.step, problem.steps.data(), problem.steps.size());
     device::copy_in(space(), _arrays.weights, problem.weights.data(), problem.weights.size());
     space().fence("drogue::perf::ladder: options are copied");

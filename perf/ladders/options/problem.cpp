@@ -48,7 +48,8 @@ std::vector<double> solve(const OptionsProblem& problem, const OptionStep& step)
 }  // namespace
 
 OptionsProblem make_options_problem(int options) {
-  OptionsProblem p{-2.0, 4.0 / option_nodes, {}, {}, {}, {}};
+  OptionsProblem p;
+  p.low = -2.0, p.h = 4.0 / option_nodes;
   for (int d = 1 - option_nodes; d < option_nodes; ++d) {
     const double z = (d * p.h - mean_jump) / jump_deviation;
     p.weights.push_back(p.h * std::exp(-0.5 * z * z) / (jump_deviation * std::sqrt(2.0 * std::numbers::pi)));
@@ -58,8 +59,11 @@ OptionsProblem make_options_problem(int options) {
     const Terms t = terms_of(k);
     const double dt = t.maturity / option_steps, diffusion = 0.5 * t.variance / (p.h * p.h);
     const double drift = (t.rate - 0.5 * t.variance - intensity * mean_growth()) / (2.0 * p.h);
-    p.steps.push_back({dt * (diffusion - drift), 1.0 + dt * (2.0 * diffusion + t.rate + intensity),
-                       dt * (diffusion + drift), dt * intensity, t.rate * dt});
+    p.steps.push_back({.lower = dt * (diffusion - drift),
+                       .diagonal = 1.0 + dt * (2.0 * diffusion + t.rate + intensity),
+                       .upper = dt * (diffusion + drift),
+                       .jumps = dt * intensity,
+                       .rate_dt = t.rate * dt});
     // Options whose terms repeat have the same values.
     if (k < 64) {
       const std::vector<double> values = solve(p, p.steps.back());

@@ -18,18 +18,18 @@ Ladder make_springs(bool small) {
   const int vertices = small ? 400 : host ? 20'000 : 30'000;
   const long steps = small ? 8 : host ? 4 : 20;
   const auto problem = std::make_shared<const SpringProblem>(make_spring_problem(vertices, steps));
-  return {"springs",
-          "step",
-          "a stretched sheet of biquadratic springs by Runge-Kutta steps",
-          static_cast<std::int64_t>(problem->renumbered.vertices()),
-          steps,
-          {make_rung<StructsRung<ExecutionSpace>>(problem, spring_tolerance),
-           make_rung<ArraysRung<ExecutionSpace>>(problem, spring_tolerance),
-           make_rung<RecomputedRung<ExecutionSpace>>(problem, spring_tolerance),
-           make_rung<RenumberedRung<ExecutionSpace>>(problem, spring_tolerance),
-           make_rung<RingsRung<ExecutionSpace>>(problem, spring_tolerance),
-           make_rung<SpringGraphRung<ExecutionSpace>>(problem, spring_tolerance),
-           make_rung<PacketsRung<ExecutionSpace>>(problem, spring_tolerance)}};
+  return {.name = "springs",
+          .unit = "step",
+          .problem = "a stretched sheet of biquadratic springs by Runge-Kutta steps",
+          .size = static_cast<std::int64_t>(problem->renumbered.vertices()),
+          .units = steps,
+          .rungs = {make_rung<StructsRung<ExecutionSpace>>(problem, spring_tolerance),
+                    make_rung<ArraysRung<ExecutionSpace>>(problem, spring_tolerance),
+                    make_rung<RecomputedRung<ExecutionSpace>>(problem, spring_tolerance),
+                    make_rung<RenumberedRung<ExecutionSpace>>(problem, spring_tolerance),
+                    make_rung<RingsRung<ExecutionSpace>>(problem, spring_tolerance),
+                    make_rung<SpringGraphRung<ExecutionSpace>>(problem, spring_tolerance),
+                    make_rung<PacketsRung<ExecutionSpace>>(problem, spring_tolerance)}};
 }
 
 }  // namespace drogue::perf::ladder

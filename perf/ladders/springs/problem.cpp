@@ -76,7 +76,12 @@ SpringProblem make_spring_problem(int vertices, long steps, VertexOrder reorder)
   std::mt19937 bits(7);
   for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[bits() % (i + 1)]);
   if (reorder != nullptr) order = reordered(order, reorder(mesh::renumber(p.mesh, order)));
-  return {make_numbering(p, order, steps, dt), renumbered, steps, dt, 2.0 * (lambda + mu), mu};
+  return {.scattered = make_numbering(p, order, steps, dt),
+          .renumbered = renumbered,
+          .steps = steps,
+          .dt = dt,
+          .two_lambda_mu = 2.0 * (lambda + mu),
+          .mu = mu};
 }
 
 double difference(const Numbering& n, const std::vector<fabric::Vector>& x) {

@@ -17,17 +17,18 @@ Ladder make_transfers(bool small) {
   const std::size_t values = small ? 5003 : host ? 300'007 : 4'000'103;
   const long steps = small ? 3 : 10;
   const auto problem = std::make_shared<const TransferProblem>(make_transfer_problem(values, steps));
-  return {"transfers",
-          "step",
-          host ? "x <- 1 / (1 + x); copies within the host are memcpy, and all of its memory is alike"
-               : "x <- 1 / (1 + x) of values that the host owns",
-          static_cast<std::int64_t>(values),
-          steps,
-          {make_rung<PageableRung<ExecutionSpace>>(problem, transfer_tolerance),
-           make_rung<PinnedRung<ExecutionSpace>>(problem, transfer_tolerance),
-           make_rung<OverlappedRung<ExecutionSpace>>(problem, transfer_tolerance),
-           make_rung<CrumbsRung<ExecutionSpace>>(problem, transfer_tolerance),
-           make_rung<OneUploadRung<ExecutionSpace>>(problem, transfer_tolerance)}};
+  return {
+      .name = "transfers",
+      .unit = "step",
+      .problem = host ? "x <- 1 / (1 + x); copies within the host are memcpy, and all of its memory is alike"
+                      : "x <- 1 / (1 + x) of values that the host owns",
+      .size = static_cast<std::int64_t>(values),
+      .units = steps,
+      .rungs = {make_rung<PageableRung<ExecutionSpace>>(problem, transfer_tolerance),
+                make_rung<PinnedRung<ExecutionSpace>>(problem, transfer_tolerance),
+                make_rung<OverlappedRung<ExecutionSpace>>(problem, transfer_tolerance),
+                make_rung<CrumbsRung<ExecutionSpace>>(problem, transfer_tolerance),
+                make_rung<OneUploadRung<ExecutionSpace>>(problem, transfer_tolerance)}};
 }
 
 }  // namespace drogue::perf::ladder

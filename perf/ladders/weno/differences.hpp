@@ -68,7 +68,13 @@ struct DifferenceFluxWith : DirectFlux {
     const gas::Stencil<R> s = difference_stencil(cells);
     const R u = 0.5 * (cells[2].u + cells[3].u), h = 0.5 * (cells[2].enthalpy + cells[3].enthalpy);
     const R kinetic = 0.5 * u * u, unit = h - kinetic, c = device::square_root((gamma - 1.0) * unit);
-    const gas::Eigensystem<R> e{u, c, h, kinetic, unit, R(1.0) / unit, unit / c};
+    const gas::Eigensystem<R> e{.u = u,
+                                .c = c,
+                                .enthalpy = h,
+                                .kinetic = kinetic,
+                                .unit = unit,
+                                .inverse_unit = R(1.0) / unit,
+                                .width = unit / c};
     const gas::WaveSpeeds<R> alpha = largest_speeds(cells);
     R right[3][4], left[3][4];
     for (int k = 0; k < 5; ++k) {

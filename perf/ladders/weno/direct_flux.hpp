@@ -14,7 +14,13 @@ struct DirectFlux {
   template <class R>
   KOKKOS_FUNCTION static CellState<R> cell(double gamma, const ConservedVector<R>& w) {
     const R u = w.m / w.rho, p = gas::pressure(gamma, w.m, w.energy, u);
-    return {w.rho, w.m, w.energy, u, p, (w.energy + p) / w.rho, device::square_root(gamma * p / w.rho)};
+    return {.rho = w.rho,
+            .m = w.m,
+            .energy = w.energy,
+            .u = u,
+            .p = p,
+            .enthalpy = (w.energy + p) / w.rho,
+            .c = device::square_root(gamma * p / w.rho)};
   }
 
   /// Value at the face from five values, the face right of the third.

@@ -20,21 +20,21 @@ Ladder make_weno(bool small) {
   const std::int64_t cells = small ? 512 : host ? 4096 : 8192;
   const long steps = small ? 6 : host ? 10 : 50;
   const auto problem = std::make_shared<const WenoProblem>(make_weno_problem(cells, steps));
-  return {"weno",
-          "step",
-          "Sod's shock tube by WENO5-JS and SSP-RK3 with steps of one size",
-          cells,
-          steps,
-          {make_rung<PortRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<OnDeviceRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<FusedStagesRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<DifferencesRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<OneDivisionRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<RegistersRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<FusedStepRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<GraphRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<PersistentRung<ExecutionSpace>>(problem, weno_tolerance),
-           make_rung<SplitPrecisionRung<ExecutionSpace>>(problem, weno_tolerance)}};
+  return {.name = "weno",
+          .unit = "step",
+          .problem = "Sod's shock tube by WENO5-JS and SSP-RK3 with steps of one size",
+          .size = cells,
+          .units = steps,
+          .rungs = {make_rung<PortRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<OnDeviceRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<FusedStagesRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<DifferencesRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<OneDivisionRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<RegistersRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<FusedStepRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<GraphRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<PersistentRung<ExecutionSpace>>(problem, weno_tolerance),
+                    make_rung<SplitPrecisionRung<ExecutionSpace>>(problem, weno_tolerance)}};
 }
 
 }  // namespace drogue::perf::ladder

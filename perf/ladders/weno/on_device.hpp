@@ -48,8 +48,12 @@ class OnDeviceRung final : public WenoRung<ExecutionSpace> {
                    FluxFunctor<ExecutionSpace>{in, _flux, this->problem().gamma()});
       device::launch_each(this->space(), "drogue::perf::ladder::on_device_update",
                           static_cast<int>(this->size()),
-                          UpdateFunctor<ExecutionSpace>{this->buffer(0), in, this->buffer(w.out), _flux,
-                                                        this->problem().dt_over_dx(), w.share});
+                          UpdateFunctor<ExecutionSpace>{.start = this->buffer(0),
+                                                        .in = in,
+                                                        .out = this->buffer(w.out),
+                                                        .flux = _flux,
+                                                        .dt_over_dx = this->problem().dt_over_dx(),
+                                                        .share = w.share});
     }
     this->advance_buffers(table.stage[table.stages - 1].out);
   }

@@ -45,10 +45,13 @@ void launch_stages(Rung& rung, const char* label) {
   const auto buffer = [&](int role) { return rung.buffer(role); };
   for (int s = 0; s < table.stages; ++s) {
     const gas::StageWeights& w = table.stage[s];
-    launch_tiles<Bounds>(
-        rung.space(), label, rung.problem().cells(),
-        StageFunctor<Space, Flux, R>{buffer(0), buffer(w.in), buffer(w.out), rung.problem().gamma(),
-                                     rung.problem().dt_over_dx(), w.share});
+    launch_tiles<Bounds>(rung.space(), label, rung.problem().cells(),
+                         StageFunctor<Space, Flux, R>{.start = buffer(0),
+                                                      .in = buffer(w.in),
+                                                      .out = buffer(w.out),
+                                                      .gamma = rung.problem().gamma(),
+                                                      .dt_over_dx = rung.problem().dt_over_dx(),
+                                                      .share = w.share});
   }
   rung.advance_buffers(table.stage[table.stages - 1].out);
 }

@@ -30,8 +30,13 @@ class CellTile {
   /// Cell of a slot; face f lies between slots f + 2 and f + 3.
   template <class R>
   KOKKOS_FUNCTION CellState<R> cell(int slot) const {
-    return {row<R>(0, slot), row<R>(1, slot), row<R>(2, slot), row<R>(3, slot),
-            row<R>(4, slot), row<R>(5, slot), row<R>(6, slot)};
+    return {.rho = row<R>(0, slot),
+            .m = row<R>(1, slot),
+            .energy = row<R>(2, slot),
+            .u = row<R>(3, slot),
+            .p = row<R>(4, slot),
+            .enthalpy = row<R>(5, slot),
+            .c = row<R>(6, slot)};
   }
   template <class R>
   KOKKOS_FUNCTION void store_cell(int slot, const CellState<R>& s) const {

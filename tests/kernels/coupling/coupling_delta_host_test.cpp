@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "kernels/coupling/delta_kernel.hpp"
+#include "kernels/coupling/delta_function.hpp"
 #include "kernels/device/dual.hpp"
 #include "kernels/reference/coupling/grid_transfer.hpp"
 
@@ -87,21 +87,21 @@ TEST(ReferenceDelta, HasKnownValues) {
   EXPECT_DOUBLE_EQ(reference::peskin_four_point(2.0), 0.0);
 }
 
-TEST(DeltaKernel, WeightsMatchTheDefinitions) {
+TEST(DeltaFunction, WeightsMatchTheDefinitions) {
   expect_weights<LinearSpline>(linear);
   expect_weights<QuadraticSpline>(quadratic);
   expect_weights<CubicSpline>(cubic);
   expect_weights<PeskinFourPoint>(reference::peskin_four_point);
 }
 
-TEST(DeltaKernel, WeightsAreNonNegativeWithUnitSumAndNoFirstMoment) {
+TEST(DeltaFunction, WeightsAreNonNegativeWithUnitSumAndNoFirstMoment) {
   expect_unit_sum_without_first_moment<LinearSpline>();
   expect_unit_sum_without_first_moment<QuadraticSpline>();
   expect_unit_sum_without_first_moment<CubicSpline>();
   expect_unit_sum_without_first_moment<PeskinFourPoint>();
 }
 
-TEST(DeltaKernel, HigherMomentsDoNotDependOnThePosition) {
+TEST(DeltaFunction, HigherMomentsDoNotDependOnThePosition) {
   for_random_positions<QuadraticSpline>([](double s, double first, const auto& w) {
     EXPECT_NEAR(moment(s, first, w, 2), 1.0 / 4.0, round_off) << s;
   });
@@ -111,7 +111,7 @@ TEST(DeltaKernel, HigherMomentsDoNotDependOnThePosition) {
   });
 }
 
-TEST(DeltaKernel, FourPointFunctionBalancesEvenAndOddSamples) {
+TEST(DeltaFunction, FourPointFunctionBalancesEvenAndOddSamples) {
   for_random_positions<PeskinFourPoint>([](double s, double, const auto& w) {
     EXPECT_NEAR(w[0] + w[2], 0.5, round_off) << s;
     EXPECT_NEAR(w[1] + w[3], 0.5, round_off) << s;
@@ -119,9 +119,9 @@ TEST(DeltaKernel, FourPointFunctionBalancesEvenAndOddSamples) {
   });
 }
 
-TEST(DeltaKernel, DerivativeAlongIsTheDifferenceAcross) {
-  using Wide = KernelFactors<DeltaKernel::cbs43>;
-  using Narrow = KernelFactors<DeltaKernel::cbs32>;
+TEST(DeltaFunction, DerivativeAlongIsTheDifferenceAcross) {
+  using Wide = DeltaFactors<DeltaFunction::cbs43>;
+  using Narrow = DeltaFactors<DeltaFunction::cbs32>;
   expect_difference_derivative<Wide::Along, Wide::Across>(quadratic);
   expect_difference_derivative<Narrow::Along, Narrow::Across>(linear);
 }

@@ -42,7 +42,8 @@ reference::PistonParameters reference_of(const CoupledCase& c, double mass) {
   reference::PistonParameters p;
   p.mass = mass;
   p.fluid_mass = c.p.flow.density * c.p.flow.high[0];
-  p.compliance = reference::spread_row_sums(c.grid(), c.p.sheet.kernel, c.x, areas, c.p.flow.density)[8][0];
+  p.inverse_air_mass =
+      reference::spread_row_sums(c.grid(), c.p.sheet.delta, c.x, areas, c.p.flow.density)[8][0];
   p.alpha = c.p.sheet.law.alpha, p.beta = c.p.sheet.law.beta;
   p.filter = c.p.sheet.filter;
   p.dt = c.p.flow.fixed_dt;

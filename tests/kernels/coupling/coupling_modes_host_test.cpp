@@ -24,7 +24,7 @@ double growth(double omega_dt, double ratio, double mass, double alpha, double f
   SheetModeParameters p;
   p.mass = mass;
   p.stiffness = omega_dt * omega_dt / (dt * dt) * ratio * copy_mass;
-  p.compliance = 1.0 / (scale * copy_mass);
+  p.inverse_air_mass = 1.0 / (scale * copy_mass);
   p.spread = 1.0 / copy_mass;
   p.response = 1.0 / (ratio * copy_mass);
   p.alpha = alpha;
@@ -59,7 +59,7 @@ TEST(SheetModes, SpectralRadiusIsThatOfKnownMatrices) {
 
 TEST(SheetModes, StepsConserveTheMomentumOfSheetAndAirWithoutStiffness) {
   SheetModeParameters p;
-  p.mass = 0.0373, p.compliance = p.spread = 2.0, p.response = 0.25, p.alpha = porous, p.substeps = 5;
+  p.mass = 0.0373, p.inverse_air_mass = p.spread = 2.0, p.response = 0.25, p.alpha = porous, p.substeps = 5;
   SheetMode mode = {0.0, 1.0, 0.0, 0.0};
   for (int step = 0; step < 50; ++step) {
     mode = coupled_step(mode, p, step == 0);
@@ -126,7 +126,7 @@ double growth_with_defect(double omega_dt, double visible, double alpha, double 
     for (const double mass : {0.00373, 0.0373, 0.373}) {
       SheetModeParameters p;
       p.mass = mass;
-      p.compliance = 1.0 / copy_mass;
+      p.inverse_air_mass = 1.0 / copy_mass;
       p.spread = visible / copy_mass;
       p.response = p.spread / ratio;
       // The air that a mode moves is at most some eight times that of the copies.

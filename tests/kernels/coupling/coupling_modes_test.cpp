@@ -52,8 +52,8 @@ struct Piston {
     // Two vertices share the corners of the periodic box; those at its ends have half the area.
     std::vector<double> areas;
     for (const double of_vertex : c.p.fabric.mass) areas.push_back(of_vertex / mass);
-    p.compliance = p.spread =
-        reference::spread_row_sums(c.grid(), c.p.sheet.kernel, places, areas, c.p.flow.density)[middle][0];
+    p.inverse_air_mass = p.spread =
+        reference::spread_row_sums(c.grid(), c.p.sheet.delta, places, areas, c.p.flow.density)[middle][0];
     const double air_mass = c.p.flow.density * c.p.flow.high[0];
     p.response = 1.0 / air_mass;
     p.stiffness = std::pow(omega_dt / p.dt, 2) * air_mass;
@@ -161,20 +161,20 @@ struct SineSheet {
     }
     const StaggeredGrid grid = c.grid();
     const auto response_of = [&](const reference::FaceField& field) {
-      const std::vector<Vector> at_vertices = reference::interpolate(grid, c.p.sheet.kernel, field, c.x);
+      const std::vector<Vector> at_vertices = reference::interpolate(grid, c.p.sheet.delta, field, c.x);
       double sum = 0.0, norm = 0.0;
       for (std::size_t i = 0; i < c.x.size(); ++i)
         sum += areas[i] * shape[i] * at_vertices[i][0], norm += areas[i] * shape[i] * shape[i];
       return sum / norm / c.p.flow.density;
     };
-    reference::FaceField spread = reference::spread(grid, c.p.sheet.kernel, c.x, impulses);
+    reference::FaceField spread = reference::spread(grid, c.p.sheet.delta, c.x, impulses);
     p.spread = response_of(spread);
     flow::Parameters box = c.p.flow;
     for (flow::Boundary& side : box.boundary) side.kind = flow::BoundaryKind::periodic;
     static_cast<void>(reference::project(reference::FlowDomain(box), spread, 1.0));
     p.response = response_of(spread);
-    p.compliance =
-        reference::spread_row_sums(grid, c.p.sheet.kernel, c.x, areas, c.p.flow.density)[antinode][0];
+    p.inverse_air_mass =
+        reference::spread_row_sums(grid, c.p.sheet.delta, c.x, areas, c.p.flow.density)[antinode][0];
     for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i][0] += displacement * shape[i];
     CoupledRun run(c);
     std::vector<Vector> forces(c.x.size());

@@ -36,7 +36,7 @@ TEST(FixedSheet, LeaksInProportionToTheStepWithoutTheFilteredAcceleration) {
     std::vector<double> areas;
     for (const double mass : c.p.fabric.mass) areas.push_back(mass / 0.0373);
     const double row_sum =
-        reference::spread_row_sums(c.grid(), c.p.sheet.kernel, c.x, areas, c.p.flow.density)[16][0];
+        reference::spread_row_sums(c.grid(), c.p.sheet.delta, c.x, areas, c.p.flow.density)[16][0];
     CoupledRun run(c);
     ASSERT_TRUE(run.advance(400 << level));
     const double law = CoupledCase::law_velocity(dp);

@@ -161,7 +161,7 @@ std::vector<Case> cases() {
   channel.p.flow.time_scheme = flow::TimeScheme::rk3;
   channel.p.flow.turbulence = flow::Turbulence::vreman;
   channel.p.sheet.law.no_slip = true;
-  channel.p.sheet.kernel = DeltaKernel::ib4;
+  channel.p.sheet.delta = DeltaFunction::ib4;
   // At rest, as a body.
   Case& rigid = all.emplace_back(sheet_in("rigid", {10, 8, 17}));
   set_stream(rigid);

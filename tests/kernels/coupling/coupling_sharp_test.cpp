@@ -69,7 +69,7 @@ TEST(SharpSheet, ForcesOfCrumpledLayersMatchTheReference) {
   mesh.rest = sheet.positions;
   mesh.triangles = sheet.triangles;
   const fabric::SurfaceViews<Space> surface(space, mesh);
-  const GridTransfer<Space> transfer(space, grid, DeltaKernel::cbs43, surface.vertices());
+  const GridTransfer<Space> transfer(space, grid, DeltaFunction::cbs43, surface.vertices());
   using Vectors = SharpSheet<Space>::Vectors;
   const auto rows = sheet.positions.size();
   const Vectors x("x", rows), v("v", rows), force("force", rows);

@@ -414,7 +414,7 @@ void expect_air_velocity(const CoupledCase& c) {
     velocity[axis].resize(flow::state_size(c.p.flow, field));
     run.solver->download(field, velocity[axis]);
   }
-  const std::vector<Vector> expected = reference::interpolate(grid, c.p.sheet.kernel, velocity, x);
+  const std::vector<Vector> expected = reference::interpolate(grid, c.p.sheet.delta, velocity, x);
   double largest = 0.0;
   for (const Vector& of_vertex : expected) largest = std::max(largest, std::abs(of_vertex[0]));
   EXPECT_GT(largest, 0.1);

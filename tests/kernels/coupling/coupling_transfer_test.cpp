@@ -24,7 +24,7 @@ using reference::FaceField;
 using Vector = std::array<double, 3>;
 using Vectors = std::vector<Vector>;
 
-constexpr DeltaKernel kernels[] = {DeltaKernel::cbs43, DeltaKernel::cbs32, DeltaKernel::ib4};
+constexpr DeltaFunction deltas[] = {DeltaFunction::cbs43, DeltaFunction::cbs32, DeltaFunction::ib4};
 
 #if defined(DROGUE_EXACT)
 constexpr double backend_tolerance = 0.0;
@@ -158,8 +158,8 @@ struct Case {
   E space;
   GridTransfer<E> transfer;
 
-  Case(const StaggeredGrid& grid, DeltaKernel kernel, const Vectors& points)
-      : transfer(space, grid, kernel, static_cast<int>(points.size())) {
+  Case(const StaggeredGrid& grid, DeltaFunction delta, const Vectors& points)
+      : transfer(space, grid, delta, static_cast<int>(points.size())) {
     const PointView<E> x = on_device(space, points);
     const PointView<E> v("at rest", points.size());
     freeze_positions(space, transfer, x, v, 0.0);
@@ -213,38 +213,39 @@ std::vector<double> random_areas(Random& random, std::size_t n) {
 
 TEST(GridTransfer, InterpolationMatchesTheOracleInsideAndOutsideOfTheGrid) {
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       Random random(1);
       const FaceField field = random.field(grid);
       for (const double margin : {0.0, -20.0}) {
         const Vectors points = random.points(grid, 60, margin);
-        expect_near(Case<Space>(grid, kernel, points).interpolated(field),
-                    reference::interpolate(grid, kernel, field, points), 3e-13);
+        expect_near(Case<Space>(grid, delta, points).interpolated(field),
+                    reference::interpolate(grid, delta, field, points), 3e-13);
       }
     }
 }
 
+// ctest-label: smoke
 TEST(GridTransfer, SpreadingMatchesTheOracleInsideAndOutsideOfTheGrid) {
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       Random random(2);
       const Vectors forces = random.vectors(60, 10.0);
       for (const double margin : {0.0, -20.0}) {
         const Vectors points = random.points(grid, 60, margin);
-        expect_near(Case<Space>(grid, kernel, points).densities(forces),
-                    reference::spread(grid, kernel, points, forces), 1e-10 / cell_volume_of(grid) / 100.0);
+        expect_near(Case<Space>(grid, delta, points).densities(forces),
+                    reference::spread(grid, delta, points, forces), 1e-10 / cell_volume_of(grid) / 100.0);
       }
     }
 }
 
 TEST(GridTransfer, RowSumsMatchTheOracle) {
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       Random random(3);
       const Vectors points = random.points(grid, 60, 0.0);
       const std::vector<double> areas = random_areas(random, points.size());
-      const Case<Space> run(grid, kernel, points);
-      const Vectors expected = reference::spread_row_sums(grid, kernel, points, areas, 1.2);
+      const Case<Space> run(grid, delta, points);
+      const Vectors expected = reference::spread_row_sums(grid, delta, points, areas, 1.2);
       expect_near(run.row_sums(areas, 1.2), expected, 1e-12);
       // The sums are reset: a second call has the same bits.
       expect_near(run.row_sums(areas, 1.2), run.row_sums(areas, 1.2), 0.0);
@@ -292,12 +293,12 @@ constexpr double other_kernel_tolerance = 1e-14;
 TEST(GridTransfer, RanksThatDivideTheFacesSpreadTheBitsOfOneAndInterpolateItsSum) {
   const Space space;
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       Random random(31);
       const FaceField field = random.field(grid);
       const Vectors points = random.points(grid, 60, -1.0), forces = random.vectors(60, 10.0);
       const std::vector<double> areas = random_areas(random, points.size());
-      const Case<Space> whole(grid, kernel, points);
+      const Case<Space> whole(grid, delta, points);
       const auto density = on_device(space, grid, reference::zero_field(grid));
       Vectors velocities(points.size(), Vector{}), row_sums = velocities;
       const auto add = [](Vectors& sums, const Vectors& values) {
@@ -307,7 +308,7 @@ TEST(GridTransfer, RanksThatDivideTheFacesSpreadTheBitsOfOneAndInterpolateItsSum
       std::vector<GridTransfer<Space>> parts;
       for (const FaceWindow& window : windows_of(grid)) {
         Case<Space> part = whole;
-        part.transfer = GridTransfer<Space>(space, grid, kernel, static_cast<int>(points.size()), window);
+        part.transfer = GridTransfer<Space>(space, grid, delta, static_cast<int>(points.size()), window);
         EXPECT_EQ(part.transfer.is_divided(), window != whole_window(grid));
         freeze_positions(space, part.transfer, on_device(space, points),
                          PointView<Space>("at rest", points.size()), 0.0);
@@ -334,12 +335,11 @@ TEST(GridTransfer, RanksThatDivideTheFacesSpreadTheBitsOfOneAndInterpolateItsSum
 
 TEST(GridTransfer, ConstantFieldsAreReproducedEverywhere) {
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       FaceField field = reference::zero_field(grid);
       for (std::size_t d = 0; d < 3; ++d) std::ranges::fill(field[d], 1.0 + static_cast<double>(d));
       const Vectors points = Random(4).points(grid, 100, -10.0);
-      expect_near(Case<Space>(grid, kernel, points).interpolated(field), Vectors(100, {1.0, 2.0, 3.0}),
-                  4e-15);
+      expect_near(Case<Space>(grid, delta, points).interpolated(field), Vectors(100, {1.0, 2.0, 3.0}), 4e-15);
     }
 }
 
@@ -356,11 +356,11 @@ TEST(GridTransfer, LinearFieldsAreReproducedAwayFromBoundedSides) {
     for (std::size_t axis = 0; axis < 3; ++axis) x[axis] = grid.origin[axis] + grid.spacing[axis] * x[axis];
     field[d][n] = value(d, x);
   });
-  for (const DeltaKernel kernel : kernels) {
-    const Vectors points = Random(5).points(grid, 200, kernel == DeltaKernel::ib4 ? 1.5 : 1.0);
+  for (const DeltaFunction delta : deltas) {
+    const Vectors points = Random(5).points(grid, 200, delta == DeltaFunction::ib4 ? 1.5 : 1.0);
     Vectors expected;
     for (const Vector& x : points) expected.push_back({value(0, x), value(1, x), value(2, x)});
-    const Case<Space> run(grid, kernel, points);
+    const Case<Space> run(grid, delta, points);
     expect_near(run.interpolated(field), expected, 1e-12);
     EXPECT_EQ(run.counts().incomplete_points, 0);
   }
@@ -369,17 +369,18 @@ TEST(GridTransfer, LinearFieldsAreReproducedAwayFromBoundedSides) {
 TEST(GridTransfer, CountsPointsWhoseDeltaFunctionLeavesTheGrid) {
   const StaggeredGrid grid{{8, 8, 8}, {0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}, {false, true, false}};
   const double infinite = std::numeric_limits<double>::infinity(), nan = std::nan("");
-  // Distance in cells that the kernel needs from a bounded side.
-  for (const auto& [kernel, needed] : {std::pair{DeltaKernel::cbs43, 1.0}, std::pair{DeltaKernel::cbs32, 0.5},
-                                       std::pair{DeltaKernel::ib4, 1.5}}) {
+  // Distance in cells that the delta function needs from a bounded side.
+  for (const auto& [delta, needed] :
+       {std::pair{DeltaFunction::cbs43, 1.0}, std::pair{DeltaFunction::cbs32, 0.5},
+        std::pair{DeltaFunction::ib4, 1.5}}) {
     const double near = 0.5 * (needed - 0.01), enough = 0.5 * (needed + 0.01);
     const Vectors complete{{enough, 0.0, 2.0}, {2.0, -50.0, 4.0 - enough}, {4.0 - enough, 3.9, enough}};
-    EXPECT_EQ(Case<Space>(grid, kernel, complete).counts().incomplete_points, 0);
+    EXPECT_EQ(Case<Space>(grid, delta, complete).counts().incomplete_points, 0);
     const Vectors incomplete{{near, 0.0, 2.0},     {2.0, 2.0, 4.0 - near}, {4.0 - near, 3.9, near},
                              {-7.0, 2.0, 2.0},     {2.0, 2.0, 1e300},      {nan, 2.0, 2.0},
                              {2.0, infinite, 2.0}, {2.0, 2.0, -infinite},  {2.0, nan, 2.0},
                              {2.0, 1e300, 2.0}};
-    EXPECT_EQ(Case<Space>(grid, kernel, incomplete).counts().incomplete_points, 10);
+    EXPECT_EQ(Case<Space>(grid, delta, incomplete).counts().incomplete_points, 10);
   }
 }
 
@@ -387,7 +388,7 @@ TEST(GridTransfer, FreezesPositionsAlongVelocities) {
   const Space space;
   const StaggeredGrid grid = all_grids()[0];
   const Vectors x = Random(6).points(grid, 20, 2.0), v = Random(7).vectors(20, 1.0);
-  const GridTransfer<Space> transfer(space, grid, DeltaKernel::cbs43, 20);
+  const GridTransfer<Space> transfer(space, grid, DeltaFunction::cbs43, 20);
   freeze_positions(space, transfer, on_device(space, x), on_device(space, v), 0.01);
   Vectors expected = x;
   for (std::size_t i = 0; i < 20; ++i)
@@ -397,11 +398,11 @@ TEST(GridTransfer, FreezesPositionsAlongVelocities) {
 
 TEST(GridTransfer, InterpolationIsTheAdjointOfSpreading) {
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       Random random(8);
       const FaceField field = random.field(grid);
       const Vectors points = random.points(grid, 80, -1.0), forces = random.vectors(80, 1.0);
-      const Case<Space> run(grid, kernel, points);
+      const Case<Space> run(grid, delta, points);
       const Vectors velocities = run.interpolated(field);
       const FaceField densities = run.densities(forces);
       double power_of_points = 0.0, power_of_faces = 0.0;
@@ -416,7 +417,7 @@ TEST(GridTransfer, InterpolationIsTheAdjointOfSpreading) {
 
 TEST(GridTransfer, SpreadingKeepsTheTotalForceExactly) {
   const StaggeredGrid grid{{9, 8, 7}, {0.0, 0.0, 0.0}, {0.25, 0.5, 0.125}, {false, true, false}};
-  for (const DeltaKernel kernel : kernels) {
+  for (const DeltaFunction delta : deltas) {
     Random random(9);
     const Vectors points = random.points(grid, 64, -2.0);
     Vectors forces = random.vectors(64, 1.0);
@@ -427,35 +428,35 @@ TEST(GridTransfer, SpreadingKeepsTheTotalForceExactly) {
         total[d] += force[d];
       }
     // With this bound a unit is 2^-45 N, and no sum of densities rounds.
-    const FaceField densities = Case<Space>(grid, kernel, points).densities(forces, 1024.0);
+    const FaceField densities = Case<Space>(grid, delta, points).densities(forces, 1024.0);
     for (std::size_t d = 0; d < 3; ++d) EXPECT_EQ(cell_volume_of(grid) * sum(densities[d]), total[d]);
   }
 }
 
 TEST(GridTransfer, ResultDoesNotDependOnTheOrderOfPoints) {
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       Random random(10);
       Vectors points = random.points(grid, 500, 0.0), forces = random.vectors(500, 1.0);
-      const FaceField densities = Case<Space>(grid, kernel, points).densities(forces);
+      const FaceField densities = Case<Space>(grid, delta, points).densities(forces);
       for (std::size_t i = points.size(); i > 1; --i) {
         const auto other = static_cast<std::size_t>(random(0.0, static_cast<double>(i)));
         std::swap(points[i - 1], points[other]);
         std::swap(forces[i - 1], forces[other]);
       }
-      expect_near(Case<Space>(grid, kernel, points).densities(forces), densities, 0.0);
+      expect_near(Case<Space>(grid, delta, points).densities(forces), densities, 0.0);
     }
 }
 
 TEST(GridTransfer, BackendsAgree) {
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       Random random(11);
       const FaceField field = random.field(grid);
       const Vectors points = random.points(grid, 300, -0.5), forces = random.vectors(300, 1.0);
       const std::vector<double> areas = random_areas(random, 300);
-      const Case<Space> run(grid, kernel, points);
-      const Case<OtherSpace> other(grid, kernel, points);
+      const Case<Space> run(grid, delta, points);
+      const Case<OtherSpace> other(grid, delta, points);
       expect_near(run.interpolated(field), other.interpolated(field), backend_tolerance);
       expect_near(run.densities(forces), other.densities(forces),
                   backend_tolerance / cell_volume_of(grid) * 100.0);
@@ -468,7 +469,7 @@ TEST(GridTransfer, SpreadingAddsToTheDensities) {
   const StaggeredGrid grid = all_grids()[0];
   Random random(12);
   const Vectors points = random.points(grid, 50, 1.5), forces = random.vectors(50, 1.0);
-  const Case<Space> run(grid, DeltaKernel::cbs43, points);
+  const Case<Space> run(grid, DeltaFunction::cbs43, points);
   const FaceField once = run.densities(forces), before = random.field(grid);
   const auto density = on_device(space, grid, before);
   spread(space, run.transfer, on_device(space, forces), density);
@@ -481,9 +482,9 @@ TEST(GridTransfer, SpreadingAddsToTheDensities) {
 
 TEST(GridTransfer, ClearsTheFacesAroundPointsAndNoOthers) {
   for (const StaggeredGrid& grid : all_grids())
-    for (const DeltaKernel kernel : kernels) {
+    for (const DeltaFunction delta : deltas) {
       Random random(5);
-      const Case<Space> run(grid, kernel, random.points(grid, 2, 0.0));
+      const Case<Space> run(grid, delta, random.points(grid, 2, 0.0));
       FaceField ones = reference::zero_field(grid);
       for (auto& values : ones) values.assign(values.size(), 1.0);
       const auto field = on_device(run.space, grid, ones);
@@ -504,7 +505,7 @@ TEST(GridTransfer, CoincidentPointsWithTheLargestForceDoNotOverflow) {
   // 4097 is just above a power of two. Of component 0 one face receives three quarters.
   for (const std::size_t n : {1U, 4096U, 4097U}) {
     const Vectors points(n, {2.0, 2.5, 2.5}), forces(n, {1e30, -1e30, 1e30});
-    const FaceField densities = Case<Space>(grid, DeltaKernel::cbs32, points).densities(forces);
+    const FaceField densities = Case<Space>(grid, DeltaFunction::cbs32, points).densities(forces);
     const auto count = static_cast<double>(n);
     // The unit of the sums is below M n / 2^60, and a point errs by at most 20 units.
     const double tolerance = 20.0 * count * std::ldexp(1e30 * count, -60) + 1e-15 * count * 1e30;
@@ -518,7 +519,7 @@ TEST(GridTransfer, ResolvesForcesOfAnyMagnitude) {
   const StaggeredGrid grid = all_grids()[0];
   Random random(13);
   const Vectors points = random.points(grid, 30, 1.5), forces = random.vectors(30, 1.0);
-  const Case<Space> run(grid, DeltaKernel::cbs43, points);
+  const Case<Space> run(grid, DeltaFunction::cbs43, points);
   const FaceField densities = run.densities(forces);
   for (const int exponent : {-800, -30, 30, 800}) {
     Vectors scaled = forces;
@@ -538,17 +539,17 @@ TEST(GridTransfer, RejectsForcesAboveTheBoundAndNonFiniteOnes) {
   Random random(14);
   Vectors points = random.points(grid, 10, 1.5);
   const Vectors forces = random.vectors(10, 1.0);
-  const FaceField expected = Case<Space>(grid, DeltaKernel::cbs43, points).densities(forces, 1.0);
+  const FaceField expected = Case<Space>(grid, DeltaFunction::cbs43, points).densities(forces, 1.0);
   points.resize(13, {0.0, 0.0, nan});
   Vectors more = forces;
   more.resize(13, {1.0, 0.0, 0.0});  // one component each at a position that is not finite
   // The number of points has an effect on the resolution alone: 10 and 14 have the same power of two.
   points.push_back(points[0]), more.push_back({nan, 1.5, -infinite});
-  const Case<Space> bounded(grid, DeltaKernel::cbs43, points);
+  const Case<Space> bounded(grid, DeltaFunction::cbs43, points);
   expect_near(bounded.densities(more, 1.0), expected, 0.0);
   EXPECT_EQ(bounded.counts().rejected_forces, 6);
   more.back()[1] = -1e300;
-  const Case<Space> unbounded(grid, DeltaKernel::cbs43, points);
+  const Case<Space> unbounded(grid, DeltaFunction::cbs43, points);
   expect_near(unbounded.densities(more), expected, 1e-10);
   EXPECT_EQ(unbounded.counts().rejected_forces, 6);
 }
@@ -557,7 +558,7 @@ TEST(GridTransfer, RejectsForcesThatFixedPointCannotScaleWhateverTheBound) {
   const StaggeredGrid grid = all_grids()[0];
   Random random(15);
   const Vectors points = random.points(grid, 2, 1.5);
-  const Case<Space> bounded(grid, DeltaKernel::cbs43, points);
+  const Case<Space> bounded(grid, DeltaFunction::cbs43, points);
   const FaceField result = bounded.densities({{1e290, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 1e300);
   EXPECT_EQ(bounded.counts().rejected_forces, 1);
   for (const auto& values : result)
@@ -566,8 +567,8 @@ TEST(GridTransfer, RejectsForcesThatFixedPointCannotScaleWhateverTheBound) {
 
 TEST(GridTransfer, PositionsThatAreNotFiniteInterpolateToNaN) {
   const StaggeredGrid grid = all_grids()[0];
-  const Vectors result =
-      Case<Space>(grid, DeltaKernel::cbs43, {{0.0, 2.0, std::nan("")}}).interpolated(Random(15).field(grid));
+  const Vectors result = Case<Space>(grid, DeltaFunction::cbs43, {{0.0, 2.0, std::nan("")}})
+                             .interpolated(Random(15).field(grid));
   for (const double value : result[0]) EXPECT_TRUE(std::isnan(value));
 }
 
@@ -599,7 +600,7 @@ FaceField divergence_free_field(const StaggeredGrid& grid) {
 }
 
 /// Largest divergence of the interpolated field, by central differences, over the points.
-double interpolated_divergence(const StaggeredGrid& grid, DeltaKernel kernel, const FaceField& field,
+double interpolated_divergence(const StaggeredGrid& grid, DeltaFunction delta, const FaceField& field,
                                const Vectors& points) {
   constexpr double step = 1e-6;
   Vectors neighbours;
@@ -609,7 +610,7 @@ double interpolated_divergence(const StaggeredGrid& grid, DeltaKernel kernel, co
         neighbours.push_back(x);
         neighbours.back()[axis] += side * step * grid.spacing[axis];
       }
-  const Vectors u = Case<Space>(grid, kernel, neighbours).interpolated(field);
+  const Vectors u = Case<Space>(grid, delta, neighbours).interpolated(field);
   double largest = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     double divergence = 0.0;
@@ -627,9 +628,9 @@ TEST(GridTransfer, CompositeSplinesInterpolateDivergenceFreeFieldsWithoutDiverge
     const FaceField field = divergence_free_field(grid);
     const Vectors points = Random(17).points(grid, 100, periodic ? -3.0 : 1.6);
     // Gradients are of order 10; differences resolve 1e-8 of them away from the knots.
-    EXPECT_LT(interpolated_divergence(grid, DeltaKernel::cbs43, field, points), 1e-6);
-    EXPECT_LT(interpolated_divergence(grid, DeltaKernel::cbs32, field, points), 1e-6);
-    EXPECT_GT(interpolated_divergence(grid, DeltaKernel::ib4, field, points), 0.1);
+    EXPECT_LT(interpolated_divergence(grid, DeltaFunction::cbs43, field, points), 1e-6);
+    EXPECT_LT(interpolated_divergence(grid, DeltaFunction::cbs32, field, points), 1e-6);
+    EXPECT_GT(interpolated_divergence(grid, DeltaFunction::ib4, field, points), 0.1);
   }
 }
 
@@ -653,7 +654,7 @@ double row_sum_of_plane(double part) {
         place[axis] = middle[axis] + distance * (a * first[axis] + b * second[axis]);
     }
   const std::vector<double> areas(points.size(), distance * distance);
-  const Vectors sums = Case<Space>(grid, DeltaKernel::cbs43, points).row_sums(areas, density);
+  const Vectors sums = Case<Space>(grid, DeltaFunction::cbs43, points).row_sums(areas, density);
   double mean = 0.0;
   for (const std::size_t i : inner)
     for (std::size_t axis = 0; axis < 3; ++axis) mean += normal[axis] * normal[axis] * sums[i][axis];
@@ -673,8 +674,8 @@ TEST(GridTransfer, RowSumsBoundTheEnergyOfSpreadImpulses) {
   Random random(18);
   const Vectors points = random.points(grid, 60, 2.0);
   const std::vector<double> areas = random_areas(random, 60);
-  for (const DeltaKernel kernel : kernels) {
-    const Case<Space> run(grid, kernel, points);
+  for (const DeltaFunction delta : deltas) {
+    const Case<Space> run(grid, delta, points);
     const Vectors row_sums = run.row_sums(areas, 1.2);
     for (int trial = 0; trial < 8; ++trial) {
       // Smooth impulses come close to the bound.
@@ -704,7 +705,7 @@ TEST(GridTransfer, ReadsAndWritesFieldsOfAnyLayout) {
   Random random(19);
   const FaceField field = random.field(grid);
   const Vectors points = random.points(grid, 40, 1.0), forces = random.vectors(40, 1.0);
-  const Case<Space> run(grid, DeltaKernel::cbs43, points);
+  const Case<Space> run(grid, DeltaFunction::cbs43, points);
   using Padded = Kokkos::View<double***, Kokkos::LayoutRight, Space::memory_space>;
   using Strided = Kokkos::View<double***, Kokkos::LayoutStride, Space::memory_space>;
   FaceViews<Strided> values, densities;
@@ -742,7 +743,7 @@ TEST(GridTransfer, TransfersWithoutFenceAllocationOrCopyAndReplaysFromAGraph) {
   const NumberView<Space> area = on_device(space, random_areas(random, 40));
   const FaceField start = random.field(grid);
   const auto field = on_device(space, grid, start);
-  const GridTransfer<Space> transfer(space, grid, DeltaKernel::cbs43, 40);
+  const GridTransfer<Space> transfer(space, grid, DeltaFunction::cbs43, 40);
   const auto enqueue = [&](const Space& on) {
     freeze_positions(on, transfer, x, v, 0.01);
     spread_row_sums(on, transfer, area, 1.2, row_sums);
@@ -774,7 +775,7 @@ TEST(GridTransfer, TransfersWithoutFenceAllocationOrCopyAndReplaysFromAGraph) {
 TEST(GridTransfer, RejectsInvalidGridsViewsAndParameters) {
   const Space space;
   const auto expect_invalid = [&](const StaggeredGrid& grid) {
-    EXPECT_THROW(GridTransfer<Space>(space, grid, DeltaKernel::cbs43, 1), std::invalid_argument);
+    EXPECT_THROW(GridTransfer<Space>(space, grid, DeltaFunction::cbs43, 1), std::invalid_argument);
   };
   StaggeredGrid grid = all_grids()[0];
   grid.cells[1] = 0;
@@ -786,9 +787,9 @@ TEST(GridTransfer, RejectsInvalidGridsViewsAndParameters) {
   grid = all_grids()[0], grid.origin[0] = std::nan("");
   expect_invalid(grid);
   grid = all_grids()[0];
-  EXPECT_THROW(GridTransfer<Space>(space, grid, DeltaKernel::cbs43, -1), std::invalid_argument);
+  EXPECT_THROW(GridTransfer<Space>(space, grid, DeltaFunction::cbs43, -1), std::invalid_argument);
 
-  const GridTransfer<Space> transfer(space, grid, DeltaKernel::cbs43, 3);
+  const GridTransfer<Space> transfer(space, grid, DeltaFunction::cbs43, 3);
   const PointView<Space> rows("rows", 3), few("few", 2);
   const NumberView<Space> numbers("numbers", 3);
   const auto field = on_device(space, grid, reference::zero_field(grid));
@@ -802,7 +803,7 @@ TEST(GridTransfer, RejectsInvalidGridsViewsAndParameters) {
   EXPECT_THROW(spread(space, transfer, rows, field, -1.0), std::invalid_argument);
   EXPECT_THROW(spread(space, transfer, rows, field, std::nan("")), std::invalid_argument);
   EXPECT_THROW(spread_row_sums(space, transfer, numbers, 0.0, rows), std::invalid_argument);
-  const GridTransfer<Space> empty(space, grid, DeltaKernel::cbs43, 0);
+  const GridTransfer<Space> empty(space, grid, DeltaFunction::cbs43, 0);
   spread(space, empty, PointView<Space>("none", 0), field);
   expect_near(on_host(grid, field), reference::zero_field(grid), 0.0);
 }

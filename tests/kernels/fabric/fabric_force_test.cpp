@@ -43,6 +43,7 @@ double largest(const std::vector<Vector>& vectors) {
   return most;
 }
 
+// ctest-label: smoke
 TEST(FabricForce, IsTheDerivativeOfTheReferenceEnergy) {
   for (const Model model : models)
     for (const auto& [nx, ny] : {std::pair{2, 2}, {5, 4}, {9, 13}, {33, 7}, {41, 60}})

@@ -123,6 +123,22 @@ TEST(FabricPrescribed, ReportsTheVertexOfANonFiniteMotion) {
   }
 }
 
+TEST(FabricPrescribed, FailureBeforeTheFirstUploadReturnsToRest) {
+  for (const Integrator integrator : integrators) {
+    Parameters p = shaken_spring(integrator, 0.01);
+    p.motions = {{0, {1}, postfix({-1.0, "sqrt"})}};
+    const auto solver = create_solver(backend, p);
+    solver->advance(3);
+    const auto failure = solver->failure();
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->step, 1);
+    EXPECT_EQ(solver->time_state().step, 0);
+    std::vector<Vector> x(2), v(2);
+    solver->download(x, v);
+    EXPECT_EQ(x, p.mesh.rest);
+  }
+}
+
 TEST(FabricPrescribed, RejectsInvalidMotions) {
   const Parameters good = shaken_spring(Integrator::rk4, 0.01);
   const auto expect_rejected = [&](Motion motion) {

@@ -168,14 +168,16 @@ TEST(FlowCoupling, InterpolatesTheVelocityWhereTheSolverKeepsIt) {
     const Space& space = flow.instance.space();
     const coupling::StaggeredGrid grid = coupling_grid(flow.solver.grid());
     const HostPoints points = random_points(0.2, 0.8, 5);
-    const coupling::GridTransfer<Space> transfer(space, grid, coupling::DeltaKernel::cbs43, number_of_points);
+    const coupling::GridTransfer<Space> transfer(space, grid, coupling::DeltaFunction::cbs43,
+                                                 number_of_points);
     const PointViews x = on_device(space, points), zero("zero", number_of_points), u("u", number_of_points);
     coupling::freeze_positions(space, transfer, x, zero, 0.0);
     coupling::interpolate(space, transfer, face_views<Space>(flow.solver.grid(), flow.solver.velocity()), u);
     std::vector<double> values(3U * number_of_points);
     device::copy_out(space, values.data(), u, values.size());
     space.fence();
-    const auto expected = reference::interpolate(grid, coupling::DeltaKernel::cbs43, flow.velocity(), points);
+    const auto expected =
+        reference::interpolate(grid, coupling::DeltaFunction::cbs43, flow.velocity(), points);
     for (std::size_t i = 0; i < expected.size(); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(values[axis * number_of_points + i], expected[i][axis], 1e-14);
@@ -188,12 +190,13 @@ TEST(FlowCoupling, SpreadForcesActInTheNextStep) {
     const Space& space = forced.instance.space();
     const coupling::StaggeredGrid grid = coupling_grid(forced.solver.grid());
     const HostPoints points = random_points(0.3, 0.7, 6), forces = random_points(-1.0, 1.0, 7);
-    const coupling::GridTransfer<Space> transfer(space, grid, coupling::DeltaKernel::cbs43, number_of_points);
+    const coupling::GridTransfer<Space> transfer(space, grid, coupling::DeltaFunction::cbs43,
+                                                 number_of_points);
     const PointViews x = on_device(space, points), zero("zero", number_of_points);
     coupling::freeze_positions(space, transfer, x, zero, 0.0);
     coupling::spread(space, transfer, on_device(space, forces),
                      face_views<Space>(forced.solver.grid(), forced.solver.force()));
-    copied.set_force(reference::spread(grid, coupling::DeltaKernel::cbs43, points, forces));
+    copied.set_force(reference::spread(grid, coupling::DeltaFunction::cbs43, points, forces));
     ASSERT_EQ(forced.solver.advance(endless, 2, {}), Stop::pause);
     ASSERT_EQ(copied.solver.advance(endless, 2, {}), Stop::pause);
     EXPECT_LT(largest_difference(forced.velocity(), copied.velocity()), 1e-13);

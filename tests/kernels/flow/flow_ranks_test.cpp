@@ -338,7 +338,7 @@ TEST_F(FlowRanks, ContinueBitForBitOnAsManyRanksAndNearlyOnOthers) {
       }
       if (ranks == 4) {
         EXPECT_EQ(end.time, next->progress().time);
-        EXPECT_EQ(end.rate, next->progress().rate);
+        EXPECT_EQ(end.rate_bits, next->progress().rate_bits);
       }
     }
   }

@@ -52,7 +52,7 @@ struct Flow {
     parameters.viscosity = (1.0 - advective) * unit_rate / unit_diffusion;
     for (double& u : velocity) u *= advective;
     constants = step_constants(parameters, grid);
-    progress.rate = Kokkos::bit_cast<std::uint64_t>(rate());
+    progress.rate_bits = Kokkos::bit_cast<std::uint64_t>(rate());
   }
 
   /// Sum of speeds over spacings, 1/s.
@@ -127,12 +127,12 @@ TEST(FlowStability, AdamsBashforthIsWeaklyUnstableWithoutViscosity) {
 
 TEST(FlowStepSize, CountsTheAccelerationsOfAllComponentsOfSides) {
   Control control{};
-  control.next_rate = Kokkos::bit_cast<std::uint64_t>(2.0);
+  control.next_rate_bits = Kokkos::bit_cast<std::uint64_t>(2.0);
   for (std::size_t c = 0; c < 3; ++c)
     control.side_acceleration[c] = Kokkos::bit_cast<std::uint64_t>(3.0 + static_cast<double>(c));
   StepConstants constants{};
   constants.cfl = 0.5;
-  const double dt = constants.cfl / Kokkos::bit_cast<double>(limiting_rate(control, constants));
+  const double dt = constants.cfl / Kokkos::bit_cast<double>(limiting_rate_bits(control, constants));
   EXPECT_NEAR(dt * (2.0 + 12.0 * dt), constants.cfl, round_off);
 }
 

@@ -108,6 +108,7 @@ TEST(FlowMomentum, RatesInPeriodicBoxesEqualThoseOfTheReference) {
       expect_equal_rates(parameters_of(cells, {periodic, periodic, periodic}, scheme), 11);
 }
 
+// ctest-label: smoke
 TEST(FlowMomentum, RatesBetweenBoundedSidesEqualThoseOfTheReference) {
   const Sides walls{BoundaryKind::wall, BoundaryKind::slip},
       through{BoundaryKind::inflow, BoundaryKind::outflow};

@@ -66,6 +66,7 @@ Parameters combination(int n, std::string& text) {
   return p;
 }
 
+// ctest-label: smoke
 TEST(GasSolver, MatchesTheReference) {
   for (int n = 0; n < 90; ++n) {
     std::string text;

@@ -18,6 +18,7 @@ class Ladders : public ::testing::TestWithParam<std::string> {
   Ladder ladder = create_ladder(GetParam(), testing::tested_backend, true);
 };
 
+// ctest-label: smoke
 TEST_P(Ladders, RungsEqualReference) {
   for (const Rung& rung : ladder.rungs) {
     if (!rung.available) continue;

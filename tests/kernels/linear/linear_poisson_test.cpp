@@ -122,6 +122,7 @@ struct SolverName {
 };
 TYPED_TEST_SUITE(Poisson, Solvers, SolverName);
 
+// ctest-label: smoke
 TYPED_TEST(Poisson, ResidualIsRoundOffForAllEndConditions) {
   int solved = 0;
   for (const auto& x : end_pairs)

@@ -70,6 +70,7 @@ double difference(const Contract& c, int mesh, int steps) {
   return worst;
 }
 
+// ctest-label: smoke
 TEST(OptionsOracle, NodeValuesOfRandomContractsMatchTheSerialSolve) {
   for (const Contract& c : testing::random_contracts(12, 5))
     EXPECT_LT(difference(c, 48, 12), 1e-7) << "lambda " << c.jump[0] << " alpha " << c.jump[1] << " beta "

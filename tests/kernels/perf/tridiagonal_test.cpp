@@ -63,6 +63,7 @@ SpdBatch random_systems(int batch, int unknowns) {
   return all;
 }
 
+// ctest-label: smoke
 TEST(SpdSolver, EqualsEliminationWithPivoting) {
   for (const int unknowns : {1, 2, 5, 33, 128}) {
     const int batch = 37;

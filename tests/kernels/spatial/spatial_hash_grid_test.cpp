@@ -89,6 +89,7 @@ std::vector<Point> random_points(std::size_t n, double size, unsigned seed) {
   return points;
 }
 
+// ctest-label: smoke
 TEST(HashGrid, CandidatesAreThePointsOfNeighbouringCells) {
   for (const double width : {0.05, 0.2, 10.0}) expect_neighbours(random_points(200, 1.0, 1), width);
 }

@@ -178,6 +178,7 @@ class Decay {
   Outputs _ring{"outputs", output_capacity};
 };
 
+// ctest-label: smoke
 TEST(StepLoop, MeetsTargetsExactly) {
   Decay decay;
   for (const double target : {0.1, 0.137, 1.0}) {
@@ -408,14 +409,6 @@ TEST(StepMonitor, FailuresAreOrderedByStepThenIndex) {
   EXPECT_EQ(failure_order(failure), 123'456'789);
   EXPECT_EQ(failure_index(failure), 987'654);
   EXPECT_LT(failure, no_failure);
-}
-
-TEST(TimeState, CountsTheStepsToTheNearestTime) {
-  const TimeState time{1000, 0.1, 990, 7.5};  // at 8.5 s
-  EXPECT_EQ(time.steps_to(9.04), 5);
-  EXPECT_EQ(time.steps_to(9.06), 6);
-  EXPECT_EQ(time.steps_to(8.5), 0);
-  EXPECT_EQ(time.steps_to(8.0), 0);
 }
 
 TEST(TimeState, IsReproducedByARestart) {

@@ -54,7 +54,16 @@ TEST(Expression, EvaluatesBesselFunctions) {
   EXPECT_NEAR(value("besselj(0, 2.404825557695773)"), 0.0, 1e-15);
   EXPECT_NEAR(value("besselj(1, 1)"), 0.44005058574493355, 1e-15);
   EXPECT_NEAR(value("besselj(2, -5)"), 0.04656511627775222, 1e-15);
-  EXPECT_TRUE(std::isnan(value("besselj(0.5, 1)")));
+  EXPECT_TRUE(std::isnan(value("besselj(x, 1)")));
+}
+
+TEST(Expression, RefusesNumbersThatAreNoOrdersOfBesselFunctions) {
+  for (const char* order : {"0.5", "1001", "-1001", "-2.5"})
+    EXPECT_EQ(error_of(std::string("1 + besselj(") + order + ", x)"),
+              std::pair(13, std::string("besselj has integer orders from -1000 to 1000")))
+        << order;
+  for (const char* order : {"1000", "-1000", "-0", "500*t", "2*600"})
+    EXPECT_EQ(error_of(std::string("besselj(") + order + ", x)").second, "") << order;
 }
 
 TEST(Expression, CopiesEvaluateIndependently) {

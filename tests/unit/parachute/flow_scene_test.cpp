@@ -176,6 +176,47 @@ TEST(FlowScene, ImplicitDiffusionTakesItsTimeSchemeByItself) {
   EXPECT_TRUE(contains(error_of({"flow.diffusion=crank-nicolson", "flow.time=rk3"}), "needs flow.time"));
 }
 
+TEST(FlowScene, SheetsInImplicitDiffusionBoundTheTimeStep) {
+  const std::string body = "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1}]",
+                    implicit = "flow.diffusion=crank-nicolson", stiff = "fluid.viscosity=100";
+  const auto max_dt = [&](const std::vector<std::string>& sets) {
+    return read_text(least, sets).parameters.max_dt;
+  };
+  const double resolved = 1.225 / 100.0 / 36.0;  // the least width is 1/6 m
+  EXPECT_DOUBLE_EQ(max_dt({body, implicit, stiff}), resolved);
+  EXPECT_EQ(max_dt({body, stiff}), 1.0);
+  EXPECT_EQ(max_dt({implicit, stiff}), 0.0);
+  EXPECT_EQ(max_dt({body, implicit, "fluid.viscosity=0"}), 1.0);
+  EXPECT_EQ(max_dt({body, implicit, stiff, "run.max_dt=0.1"}), 0.1);
+  const auto notices = [&](const char* dt) { return read_text(least, {body, implicit, stiff, dt}).notices; };
+  ASSERT_EQ(notices("run.max_dt=0.1").size(), 1U);
+  EXPECT_TRUE(contains(notices("run.max_dt=0.1")[0], "run.max_dt = 0.1 s: viscosity spreads the force"));
+  EXPECT_TRUE(contains(notices("run.dt=0.1")[0], "run.dt = 0.1 s: viscosity spreads the force"));
+  EXPECT_TRUE(notices("run.dt=0.0006").empty());
+}
+
+TEST(FlowScene, NotesForcesOfAStartThatTheDefectHolds) {
+  const std::string body = "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1}]",
+                    implicit = "flow.diffusion=crank-nicolson", defect = "coupling.defect_filter=0.1";
+  const auto notes = [](const std::vector<std::string>& sets) { return read_text(least, sets).notices; };
+  ASSERT_EQ(notes({body, implicit, defect}).size(), 1U);
+  EXPECT_TRUE(contains(notes({body, implicit, defect})[0], "coupling.defect_filter: with"));
+  EXPECT_TRUE(notes({body, implicit}).empty());
+  EXPECT_TRUE(notes({body, defect}).empty());
+}
+
+TEST(FlowScene, NotesTheSchemeWhoseEnergyGrows) {
+  const auto notes = [](const std::vector<std::string>& sets) {
+    return read_text(least, sets).notices.size();
+  };
+  const std::string central = "flow.advection=central", still = "fluid.viscosity=0", ab2 = "flow.time=ab2";
+  EXPECT_EQ(notes({central, still, ab2}), 1U);
+  EXPECT_EQ(notes({central, still, "flow.diffusion=crank-nicolson"}), 1U);
+  EXPECT_EQ(notes({central, still}), 0U);
+  EXPECT_EQ(notes({still, ab2}), 0U);
+  EXPECT_EQ(notes({central, ab2}), 0U);
+}
+
 TEST(FlowScene, RefusesStepsThatReachNoEnd) {
   EXPECT_TRUE(contains(error_of({"run.dt=1e-300"}), "run.max_steps"));
   EXPECT_TRUE(contains(error_of({"fluid.viscosity=1e12"}), "run.max_steps"));
@@ -200,6 +241,7 @@ TEST(FlowScene, SceneWithoutFluidIsClothAlone) {
   EXPECT_EQ(fingerprint_of(scene), fingerprint_of(read_text(drop, {"run.dt=1e-4"})));
   EXPECT_NE(fingerprint_of(scene), fingerprint_of(read_text(drop, {"coupling.gravity=[0,0,-1]"})));
   EXPECT_TRUE(read_text(least).has_fluid());
+  EXPECT_THROW(read_text(drop, {"run.dt=1e-300"}), Failure) << "more steps than run.max_steps";
 }
 
 TEST(FlowScene, FingerprintIgnoresOutputAndSteps) {

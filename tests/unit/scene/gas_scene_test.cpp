@@ -186,6 +186,19 @@ TEST(GasScene, NamesTheLineThatAMissingTableNeeds) {
   EXPECT_TRUE(holds(error_of({}, without_gas), "missing table \"gas\": The gas; add the line [gas]"));
 }
 
+TEST(GasScene, TellsOfMoreStepsThanTheRunMayTake) {
+  EXPECT_TRUE(
+      holds(error_of({"scheme.fixed_dt=1e-300"}), "4e+299 steps to run.end_time, more than run.max_steps"));
+  EXPECT_EQ(error_of({"scheme.fixed_dt=1e-300", "run.max_steps=7"}), "");
+  EXPECT_EQ(error_of({"scheme.fixed_dt=1e-6"}), "");
+  const auto notices = [](const std::vector<std::string>& sets) { return read_text(least, sets).notices; };
+  const std::vector<std::string> found = notices({"run.end_time=1e5"});  // 0.006 m over 1.1832 m/s
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(holds(found[0], "limits the first steps to 0.00507 s: 1.97e+07 steps")) << found[0];
+  EXPECT_TRUE(notices({"run.end_time=1e5", "run.max_steps=7"}).empty());
+  EXPECT_TRUE(notices({"run.end_time=5e3"}).empty());
+}
+
 TEST(GasScene, RefusesContradictions) {
   EXPECT_TRUE(holds(error_of({"scheme.weno=js", "scheme.weno_power=2"}), "with weno = \"z\""));
   EXPECT_TRUE(holds(error_of({"scheme.cfl=0.5", "scheme.fixed_dt=1e-3"}), "without fixed_dt"));

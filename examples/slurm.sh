@@ -12,7 +12,7 @@
 # One run on one GPU that survives the time limit: 120 s before it Slurm sends SIGTERM, the program ends after a whole
 # step with its restart file written (exit code 130), and the job is queued again and goes on from there.
 #
-#   sbatch docs/examples/slurm.sh SCENE [OPTIONS...]
+#   sbatch examples/slurm.sh SCENE [OPTIONS...]
 set -u
 
 scene="${1:?the scene to run}"

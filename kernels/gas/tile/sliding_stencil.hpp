@@ -8,7 +8,7 @@ namespace drogue::gas {
 /// face costs five differences and conversions instead of twenty-five. In full precision the window would
 /// exceed the register budget.
 template <class N, class Tile>
-class FaceWindow {
+class SlidingStencil {
  public:
   using Value = double;
 
@@ -16,7 +16,7 @@ class FaceWindow {
   N d_flux_m[5], d_flux_energy[5];
 
   /// Positions the window before `face`; the first `advance` moves to it.
-  KOKKOS_FUNCTION FaceWindow(const Tile& tile, int face) : _tile(tile), _face(face - 1) {
+  KOKKOS_FUNCTION SlidingStencil(const Tile& tile, int face) : _tile(tile), _face(face - 1) {
     load(_values, face);
     load_speeds(face);
     for (int k = 1; k < 5; ++k) push(face + k);

@@ -73,35 +73,36 @@ struct PeskinFourPoint {
 };
 
 /// One-dimensional factors of a delta function for component d: along axis d and across it.
-template <DeltaKernel kernel>
-struct KernelFactors;
+template <DeltaFunction delta>
+struct DeltaFactors;
 
 template <>
-struct KernelFactors<DeltaKernel::cbs43> {
+struct DeltaFactors<DeltaFunction::cbs43> {
   using Along = CubicSpline;
   using Across = QuadraticSpline;
 };
 template <>
-struct KernelFactors<DeltaKernel::cbs32> {
+struct DeltaFactors<DeltaFunction::cbs32> {
   using Along = QuadraticSpline;
   using Across = LinearSpline;
 };
 template <>
-struct KernelFactors<DeltaKernel::ib4> {
+struct DeltaFactors<DeltaFunction::ib4> {
   using Along = PeskinFourPoint;
   using Across = PeskinFourPoint;
 };
 
-/// Calls `function.operator()<kernel>()` with a kernel chosen at run time. Throws what the function throws.
+/// Calls `function.operator()<delta>()` with a delta function chosen at run time. Throws what the function
+/// throws.
 template <class Function>
-void dispatch_kernel(DeltaKernel kernel, const Function& function) {
-  switch (kernel) {
-    case DeltaKernel::cbs43:
-      return function.template operator()<DeltaKernel::cbs43>();
-    case DeltaKernel::cbs32:
-      return function.template operator()<DeltaKernel::cbs32>();
-    case DeltaKernel::ib4:
-      return function.template operator()<DeltaKernel::ib4>();
+void dispatch_delta(DeltaFunction delta, const Function& function) {
+  switch (delta) {
+    case DeltaFunction::cbs43:
+      return function.template operator()<DeltaFunction::cbs43>();
+    case DeltaFunction::cbs32:
+      return function.template operator()<DeltaFunction::cbs32>();
+    case DeltaFunction::ib4:
+      return function.template operator()<DeltaFunction::ib4>();
   }
 }
 

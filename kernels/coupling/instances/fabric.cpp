@@ -1,0 +1,7 @@
+#include "kernels/coupling/sheet/coupled_solver.hpp"
+
+namespace drogue::fabric {
+
+template class FabricSolver<DROGUE_INSTANCE_SPACE, coupling::AirRelaxation<DROGUE_INSTANCE_SPACE>>;
+
+}  // namespace drogue::fabric
