@@ -59,6 +59,8 @@ target_include_directories(drogue_private INTERFACE "$<BUILD_INTERFACE:${PROJECT
 drogue_host_option(drogue_private INTERFACE -Wall -Wextra -Wshadow -Wconversion)
 # nvcc writes line directives that -Wpedantic rejects, so it is for the host compiler alone.
 target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wpedantic>)
+# nvcc writes named initialisers as unnamed ones, of which the host compiler then misses the members that are left out.
+target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wno-missing-field-initializers>)
 # gcc 12 invents overlapping copies in inlined std::string code (its bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   drogue_host_option(drogue_private INTERFACE -Wno-restrict)

@@ -1,7 +1,9 @@
 #include "common/run/history_statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/run/statistics.hpp"
 
@@ -30,6 +32,8 @@ double largest_of(std::span<const double> values, double sign) {
 }  // namespace
 
 HistoryRows rows_between(const HistoryRows& rows, double from, double to) {
+  from -= time_round_off * from;
+  to += time_round_off * to;
   if (rows.time.empty() || rows.time.front() > from) return {};
   const auto first = static_cast<std::size_t>(std::ranges::lower_bound(rows.time, from) - rows.time.begin()),
              end = static_cast<std::size_t>(std::ranges::upper_bound(rows.time, to) - rows.time.begin()),
@@ -60,13 +64,24 @@ double frequency_of(const HistoryRows& rows) {
   return crossings >= 3 ? (crossings - 1) / (last - first) : not_a_number;
 }
 
+double value_at(const HistoryRows& rows, double time) {
+  const auto after = static_cast<std::size_t>(std::ranges::upper_bound(rows.time, time) - rows.time.begin());
+  if (after == 0) return not_a_number;
+  const double before = rows.value[after - 1];
+  if (after == rows.time.size()) return before;
+  const double weight = (time - rows.time[after - 1]) / (rows.time[after] - rows.time[after - 1]);
+  return before + weight * (rows.value[after] - before);
+}
+
 double amplitude_of(const HistoryRows& rows) {
   const auto& [time, value] = rows;
-  if (value.empty()) return not_a_number;
+  if (value.size() < 2) return not_a_number;
   const auto [least, largest] = std::ranges::minmax_element(value);
+  const double most = 0.5 * (1.0 - std::cos(std::numbers::pi / 8.0)) * (*largest - *least);
   const auto extremum = [&](auto row) {
     const auto k = static_cast<std::size_t>(row - value.begin());
-    return k > 0 && k + 1 < value.size() ? vertex(&time[k - 1], &value[k - 1]) : *row;
+    if (k == 0 || k + 1 == value.size()) return *row;
+    return *row + std::clamp(vertex(&time[k - 1], &value[k - 1]) - *row, -most, most);
   };
   return 0.5 * (extremum(largest) - extremum(least));
 }

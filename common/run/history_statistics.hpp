@@ -13,6 +13,9 @@ struct HistoryRows {
   std::span<const double> time, value;
 };
 
+/// Part of a time that round-off may change: rows so near to the ends of an interval lie on them.
+inline constexpr double time_round_off = 1e-9;
+
 /// Rows in [from, to], s; none if the first of all is later than `from`, as in a run that continues without
 /// the history before. Does not throw.
 [[nodiscard]] HistoryRows rows_between(const HistoryRows& rows, double from, double to);
@@ -25,8 +28,13 @@ struct HistoryRows {
 /// throw.
 [[nodiscard]] double frequency_of(const HistoryRows& rows);
 
+/// Value at a time, s, by linear interpolation between rows, or of the last row before; NaN before the first
+/// one. Does not throw.
+[[nodiscard]] double value_at(const HistoryRows& rows, double time);
+
 /// Half of the difference between the largest and the least value, each by a parabola through its row and the
-/// two beside it; NaN without rows. Does not throw.
+/// two beside it, which adds at most what eight rows in a period of a sine may miss; NaN for fewer than two
+/// rows. Does not throw.
 [[nodiscard]] double amplitude_of(const HistoryRows& rows);
 
 /// The statistic of this name. The largest, least and last value are NaN without rows, the first two also if

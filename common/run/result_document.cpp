@@ -171,8 +171,8 @@ void ResultDocument::state_rows(std::size_t rows, double period) {
     std::snprintf(text, sizeof text, "%s is computed from %.2g rows of history.csv in a period",
                   checks.back().name.c_str(), period);
   else
-    std::snprintf(text, sizeof text, "%s is computed from %zu rows of history.csv",
-                  checks.back().name.c_str(), rows);
+    std::snprintf(text, sizeof text, "%s is computed from %zu row%s of history.csv",
+                  checks.back().name.c_str(), rows, rows == 1 ? "" : "s");
   warnings.push_back(std::string(text) +
                      ", which may miss what lies between them; a smaller output.history_every has more");
 }
@@ -185,8 +185,8 @@ std::string ResultDocument::failed_check() const {
   if (std::isnan(failed->value))
     std::snprintf(
         text, sizeof text,
-        "%s could not be measured in this run, perhaps because it is too short, or relative to a value of 0; "
-        "its tolerance is %.6g",
+        "%s could not be measured in this run, perhaps because it is too short, continues one without its "
+        "history.csv, or is relative to a value of 0; its tolerance is %.6g",
         failed->name.c_str(), failed->tolerance);
   else if (failed->measurement)
     std::snprintf(text, sizeof text, "%s is %s: its deviation is %.6g, above its tolerance %.6g",

@@ -27,9 +27,9 @@ void declare_check(scene::Table& table, HistoryCheck& check) {
   table
       .value(
           "statistic", scene::choice_codec(check.statistic, statistic_choices),
-          "Mean by the trapezoidal rule, largest, least or last value in rows of the interval, frequency "
-          "(1/s) at which they cross their mean upwards, or half of their range, whose ends are vertices of "
-          "parabolas through three rows")
+          "Mean by the trapezoidal rule, largest or least value in rows of the interval, value at its end by "
+          "linear interpolation, frequency (1/s) at which they cross their mean upwards, or half of their "
+          "range, whose ends are vertices of parabolas through three rows")
       .required();
   table.value("from", scene::real_codec(check.from), "Begin of the interval").unit("s").at_least(0.0);
   table.value("to", scene::real_codec(check.to), "End of the interval")
@@ -89,18 +89,18 @@ void add_history_checks(const std::vector<HistoryCheck>& checks, const run::Hist
   std::map<std::string, int> earlier;  // checks of the same name
   for (const HistoryCheck& check : checks) {
     constexpr double never = std::numeric_limits<double>::infinity();
-    const bool is_last = check.statistic == Statistic::last;  // whatever rows there are before
-    const run::HistoryRows rows = run::rows_between({time, history.at(check.column)},
-                                                    is_last ? std::max(check.from, time.front()) : check.from,
-                                                    check.to.value_or(never));
+    const run::HistoryRows all = {time, history.at(check.column)};
+    const run::HistoryRows rows = run::rows_between(all, check.from, check.to.value_or(never));
+    const double statistic = check.statistic == Statistic::last ? run::value_at(all, check.to.value_or(never))
+                                                                : run::statistic_of(check.statistic, rows);
     std::string name = check.column + "_" + scene::choice_name(statistic_choices, check.statistic);
     if (const int count = earlier[name]++; count > 0) name += "_" + std::to_string(count);
-    result.add_deviation(name, run::statistic_of(check.statistic, rows) / check.reference, check.value,
-                         check.tolerance);
+    result.add_deviation(name, statistic / check.reference, check.value, check.tolerance);
     const double period = check.statistic == Statistic::frequency || check.statistic == Statistic::amplitude
                               ? run::rows_in_period(rows, run::frequency_of(rows))
                               : 0.0;
-    if (!is_last) result.state_rows(rows.time.size(), period);
+    // The last value of the run is one row, whatever others there are.
+    if (check.statistic != Statistic::last || check.to) result.state_rows(rows.time.size(), period);
   }
 }
 

@@ -153,18 +153,19 @@ void declare_canopy_checks(Table& table, Verify& verify) {
 void declare_former_keys(Table& table) {
   const auto former = [&table](const char* name, const char* column, const char* statistic,
                                const char* more = "") {
-    table.former(name, std::string("[[verify.history]] with column = \"") + column + "\", statistic = \"" +
-                           statistic + "\"" + more);
+    table.former(name, std::string("[[verify.history]] with column = ") + column + ", statistic = \"" +
+                           statistic + "\"" + more + "; from, to, value and tolerance stay");
   };
-  former("kinetic_energy", "kinetic_energy", "last");
-  former("flow_rate", "outflow_x_low", "last");
-  former("force", "body_0_force_x", "last");
-  former("mean_force", "body_0_force_x", "mean");
-  former("frequency", "body_0_force_x", "frequency", " and the inverse of the former reference");
-  former("oscillation", "flag_0_tip_y", "frequency", " or \"amplitude\"");
-  former("drag", "canopy_0_drag_coefficient", "mean");
-  former("terminal_speed", "canopy_0_airspeed", "mean");
-  former("projected_area", "canopy_0_projected_area", "mean");
+  const char* const of_body = "\"body_0_force_x\", of the former body and axis";
+  former("kinetic_energy", "\"kinetic_energy\"", "last");
+  former("flow_rate", "\"outflow_x_low\", of the former side", "last");
+  former("force", of_body, "last");
+  former("mean_force", of_body, "mean");
+  former("frequency", of_body, "frequency", " and the inverse of the former reference");
+  former("oscillation", "its column", "frequency", " or \"amplitude\"");
+  former("drag", "\"canopy_0_drag_coefficient\", of the former canopy", "mean");
+  former("terminal_speed", "\"canopy_0_airspeed\", of the former canopy", "mean");
+  former("projected_area", "\"canopy_0_projected_area\", of the former canopy", "mean");
 }
 
 }  // namespace

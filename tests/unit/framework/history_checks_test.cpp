@@ -91,6 +91,16 @@ TEST(HistoryChecks, WarnOfFewRows) {
   EXPECT_NE(few.warnings[2].find("computed from 4 rows"), std::string::npos);
 }
 
+TEST(HistoryChecks, LastValueOfAnIntervalIsThatAtItsEnd) {
+  const run::History sparse = {{"time", {0.0, 4.0, 10.0}}, {"rise", {0.0, 4.0, 10.0}}};
+  const run::ResultDocument result =
+      result_of({{"rise", Statistic::last, 0.0, 3.0, 1.0, 3.0, 1e-12}}, sparse);
+  EXPECT_TRUE(result.checks[0].passed) << result.checks[0].measurement->value;
+  EXPECT_EQ(result.checks[0].rows, 1);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(result.warnings[0].find("computed from 1 row of"), std::string::npos);
+}
+
 TEST(HistoryChecks, NeedTheHistoryFromTheBeginOfTheirInterval) {
   const run::History late = history_from(2.0);
   EXPECT_TRUE(std::isnan(measured({"rise", Statistic::mean, 1.0}, late)));

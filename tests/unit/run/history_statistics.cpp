@@ -58,6 +58,34 @@ TEST(HistoryStatistics, AmplitudeDependsLittleOnTheRows) {
   EXPECT_EQ(amplitude_of(level.from(0.0)), 0.0);
 }
 
+TEST(HistoryStatistics, AmplitudeOfAJumpIsNearlyItsHalf) {
+  // The parabola through the three rows around a jump has its vertex an eighth of the jump beyond them.
+  const Rows jump = {{0.0, 1.0, 2.0, 3.0, 4.0}, {0.0, 0.0, 1.0, 1.0, 1.0}};
+  EXPECT_NEAR(amplitude_of(jump.from(0.0)), 0.5, 0.04);
+  EXPECT_TRUE(std::isnan(amplitude_of(jump.from(4.0)))) << "one row has no range";
+}
+
+TEST(HistoryStatistics, InterpolatesBetweenRows) {
+  const Rows rows = {{1.0, 2.0, 4.0}, {1.0, 3.0, -1.0}};
+  EXPECT_TRUE(std::isnan(value_at({rows.time, rows.value}, 0.5)));
+  EXPECT_EQ(value_at({rows.time, rows.value}, 1.0), 1.0);
+  EXPECT_EQ(value_at({rows.time, rows.value}, 3.5), 0.0);
+  EXPECT_EQ(value_at({rows.time, rows.value}, 1e9), -1.0);
+}
+
+TEST(HistoryStatistics, RoundOffMovesNoRowOutOfAnInterval) {
+  Rows rows;
+  double time = 0.0;
+  for (int k = 0; k <= 100; ++k, time += 0.01) {
+    rows.time.push_back(time);
+    rows.value.push_back(k);
+  }
+  for (int k = 1; k < 10; ++k) {
+    EXPECT_EQ(rows.from(0.1 * k).value.front(), 10.0 * k);
+    EXPECT_EQ(rows.from(0.0, 0.1 * k).value.back(), 10.0 * k);
+  }
+}
+
 TEST(HistoryStatistics, TakesTheRowsOfAnInterval) {
   const Rows rows = {{0.0, 1.0, 3.0, 4.0}, {1e6, 1.0, -3.0, 2.0}};
   // Trapezoids of 2 s and 1 s.
