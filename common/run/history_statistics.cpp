@@ -32,11 +32,11 @@ double largest_of(std::span<const double> values, double sign) {
 }  // namespace
 
 HistoryRows rows_between(const HistoryRows& rows, double from, double to) {
-  from -= time_round_off * from;
-  to += time_round_off * to;
-  if (rows.time.empty() || rows.time.front() > from) return {};
-  const auto first = static_cast<std::size_t>(std::ranges::lower_bound(rows.time, from) - rows.time.begin()),
-             end = static_cast<std::size_t>(std::ranges::upper_bound(rows.time, to) - rows.time.begin()),
+  constexpr double earlier = 1.0 - time_round_off, later = 1.0 + time_round_off;
+  const auto& time = rows.time;
+  if (time.empty() || time.front() > later * from) return {};
+  const auto first = static_cast<std::size_t>(std::ranges::lower_bound(time, earlier * from) - time.begin()),
+             end = static_cast<std::size_t>(std::ranges::upper_bound(time, later * to) - time.begin()),
              count = end > first ? end - first : 0;
   return {rows.time.subspan(first, count), rows.value.subspan(first, count)};
 }
