@@ -188,8 +188,9 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
   const R tilt = mixed && finer == nullptr ? R(-2.0 * device::absolute(put.jump[2]) * h) : R(0.0);
   const R next_growth = exponential(double(group.lanes) * h),
           next_tilted = exponential(double(group.lanes) * tilt);
-  const Kokkos::Array<R, 3> whole = sums(group, [=, &put, &grid](int lane) {
-    R rate = 0.0, variance = 0.0, price = 0.0;
+  const bool moves = mixed && finer == nullptr;
+  const Kokkos::Array<R, 5> whole = sums(group, [=, &put, &grid](int lane) {
+    R rate = 0.0, variance = 0.0, price = 0.0, alternating_variance = 0.0, alternating_price = 0.0;
     R growth = exponential((lane + 1.0) * h), tilted = exponential((lane + 1.0) * tilt);
     for (int d = 1 + lane; d <= mesh; d += group.lanes) {
       const double part = put.model == JumpModel::kou && d == mesh ? 0.5 : 1.0;
@@ -206,12 +207,16 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
         }
       }
       rate += both;
-      variance += both * y * y;
-      price += (growth - 1.0) * (up - down_price);
+      const R square = both * y * y, gain = (growth - 1.0) * (up - down_price);
+      variance += square;
+      price += gain;
+      const double sign = !moves || d == 2 ? 0.0 : d % 2 == 0 ? -1.0 : 1.0;
+      alternating_variance += sign * square;
+      alternating_price += sign * gain;
       growth = device::minimum(growth * next_growth, R(1e304));
       tilted = tilted * next_tilted;
     }
-    return Kokkos::Array<R, 3>{rate, variance, price};
+    return Kokkos::Array<R, 5>{rate, variance, price, alternating_variance, alternating_price};
   });
   group.sync();
   Jumps<R> jumps{};
@@ -219,13 +224,20 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
   jumps.exit_mass = memory.exit_mass;
   jumps.exit_price = memory.exit_price;
   jumps.symbol = memory.symbol;
-  jumps.rate = whole[0] + tails.up + tails.down;
   const R rest = measure.variance - whole[1] - tails.variance;
-  jumps.diffusion = 0.5 * device::maximum(R(0.0), put.variance + rest);
-  jumps.excess_variance = device::maximum(R(0.0), -(put.variance + rest));
-  const R compensator = whole[2] + (tails.up_price - tails.up) + (tails.down_price - tails.down);
+  const R remaining = 0.5 * device::maximum(R(0.0), put.variance + rest);
   const R growth = exponential(0.5 * h), shrink = device::reciprocal(growth);
   const R chord = growth - shrink;  // 2 sinh(h/2)
+  jumps.moved = device::minimum(device::maximum(R(0.0), 0.5 * whole[3]), remaining);
+  jumps.diffusion = remaining + jumps.moved;
+  // Rates taken from the weights of d = 1 and d = -1.
+  const R moved_rate = 2.0 * jumps.moved * device::reciprocal(h * h);
+  const R moved_up = (whole[4] + moved_rate * chord * shrink) * device::reciprocal(chord * (growth + shrink)),
+          moved_down = moved_rate - moved_up;
+  jumps.rate = whole[0] + tails.up + tails.down - moved_rate;
+  jumps.excess_variance = device::maximum(R(0.0), -(put.variance + rest));
+  const R compensator = whole[2] + (tails.up_price - tails.up) + (tails.down_price - tails.down) -
+                        chord * (moved_up * growth - moved_down * shrink);
   const R sinh = 0.5 * chord * (growth + shrink);
   const R inverse_deviation = device::reciprocal(h);
   jumps.drift = (put.rate - put.dividend - compensator -
@@ -233,6 +245,8 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
                 h * device::reciprocal(sinh);
   group.each([=](int thread) {
     if (thread == 0) {
+      memory.w[layout.place(1)] = memory.w[layout.place(1)] - moved_up;
+      memory.w[layout.place(-1)] = memory.w[layout.place(-1)] - moved_down;
       memory.exit_mass[mesh - 1] += tails.down;
       memory.exit_price[mesh - 1] += tails.down_price;
     }
@@ -243,7 +257,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
       const double twice = 2.0 * (2.0 * cosine * cosine - 1.0);
       const int first = task < symbol_count ? 1 : 2;
       double before = first == 1 ? cosine : 1.0, now = first == 1 ? cosine : 0.5 * twice;
-      R sum = 0.0;
+      R sum = first == 1 ? R(-cosine * moved_rate) : R(0.0);
       for (int d = first; d <= mesh; d += 2) {
         sum += now * memory.both[d];
         const double next = twice * now - before;

@@ -212,10 +212,10 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_on_grid(const ThreadGroup& group, const Pu
                           finer);
 }
 
-/// Variance by which the finite differences spread the payoff until maturity.
+/// Variance by which Brownian motion and jumps within a step spread the payoff until maturity.
 template <class R>
 KOKKOS_INLINE_FUNCTION R payoff_spread(const PutPack<R>& put, const Jumps<R>& jumps) {
-  return 2.0 * jumps.diffusion * put.maturity;
+  return 2.0 * (jumps.diffusion - jumps.moved) * put.maturity;
 }
 
 /// Error estimate of a solve on `grid` that is compared with one on the coarser grid.
