@@ -115,16 +115,7 @@ KOKKOS_INLINE_FUNCTION R drift_in_deviations(const PutPack<R>& put, const LevyMe
   if (put.model == JumpModel::merton || put.model == JumpModel::kou)
     compensator = jump_cumulant(put, measure, R(1.0));
   const R drift = (put.rate - put.dividend - 0.5 * put.variance - compensator) * put.maturity;
-  const R drift_ratio =
-      device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
-  if (put.model != JumpModel::generalized_hyperbolic) return drift_ratio;
-  // Asymmetric jumps (for beta = -1/2 they are symmetric up to e^y) increase the error once they act over
-  // several deviations and years; with early exercise they have less time. The constants 0.4, 0.25 and 10 are
-  // empirical, tested by `OptionsError.CoversAsymmetricJumpsOverDecades`.
-  const R years = put.maturity * device::minimum(R(1.0), 0.25 * put.maturity);
-  const R tilted = (1.0 - put.early) * device::absolute(put.jump[2] + 0.5) *
-                   device::square_root(measure.variance * years + R(1e-100));
-  return drift_ratio * device::minimum(device::maximum(R(1.0), tilted - 0.4), R(10.0));
+  return device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
 }
 
 /// Error of the skewness of Kou's jumps, as a fraction of the strike. Jumps in the cell around 0 have the
@@ -166,10 +157,9 @@ KOKKOS_INLINE_FUNCTION R hyperbolic_skewness_error(const PutPack<R>& put, R h, R
   return 0.04 * near * skew * missed * missed;
 }
 
-/// Factor of the estimate for generalized hyperbolic jumps shorter than a step, of decay length 1/alpha. They
-/// have errors in space whose sign is opposite to that of the errors in time, so that the difference of the
-/// grids is smaller than either. 4 and at most 1.6 are empirical, tested by
-/// `OptionsCoverage.CoversAlmostAllEuropeansOfShortJumps`.
+/// Factor of the estimate for generalized hyperbolic jumps shorter than a step, of decay length 1/alpha,
+/// whose errors in space may cancel those in time in the difference of the grids. 4 and at most 1.6 are
+/// empirical, tested by `OptionsCoverage.CoversAlmostAllEuropeansOfShortJumps`.
 template <class R>
 KOKKOS_INLINE_FUNCTION R short_jump_ratio(const PutPack<R>& put, R h) {
   return device::maximum(R(1.0), device::minimum(R(1.6), 4.0 * h * put.jump[1]));
