@@ -81,8 +81,8 @@ struct WeightLayout {
 /// Number of angles at which the symbol of the jumps is evaluated.
 inline constexpr int symbol_count = 16;
 
-/// Discretized jumps on a grid: weights w_d = h g(d h) of jumps by d nodes (half of it, less `moved`/h^2, for
-/// d = +-1), the mass that leaves the grid, and the remaining variance and drift for finite differences.
+/// Discretized jumps on a grid: weights w_d = h g(d h) of jumps by d nodes (for d = +-1 half of it, less what
+/// is `moved`), the mass that leaves the grid, and the remaining variance and drift for finite differences.
 template <class R>
 struct Jumps {
   R* w;           ///< in the order of a WeightLayout; 0 for d = 0 and |d| > mesh
@@ -90,7 +90,7 @@ struct Jumps {
   R* exit_price;  ///< (node_count): the same integral of e^{x + y}, per year
   R rate;         ///< rate of all jumps, per year
   R diffusion;  ///< D: with D, weights and tails have the variance of the Levy measure and the Brownian part
-  R moved;      ///< part of D that was moved there from the weights of d = +-1 (`discretize_jumps`)
+  R moved;      ///< part of D that comes from the weights of d = +-1 (`discretize_jumps`)
   R drift;      ///< b: makes the scheme exact for e^x
   R excess_variance;  ///< variance of weights and tails in excess of the exact one, per year; D cannot be
                       ///< negative

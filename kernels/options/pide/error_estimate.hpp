@@ -54,10 +54,11 @@ KOKKOS_INLINE_FUNCTION double splitting_error(double premium, int mesh, int step
 /// 1) leaves a part of them. In space the scale is sqrt(spread), spread = 2 D T, by which finite differences
 /// smooth the kink of the payoff: y^{1/2}, y = h^2/spread. A kink that hardly spreads (short maturities, pure
 /// jumps) has an order far below two, and the ratio grows faster, as y^{3/4}. 1/steps and y^{1/2} are
-/// derived; 0.5, 6.5, 1/500, 0.45, y^{3/4} and the root of `drift_ratio` are empirical.
+/// derived; 0.5, 6.5, 1/500, 0.45, y^{3/4} and the root of `drift_ratio` are empirical. `time_part`: part of
+/// 6.5 that counts, 1 or that of `shared_time_part`.
 template <class R>
-KOKKOS_INLINE_FUNCTION R error_factor(R h, int steps, R spread, R drift_ratio) {
-  const R in_time = device::minimum(R(0.5), R(6.5 / steps)) * device::square_root(drift_ratio);
+KOKKOS_INLINE_FUNCTION R error_factor(R h, int steps, R spread, R drift_ratio, R time_part) {
+  const R in_time = device::minimum(R(0.5), (6.5 / steps) * time_part) * device::square_root(drift_ratio);
   const R y = h * h / device::maximum(spread, h * h * (1.0 / 500)), root = device::square_root(y);
   return device::maximum(in_time, 0.45 * root * device::square_root(device::maximum(root, R(1.0))));
 }
@@ -115,16 +116,7 @@ KOKKOS_INLINE_FUNCTION R drift_in_deviations(const PutPack<R>& put, const LevyMe
   if (put.model == JumpModel::merton || put.model == JumpModel::kou)
     compensator = jump_cumulant(put, measure, R(1.0));
   const R drift = (put.rate - put.dividend - 0.5 * put.variance - compensator) * put.maturity;
-  const R drift_ratio =
-      device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
-  if (put.model != JumpModel::generalized_hyperbolic) return drift_ratio;
-  // Asymmetric jumps (for beta = -1/2 they are symmetric up to e^y) increase the error once they act over
-  // several deviations and years; with early exercise they have less time. The constants 0.4, 0.25 and 10 are
-  // empirical, tested by `OptionsError.CoversAsymmetricJumpsOverDecades`.
-  const R years = put.maturity * device::minimum(R(1.0), 0.25 * put.maturity);
-  const R tilted = (1.0 - put.early) * device::absolute(put.jump[2] + 0.5) *
-                   device::square_root(measure.variance * years + R(1e-100));
-  return drift_ratio * device::minimum(device::maximum(R(1.0), tilted - 0.4), R(10.0));
+  return device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
 }
 
 /// Error of the skewness of Kou's jumps, as a fraction of the strike. Jumps in the cell around 0 have the
@@ -166,22 +158,40 @@ KOKKOS_INLINE_FUNCTION R hyperbolic_skewness_error(const PutPack<R>& put, R h, R
   return 0.04 * near * skew * missed * missed;
 }
 
-/// Factor of the estimate for generalized hyperbolic jumps shorter than a step, of decay length 1/alpha. They
-/// have errors in space whose sign is opposite to that of the errors in time, so that the difference of the
-/// grids is smaller than either. 4 and at most 1.6 are empirical, tested by
-/// `OptionsCoverage.CoversAlmostAllEuropeansOfShortJumps`.
+/// Factor of the estimate for generalized hyperbolic jumps shorter than a step, of decay length 1/alpha,
+/// whose errors in space may cancel those in time in the difference of the grids. 4 and at most 1.6 are
+/// empirical, tested by `OptionsCoverage.CoversAlmostAllEuropeansOfShortJumps`.
 template <class R>
 KOKKOS_INLINE_FUNCTION R short_jump_ratio(const PutPack<R>& put, R h) {
   return device::maximum(R(1.0), device::minimum(R(1.6), 4.0 * h * put.jump[1]));
+}
+
+/// Part of 6.5 in `error_factor` for generalized hyperbolic jumps, since both grids share their part in D
+/// (`discretize_jumps`), but for split exercise. The difference of the grids then is of space, proportional
+/// to y = h^2/spread, and of time, proportional to 1/steps^2. Where the former is the larger one it cannot
+/// hide the latter, whose error is a smaller part of the sum. That is not so where D comes from jumps within
+/// a step instead of Brownian motion: longer jumps, explicit, spread the payoff too. 5.5, 0.5 and 4 are
+/// empirical.
+template <class R>
+KOKKOS_INLINE_FUNCTION R shared_time_part(const PutPack<R>& put, const Jumps<R>& jumps, R h, int steps,
+                                          R spread) {
+  const R reach = h * double(steps);
+  const R ratio = spread * device::reciprocal(reach * reach),
+          within = jumps.moved * device::reciprocal(device::maximum(jumps.diffusion, R(1e-100)));
+  const R part = device::maximum(R(0.5), device::maximum(5.5 * ratio, 4.0 * within));
+  return device::minimum(R(1.0), device::maximum(R(put.split), part));
 }
 
 /// Error estimate of a solve on a mesh of step h whose finite differences spread the payoff by the variance
 /// `spread`. A step that does not resolve e^x has the error h^4/20.
 template <class R>
 KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_error(const PutPack<R>& put, const LevyMeasure<R>& measure,
-                                                       R h, int steps, R spread) {
+                                                       const Jumps<R>& jumps, R h, int steps, R spread) {
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
-  ErrorEstimate<R> estimate{error_factor(h, steps, spread, drift_in_deviations(put, measure)),
+  R time_part = 1.0;
+  if (put.model == JumpModel::generalized_hyperbolic)
+    time_part = shared_time_part(put, jumps, h, steps, spread);
+  ErrorEstimate<R> estimate{error_factor(h, steps, spread, drift_in_deviations(put, measure), time_part),
                             0.05 * squared * squared, put.variance + measure.variance};
   if (put.model == JumpModel::kou) estimate.offset += kou_skewness_error(put, measure, h);
   if (put.model == JumpModel::generalized_hyperbolic) {

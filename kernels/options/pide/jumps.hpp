@@ -170,6 +170,12 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> jump_weights(const PutPack<R>& put, const G
 /// difference the scheme is of second order for every density that x^2 makes bounded (idea of Cont and
 /// Voltchkova 2005), without quadrature. The weights of Kou's jumps are masses of cells. Merton's, whose
 /// density may be narrow, are masses of hat functions.
+///
+/// D and b are implicit in time, the weights explicit, which has another error dt^2. Of a mixture, D and b
+/// depend on h in first order, so that this error would contain h dt^2, which the extrapolation from both
+/// grids does not remove. So the finer grid moves the part `moved` of the variance, and the mean that goes
+/// with it, from the weights of d = +-1 to finite differences: that which the weights have in excess of those
+/// of the coarser grid. The operator remains the same.
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const PutPack<R>& put,
                                                  const LevyMeasure<R>& measure, const Tails<R>& tails,
@@ -189,8 +195,10 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
   const R next_growth = exponential(double(group.lanes) * h),
           next_tilted = exponential(double(group.lanes) * tilt);
   const bool moves = mixed && finer == nullptr;
+  // With twice the weights of even d, and once that of d = 2, the coarser grid has less than this one by the
+  // sum over odd d less that over even d from 4 on.
   const Kokkos::Array<R, 5> whole = sums(group, [=, &put, &grid](int lane) {
-    R rate = 0.0, variance = 0.0, price = 0.0, alternating_variance = 0.0, alternating_price = 0.0;
+    R rate = 0.0, variance = 0.0, price = 0.0, more_variance = 0.0, more_price = 0.0;
     R growth = exponential((lane + 1.0) * h), tilted = exponential((lane + 1.0) * tilt);
     for (int d = 1 + lane; d <= mesh; d += group.lanes) {
       const double part = put.model == JumpModel::kou && d == mesh ? 0.5 : 1.0;
@@ -211,12 +219,12 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
       variance += square;
       price += gain;
       const double sign = !moves || d == 2 ? 0.0 : d % 2 == 0 ? -1.0 : 1.0;
-      alternating_variance += sign * square;
-      alternating_price += sign * gain;
+      more_variance += sign * square;
+      more_price += sign * gain;
       growth = device::minimum(growth * next_growth, R(1e304));
       tilted = tilted * next_tilted;
     }
-    return Kokkos::Array<R, 5>{rate, variance, price, alternating_variance, alternating_price};
+    return Kokkos::Array<R, 5>{rate, variance, price, more_variance, more_price};
   });
   group.sync();
   Jumps<R> jumps{};
@@ -227,12 +235,14 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
   const R rest = measure.variance - whole[1] - tails.variance;
   const R remaining = 0.5 * device::maximum(R(0.0), put.variance + rest);
   const R growth = exponential(0.5 * h), shrink = device::reciprocal(growth);
-  const R chord = growth - shrink;  // 2 sinh(h/2)
-  jumps.moved = device::minimum(device::maximum(R(0.0), 0.5 * whole[3]), remaining);
+  const R chord = growth - shrink;   // 2 sinh(h/2)
+  const R shared = 1.0 - put.split;  // splitting of exercise has an error of first order in time
+  jumps.moved = shared * device::minimum(device::maximum(R(0.0), 0.5 * whole[3]), remaining);
   jumps.diffusion = remaining + jumps.moved;
-  // Rates taken from the weights of d = 1 and d = -1.
+  // Rates taken from the weights of d = 1 and d = -1, of the variance 2 `moved` and the compensator whole[4].
   const R moved_rate = 2.0 * jumps.moved * device::reciprocal(h * h);
-  const R moved_up = (whole[4] + moved_rate * chord * shrink) * device::reciprocal(chord * (growth + shrink)),
+  const R moved_up = (shared * whole[4] + moved_rate * chord * shrink) *
+                     device::reciprocal(chord * (growth + shrink)),
           moved_down = moved_rate - moved_up;
   jumps.rate = whole[0] + tails.up + tails.down - moved_rate;
   jumps.excess_variance = device::maximum(R(0.0), -(put.variance + rest));

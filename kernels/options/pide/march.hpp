@@ -133,7 +133,7 @@ KOKKOS_INLINE_FUNCTION void step(const ThreadGroup& group, const PutPack<R>& put
   }
   const R reaction = -jumps.rate - put.rate;
   const bool compensates = !group.all(f.compensation <= R(0.0));
-  const R ghost = compensates ? ghost_factor(f) : R(0.0);
+  const R ghost = compensates ? ghost_factor(f, jumps.moved / (grid.h * grid.h)) : R(0.0);
   group.each([=, &f, &put, &discount](int lane) {
     for (int i = lane * block; i < (lane + 1) * block; ++i) {
       if (i == 0 || i >= mesh) {

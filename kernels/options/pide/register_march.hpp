@@ -173,7 +173,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpThreadGroup<lanes, singl
       explicit_before.node[m] = explicit_now;
     }
     if (!group.all(f.compensation <= 0.0)) {
-      const double ghost = ghost_factor(f);
+      const double ghost = ghost_factor(f, jumps.moved / (h * h));
       const Own difference = second_differences<lanes>(lane, value, ghost),
                 difference_before = second_differences<lanes>(lane, before, ghost);
       for (int m = 0; m < block; ++m)

@@ -130,14 +130,16 @@ struct StepFactors {
 /// The same ratio in the explicit part would leave too little diffusion to stabilize the jumps at the last
 /// node. A ghost value of 0 would subtract more diffusion than the implicit part adds, and the march would
 /// grow without bound. The ratio in between, from_left times 1 - 1.4 D/added, and 0 for added <= 1.4 D, is
-/// empirical. Stability is not proven; `OptionsProperty.StaysBoundedForAHundredYearsOfPureJumps` tests it.
+/// empirical. Stability is not proven; `OptionsProperty.StaysBoundedForAHundredYearsOfPureJumps` tests it. D
+/// is meant without `moved` (1/year, `Jumps::moved`/h^2), which counts as added: it is subtracted by weights
+/// whose ghost value is 0.
 template <class R>
-KOKKOS_INLINE_FUNCTION R ghost_factor(const StepFactors<R>& f) {
+KOKKOS_INLINE_FUNCTION R ghost_factor(const StepFactors<R>& f, R moved) {
   constexpr double share = 1.4;
   const R added = f.compensation * f.inverse_pivot * device::reciprocal(f.explicit_now),
-          whole = 0.5 * (f.from_left + f.from_right);
+          whole = 0.5 * (f.from_left + f.from_right), subtracted = added + moved * f.inverse_pivot;
   const R per = device::reciprocal(device::maximum(added, R(1e-100)));
-  return f.from_left * device::maximum(R(0.0), ((1.0 + share) * added - share * whole) * per);
+  return f.from_left * device::maximum(R(0.0), ((1.0 + share) * subtracted - share * whole) * per);
 }
 
 /// Factors of 32 steps, which the lanes compute in parallel; in scratch memory.

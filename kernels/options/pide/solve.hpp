@@ -224,7 +224,7 @@ KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_solve_error(const PutPack<R>& p
                                                              const LevyMeasure<R>& measure,
                                                              const Jumps<R>& jumps, const Grid<R>& grid,
                                                              int steps) {
-  ErrorEstimate<R> estimate = estimate_error(put, measure, grid.h, steps, payoff_spread(put, jumps));
+  ErrorEstimate<R> estimate = estimate_error(put, measure, jumps, grid.h, steps, payoff_spread(put, jumps));
   estimate.offset += stiff_jump_error(put, measure, jumps, steps, grid.h);
   if (put.model == JumpModel::merton || put.model == JumpModel::kou) {
     estimate.factor = device::maximum(estimate.factor, frequent_jump_factor(put, measure, jumps, steps));

@@ -92,7 +92,7 @@ std::vector<double> solve_put(const PutProblem& p, const JumpTable& jumps) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(p.strike); ++i)
     payoff[i] = -std::expm1((static_cast<Real>(i) - p.strike) * h);
   v = payoff;
-  const Real spread = 2 * op.diffusion * p.maturity;
+  const Real spread = 2 * (op.diffusion - jumps.moved) * p.maturity;
   v[static_cast<std::size_t>(p.strike)] = h / 12 * spread / (spread + h * h);
   before = v;
   Real tau = 0.0L, dt_before = 1.0L;
@@ -109,8 +109,10 @@ std::vector<double> solve_put(const PutProblem& p, const JumpTable& jumps) {
     Values y(n + 1, 0.0L);
     // The implicit part continues the solution beyond the last node with the factor lower/pivot. The explicit
     // part uses a fraction of it.
+    const Real moved = jumps.moved / h / h, subtracted = extra + moved;
     const Real beyond =
-        extra > 0 ? lower / pivot * std::max(0.0L, 1 - 1.4L * op.diffusion / h / h / extra) : 0.0L;
+        extra > 0 ? lower / pivot * std::max(0.0L, subtracted - 1.4L * (op.diffusion / h / h - moved)) / extra
+                  : 0.0L;
     for (std::size_t i = n - 1; i >= 1; --i) {
       const auto second_difference = [&](const Values& f) {
         return f[i - 1] - 2 * f[i] + (i + 1 == n ? beyond * f[i] : f[i + 1]);

@@ -11,6 +11,7 @@ struct JumpTable {
   double tail_up_price = 0.0, tail_down_price = 0.0;  ///< integral of e^y g over longer jumps
   /// sigma^2 and the variance of the jumps, less the variance of the weights and tails above.
   double remaining_variance = 0.0;
+  double moved = 0.0;  ///< half the part of `remaining_variance` that jumps to the next node had at first
 };
 
 /// Put of strike 1 in x = ln(spot/strike) on the nodes x_i = (i - strike) h. Rates per year, maturity in

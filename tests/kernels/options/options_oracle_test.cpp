@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/options/levy/hankel_table.hpp"
@@ -16,6 +17,24 @@ namespace drogue::options {
 namespace {
 
 constexpr const auto& backend = testing::tested_backend;
+
+/// Moves the part of the shortest jumps to finite differences that leaves the same variance and the same
+/// drift to the weights as on the grid of step 2 h, whose weights are twice those of even d, and once that
+/// of 2.
+void share_with_coarser_grid(reference::JumpTable& table, double h) {
+  double variance = 0.0, price = 0.0;
+  for (std::size_t d = 1; d < table.up.size(); ++d) {
+    const double y = static_cast<double>(d) * h, more = d % 2 == 1 ? 1.0 : d == 2 ? 0.0 : -1.0;
+    variance += more * (table.up[d] + table.down[d]) * y * y;
+    price += more * (table.up[d] * std::expm1(y) + table.down[d] * std::expm1(-y));
+  }
+  table.moved = std::clamp(0.5 * variance, 0.0, std::max(0.0, 0.5 * table.remaining_variance));
+  const double both = 2.0 * table.moved / (h * h),
+               up = (price - both * std::expm1(-h)) / (std::expm1(h) - std::expm1(-h));
+  table.up[1] -= up;
+  table.down[1] -= both - up;
+  table.remaining_variance += 2.0 * table.moved;
+}
 
 /// Jumps of a put on a grid, by adaptive quadrature of the density.
 reference::JumpTable table_of(const reference::GeneralizedHyperbolic& measure, double variance, int mesh,
@@ -34,6 +53,7 @@ reference::JumpTable table_of(const reference::GeneralizedHyperbolic& measure, d
     table.down[static_cast<std::size_t>(d)] = down;
     table.remaining_variance -= (up + down) * y * y;
   }
+  share_with_coarser_grid(table, h);
   table.tail_up = reference::levy_tail(measure, length, 1, 0);
   table.tail_down = reference::levy_tail(measure, length, -1, 0);
   table.tail_up_price = reference::levy_tail(measure, length, 1, 1);

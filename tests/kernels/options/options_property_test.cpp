@@ -236,6 +236,27 @@ TEST(OptionsProperty, ConvergesAtSecondOrder) {
   }
 }
 
+// Both grids treat the same part of the jumps implicitly. Otherwise the error in time contains h dt^2, which
+// the extrapolation does not remove and the difference of the grids does not show.
+TEST(OptionsProperty, ErrorInTimeOfShortJumpsDoesNotDependOnTheMesh) {
+  constexpr int steps = 64;
+  for (const double beta : {-8.0, -0.5, 2.6}) {
+    const std::vector<Contract> row = {{.style = Style::european,
+                                        .type = Type::call,
+                                        .spot = 70.5,
+                                        .strike = 100.0,
+                                        .rate = 0.0935,
+                                        .dividend = 0.0264,
+                                        .maturity = 1.6,
+                                        .variance = 0.158,
+                                        .jump = {0.8, 21.4, beta, 0.966}}};
+    const auto error_in_time = [&](int mesh) {
+      return priced(on_mesh(mesh, steps), row)[0].price - priced(on_mesh(mesh, 32 * steps), row)[0].price;
+    };
+    EXPECT_LT(std::abs(error_in_time(256) - error_in_time(1024)), 5e-5) << beta;
+  }
+}
+
 TEST(OptionsProperty, PricesAreContinuousInTheJumpParameters) {
   Contract c;
   c.rate = 0.05;
