@@ -105,7 +105,7 @@ class Fit(gas_program.GasTest):
         with open(SOURCE + "/kernels/options/pide/error_estimate.hpp", encoding="utf-8") as file:
             text = file.read()
         few, by_steps, in_space = [present for _, present, _, _ in fit_error_estimate.TERMS]
-        self.assertIn(f"device::minimum(R({few}), R({by_steps} / steps))", text)
+        self.assertIn(f"device::minimum(R({few}), ({by_steps} / steps) * time_part)", text)
         self.assertIn(f"{in_space} * root *", text)
 
     def test_fits_present_constants_within_their_order(self):
