@@ -32,7 +32,8 @@ double largest_of(std::span<const double> values, double sign) {
 }  // namespace
 
 HistoryRows rows_between(const HistoryRows& rows, double from, double to) {
-  constexpr double earlier = 1.0 - time_round_off, later = 1.0 + time_round_off;
+  // Round-off of a time moves no row off the end of an interval.
+  constexpr double earlier = 1.0 - 1e-9, later = 1.0 + 1e-9;
   const auto& time = rows.time;
   if (time.empty() || time.front() > later * from) return {};
   const auto first = static_cast<std::size_t>(std::ranges::lower_bound(time, earlier * from) - time.begin()),

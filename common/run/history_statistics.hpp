@@ -13,9 +13,6 @@ struct HistoryRows {
   std::span<const double> time, value;
 };
 
-/// Part of a time that round-off may change: rows so near to the ends of an interval lie on them.
-inline constexpr double time_round_off = 1e-9;
-
 /// Rows in [from, to], s; none if the first of all is later than `from`, as in a run that continues without
 /// the history before. Does not throw.
 [[nodiscard]] HistoryRows rows_between(const HistoryRows& rows, double from, double to);

@@ -246,8 +246,8 @@ void note_growing_energy(FlowScene& scene) {
       p.viscosity == 0.0 && p.turbulence == flow::Turbulence::none)
     scene.notices.emplace_back(
         "fluid.viscosity = 0.0: with flow.advection = \"central\" the kinetic energy grows by about a "
-        "percent "
-        "in steps of \"ab2\", which \"crank-nicolson\" takes too; flow.time = \"rk3\" keeps it from growing");
+        "percent in steps of \"ab2\", which \"crank-nicolson\" takes too; flow.time = \"rk3\" keeps it from "
+        "growing");
 }
 
 /// Notes bodies whose first forces the defect would hold: what a vertex expects and the grid does not see

@@ -165,8 +165,7 @@ void declare_run(Table& table, FlowScene& scene) {
           "with sheets that the fluid moves `cfl` times the least width h of a cell over the largest "
           "number in fluid.velocity and grid.wall_velocity, or over sqrt(g h) with gravity g, if that is "
           "larger, with crank-nicolson at most h^2 density / viscosity, and with a mount at most the step "
-          "that "
-          "resolves its frequency; else none")
+          "that resolves its frequency; else none")
       .when(free_step, free_step_condition, "dt");
   table
       .value("max_steps", scene::integer_codec(parameters.max_steps),

@@ -6,7 +6,6 @@
 
 #include "common/program/stopwatch.hpp"
 #include "common/scene/node.hpp"
-#include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/verify/canopy_checks.hpp"
 
 namespace drogue::parachute_app {
@@ -46,6 +45,7 @@ Sheets cloth_sheets(const FlowScene& scene) {
 ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::SimulationSettings& settings)
     : _scene(scene),
       _sheets(cloth_sheets(scene)),
+      _airstream(scene),
       _cuts(_sheets.cuts, _sheets.fabric),
       // It takes a kernel of each step.
       _peaks(scene.canopies.size(), !scene.verify.peak_forces.empty()) {
@@ -172,7 +172,7 @@ framework::HistoryRow ClothSimulation::row() {
   framework::HistoryRow row = {time, {static_cast<double>(step), _solver->time_state().dt}};
   if (step == 0) row.values.back() = 0.0;
   const SheetState state = sheet_state();
-  append_measures(_scene, _sheets, state, {}, {}, row);
+  append_measures(_scene, _airstream, _sheets, state, {}, {}, row);
   const fabric::Totals totals = _solver->totals();
   row.values.insert(row.values.end(), {totals.kinetic, totals.elastic, totals.gravity, totals.energy()});
   if (_scene.verify.intersections)

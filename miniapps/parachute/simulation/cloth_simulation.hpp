@@ -9,6 +9,7 @@
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 #include "miniapps/parachute/simulation/history_columns.hpp"
+#include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/verify/peak_pulls.hpp"
 
 namespace drogue::parachute_app {
@@ -65,6 +66,7 @@ class ClothSimulation final : public framework::Simulation {
 
   const FlowScene& _scene;
   Sheets _sheets;
+  Airstream _airstream;
   coupling::LineCuts _cuts;
   std::unique_ptr<fabric::Solver> _solver;
   PeakPulls _peaks;

@@ -78,9 +78,14 @@ void add_vertices(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, 
 
 }  // namespace
 
-void append_measures(const FlowScene& scene, const Sheets& sheets, const SheetState& state,
-                     const Vector& origin, const Vector& velocity, framework::HistoryRow& row) {
-  const Vector stream = scene.stream().value_or(Vector{});
+Airstream::Airstream(const FlowScene& scene) : velocity(scene.stream().value_or(Vector{})) {
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
+    has_speed.push_back(scene.lack_of_airspeed(i).empty());
+}
+
+void append_measures(const FlowScene& scene, const Airstream& stream, const Sheets& sheets,
+                     const SheetState& state, const Vector& origin, const Vector& velocity,
+                     framework::HistoryRow& row) {
   const auto append = [&row](const Vector& vector) {
     row.values.insert(row.values.end(), vector.begin(), vector.end());
   };
@@ -88,7 +93,7 @@ void append_measures(const FlowScene& scene, const Sheets& sheets, const SheetSt
     const Canopy& canopy = scene.canopies[i];
     CanopyMeasures one = measure(sheets.canopies[i], sheets.fabric, state,
                                  canopy.payload.release && row.time > *canopy.payload.release);
-    Vector relative = stream;
+    Vector relative = stream.velocity;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       one.payload[axis] += origin[axis];
       one.velocity[axis] += velocity[axis];
@@ -98,7 +103,7 @@ void append_measures(const FlowScene& scene, const Sheets& sheets, const SheetSt
     for (const Vector& vector : {one.line_force, one.payload, one.velocity}) append(vector);
     row.values.push_back(one.projected_area);
     if (scene.has_fluid()) row.values.push_back(one.leak);
-    if (scene.lack_of_airspeed(i).empty())
+    if (stream.has_speed[i])
       row.values.insert(row.values.end(), {std::hypot(relative[0], relative[1], relative[2]),
                                            drag_coefficient(one.force, relative, scene.parameters.density,
                                                             canopy.nominal_area())});

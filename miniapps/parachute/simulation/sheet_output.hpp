@@ -13,10 +13,19 @@
 
 namespace drogue::parachute_app {
 
+/// Fluid far upstream of canopies, which rows of history.csv need: its velocity, m/s, and whether it has a
+/// speed relative to each canopy. The expressions of a scene are evaluated once. Throws only std::bad_alloc.
+struct Airstream {
+  explicit Airstream(const FlowScene& scene);
+
+  fabric::Vector velocity;
+  std::vector<bool> has_speed;
+};
+
 /// Appends the measures of all canopies in the order of `history_columns`. The frame of `state` has its
 /// origin at `origin`, m, and moves at `velocity`, m/s. Throws only std::bad_alloc.
-void append_measures(const FlowScene& scene, const Sheets& sheets, const SheetState& state,
-                     const fabric::Vector& origin, const fabric::Vector& velocity,
+void append_measures(const FlowScene& scene, const Airstream& stream, const Sheets& sheets,
+                     const SheetState& state, const fabric::Vector& origin, const fabric::Vector& velocity,
                      framework::HistoryRow& row);
 
 /// Number of intersections of sheets and lines that are not cut at a time, s, with sheets and with their

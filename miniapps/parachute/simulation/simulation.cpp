@@ -72,6 +72,7 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     : _scene(scene),
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
                               scene.parameters.viscosity, scene.flags)),
+      _airstream(scene),
       _images(scene, _sheets),
       _grids(grids_beside_canopies(scene, _sheets)),
       _statistics(scene.parameters.watches_extremes),

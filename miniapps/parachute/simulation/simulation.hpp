@@ -91,6 +91,7 @@ class Simulation final : public framework::Simulation {
 
   const FlowScene& _scene;
   Sheets _sheets;
+  Airstream _airstream;
   ImageWatch _images;
   std::optional<std::string> _met_image;  ///< what has ended the run
   std::vector<InsideFluid> _inside;       ///< of each body

@@ -85,7 +85,7 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
   _coupled->air_velocity(state.air);
   const coupling::FrameMotion frame = _coupled->frame();
   const Vector origin = frame.position(row.time);
-  append_measures(_scene, _sheets, state, origin, frame.velocity, row);
+  append_measures(_scene, _airstream, _sheets, state, origin, frame.velocity, row);
   const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
   fabric::Totals totals = _coupled->cloth_totals();
   // The vertices of moving bodies have a mass without meaning.
