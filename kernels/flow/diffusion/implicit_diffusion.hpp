@@ -60,6 +60,31 @@ struct DiffusionSetup {
   }
 };
 
+/// Unknowns of one velocity component. On a device a thread visits several of them along z, and raises the
+/// maxima of the step once: beside the same few words, the loads of all threads wait for each other.
+struct DiffusionMarch {
+  int extent[3];  ///< unknowns per axis
+  int planes;     ///< of a thread
+
+  /// First unknown along z of part `part`, and the end. Do not throw.
+  [[nodiscard]] KOKKOS_FUNCTION int begin(int part) const { return part * planes; }
+  [[nodiscard]] KOKKOS_FUNCTION int end(int part) const {
+    return Kokkos::min((part + 1) * planes, extent[2]);
+  }
+  /// Place of an unknown in an array of them. Does not throw.
+  [[nodiscard]] KOKKOS_FUNCTION std::int64_t offset(int i, int j, int k) const {
+    return i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k);
+  }
+};
+
+/// Calls `functor(i, j, part)` for all unknowns along x and y, and all parts of the march.
+template <class ExecutionSpace, class Functor>
+void launch_march(const ExecutionSpace& space, const char* label, const Functor& functor) {
+  const auto& [extent, planes] = functor.march;
+  const int threads[3] = {extent[0], extent[1], (extent[2] + planes - 1) / planes};
+  launch_cells(space, label, threads, functor);
+}
+
 /// Right-hand side of the equation for the change of one velocity component, m/s: the explicit terms,
 /// viscosity and pressure gradient at the beginning of the step, and the known changes on the sides. Adds the
 /// pressure gradient to the predicted velocity on outflows. The component is known to the compiler, so that
@@ -67,15 +92,29 @@ struct DiffusionSetup {
 template <class ExecutionSpace, int component>
 struct DiffusionSourceFunctor {
   DiffusionSetup<ExecutionSpace> setup;
-  int extent[3];  ///< unknowns per axis
+  DiffusionMarch march;
   double* source;
 
-  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
-    const MacGrid& g = setup.grid;
-    const Control& control = setup.control();
+  /// Maxima over the unknowns of a thread, as in `StepMaxima`.
+  struct Maxima {
+    std::uint64_t viscous_acceleration = 0, highest = 0, lowest = 0;
+  };
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int part) const {
+    Control& control = setup.control();
     if (control.trial.stop != stepping::Stop::running) return;
-    const double dt = control.trial.dt;
-    int index[3] = {i, j, k};
+    Maxima maxima;
+    for (int k = march.begin(part); k < march.end(part); ++k)
+      source[march.offset(i, j, k)] = source_at({i, j, k}, control.trial.dt, maxima);
+    raise(control.viscous_acceleration, maxima.viscous_acceleration);
+    raise(control.highest[component], maxima.highest);
+    raise(control.lowest[component], maxima.lowest);
+  }
+
+ private:
+  [[nodiscard]] KOKKOS_FUNCTION double source_at(const int (&unknown)[3], double dt, Maxima& maxima) const {
+    const MacGrid& g = setup.grid;
+    int index[3] = {unknown[0], unknown[1], unknown[2]};
     index[component] += setup.first_unknown(component);
     const std::int64_t place = component * g.component + g.offset(index[0], index[1], index[2]);
     const double* u = setup.velocity.data() + place;
@@ -104,16 +143,14 @@ struct DiffusionSourceFunctor {
           change += 2.0 * w * tangential_change(2 * axis + 1, index, place, stride);
       }
     }
-    Control& reduced = setup.control();
-    raise(reduced.viscous_acceleration, Kokkos::bit_cast<std::uint64_t>(Kokkos::fabs(setup.nu * laplacian)));
-    raise(reduced.highest[component], ordered_bits(highest));
-    raise(reduced.lowest[component], ordered_bits(-lowest));
-    const std::int64_t at = i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k);
-    source[at] = setup.predicted(place) - u[0] + dt * (setup.nu * laplacian - pressure_gradient(index)) +
-                 0.5 * setup.nu * dt * change;
+    // Bits, which let NaN prevail.
+    maxima.viscous_acceleration = Kokkos::max(
+        maxima.viscous_acceleration, Kokkos::bit_cast<std::uint64_t>(Kokkos::fabs(setup.nu * laplacian)));
+    maxima.highest = Kokkos::max(maxima.highest, ordered_bits(highest));
+    maxima.lowest = Kokkos::max(maxima.lowest, ordered_bits(-lowest));
+    return setup.predicted(place) - u[0] + dt * (setup.nu * laplacian - pressure_gradient(index)) +
+           0.5 * setup.nu * dt * change;
   }
-
- private:
   [[nodiscard]] KOKKOS_FUNCTION double pressure_at(int i, int j, int k) const {
     const MacGrid& g = setup.grid;
     return setup.pressure(static_cast<std::size_t>(i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k)));
@@ -156,18 +193,22 @@ struct DiffusionSourceFunctor {
 template <class ExecutionSpace, int component>
 struct DiffusionUpdateFunctor {
   DiffusionSetup<ExecutionSpace> setup;
-  int extent[3];
+  DiffusionMarch march;
   const double* change;  ///< m/s
 
-  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int part) const {
     if (setup.control().trial.stop != stepping::Stop::running) return;
-    int index[3] = {i, j, k};
-    index[component] += setup.first_unknown(component);
-    const std::int64_t place =
-        component * setup.grid.component + setup.grid.offset(index[0], index[1], index[2]);
-    const std::int64_t at = i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k);
-    setup.predicted(place) = setup.velocity(place) + change[at];
-    raise(setup.control().change, Kokkos::bit_cast<std::uint64_t>(Kokkos::fabs(change[at])));
+    std::uint64_t largest = 0;
+    for (int k = march.begin(part); k < march.end(part); ++k) {
+      int index[3] = {i, j, k};
+      index[component] += setup.first_unknown(component);
+      const std::int64_t place =
+          component * setup.grid.component + setup.grid.offset(index[0], index[1], index[2]);
+      const double here = change[march.offset(i, j, k)];
+      setup.predicted(place) = setup.velocity(place) + here;
+      largest = Kokkos::max(largest, Kokkos::bit_cast<std::uint64_t>(Kokkos::fabs(here)));
+    }
+    raise(setup.control().change, largest);
   }
 };
 
@@ -224,19 +265,21 @@ class ImplicitDiffusion {
     // The step size is read on the device, where it changes from step to step.
     const double* dt = &setup.control.data()->trial.dt;
     const linear::CellBox& unknowns = _unknowns[component];
-    const int extent[3] = {unknowns.cells[0], unknowns.cells[1], unknowns.cells[2]};
+    const auto [nx, ny, nz] = unknowns.cells;
+    const int tiles = ((nx + tile_x - 1) / tile_x) * ((ny + tile_y - 1) / tile_y);
+    const DiffusionMarch march{
+        .extent = {nx, ny, nz},
+        .planes = device::is_host<ExecutionSpace> ? 1 : march_planes(tiles, nz, 16, 4096)};
     const Values from(source.data(), unknowns.size()), to(change.data(), unknowns.size());
-    launch_cells(space, "drogue::flow::diffusion_source", extent,
-                 DiffusionSourceFunctor<ExecutionSpace, component>{
-                     setup, {extent[0], extent[1], extent[2]}, from.data()});
+    launch_march(space, "drogue::flow::diffusion_source",
+                 DiffusionSourceFunctor<ExecutionSpace, component>{setup, march, from.data()});
     std::visit(
         [&](auto& solver) {
           solver.enqueue_solve(from, to, {dt, 0.5 * setup.nu});
         },
         _solvers[_solver_of[component]]);
-    launch_cells(space, "drogue::flow::diffusion_update", extent,
-                 DiffusionUpdateFunctor<ExecutionSpace, component>{
-                     setup, {extent[0], extent[1], extent[2]}, to.data()});
+    launch_march(space, "drogue::flow::diffusion_update",
+                 DiffusionUpdateFunctor<ExecutionSpace, component>{setup, march, to.data()});
   }
 
   using Solver =
