@@ -110,12 +110,13 @@ function(drogue_optimise_sources optimisation)
   endif()
 endfunction()
 
-# drogue_precompile_standard(<target>): precompiles the headers of the standard library that most sources without Kokkos read,
-# half of their compile time. tests/layering finds a standard header that a source uses and does not include.
+# drogue_precompile_standard(<target> [header...]): precompiles the headers of the standard library that most sources without
+# Kokkos read, half of their compile time, and others. tests/layering finds a standard header that a source uses and does not
+# include.
 function(drogue_precompile_standard target)
   if(NOT CMAKE_UNITY_BUILD)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory>
-      <optional> <span> <sstream> <stdexcept> <string> <string_view> <utility> <variant> <vector>)
+      <optional> <span> <sstream> <stdexcept> <string> <string_view> <utility> <variant> <vector> ${ARGN})
   endif()
 endfunction()
 
