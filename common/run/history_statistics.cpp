@@ -51,6 +51,21 @@ double mean_of(const HistoryRows& rows) {
   return integral / (time.back() - time.front());
 }
 
+double mean_between(const HistoryRows& all, double from, double to) {
+  const HistoryRows rows = rows_between(all, from, to);
+  const double mean = mean_of(rows);
+  if (std::isnan(mean)) return mean;
+  // The parts between the ends of the interval and its rows.
+  const auto part = [&](double row, double value, double end) {
+    return 0.5 * (value + value_at(all, end)) * std::abs(end - row);
+  };
+  const double first = rows.time.front(), last = rows.time.back(), begin = std::min(from, first),
+               end = std::clamp(to, last, all.time.back());
+  return (mean * (last - first) + part(first, rows.value.front(), begin) +
+          part(last, rows.value.back(), end)) /
+         (end - begin);
+}
+
 double frequency_of(const HistoryRows& rows) {
   const auto& [time, value] = rows;
   const double mean = mean_of(rows);
@@ -87,16 +102,17 @@ double amplitude_of(const HistoryRows& rows) {
   return 0.5 * (extremum(largest) - extremum(least));
 }
 
-double statistic_of(Statistic statistic, const HistoryRows& rows) {
+double statistic_of(Statistic statistic, const HistoryRows& all, double from, double to) {
+  const HistoryRows rows = rows_between(all, from, to);
   switch (statistic) {
     case Statistic::mean:
-      return mean_of(rows);
+      return mean_between(all, from, to);
     case Statistic::max:
       return largest_of(rows.value, 1.0);
     case Statistic::min:
       return -largest_of(rows.value, -1.0);
     case Statistic::last:
-      return rows.value.empty() ? not_a_number : rows.value.back();
+      return value_at(all, to);
     case Statistic::frequency:
       return frequency_of(rows);
     case Statistic::amplitude:

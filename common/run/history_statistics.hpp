@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace drogue::run {
 
 /// Number that is computed from the values of a column of history.csv in an interval of time.
 enum class Statistic { mean, max, min, last, frequency, amplitude };
+
+/// End of an interval of time that the end of the run bounds, s.
+inline constexpr double never = std::numeric_limits<double>::infinity();
 
 /// Rows of a column of history.csv: times, s, which increase, and values.
 struct HistoryRows {
@@ -19,6 +23,10 @@ struct HistoryRows {
 
 /// Mean by the trapezoidal rule; NaN for fewer than two rows. Does not throw.
 [[nodiscard]] double mean_of(const HistoryRows& rows);
+
+/// Mean over [from, to], s, by the trapezoidal rule, with values at both ends by linear interpolation; to the
+/// last row if that is before `to`. NaN for fewer than two rows in between. Does not throw.
+[[nodiscard]] double mean_between(const HistoryRows& all, double from, double to);
 
 /// Frequency, 1/s, at which the values cross their mean upwards: between the first and the last of these
 /// times, interpolated linearly. NaN for fewer than three of them: they may be those of a transient. Does not
@@ -34,9 +42,9 @@ struct HistoryRows {
 /// rows. Does not throw.
 [[nodiscard]] double amplitude_of(const HistoryRows& rows);
 
-/// The statistic of this name. The largest, least and last value are NaN without rows, the first two also if
-/// a value is NaN. Does not throw.
-[[nodiscard]] double statistic_of(Statistic statistic, const HistoryRows& rows);
+/// The statistic of this name in [from, to], s; the last value is that at the time `to`. The largest and the
+/// least value are NaN without rows, and if a value is NaN. Does not throw.
+[[nodiscard]] double statistic_of(Statistic statistic, const HistoryRows& all, double from, double to);
 
 /// Mean number of rows in a period of a frequency, 1/s; NaN or 0 without one. Does not throw.
 [[nodiscard]] double rows_in_period(const HistoryRows& rows, double frequency);

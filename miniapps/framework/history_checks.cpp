@@ -1,7 +1,6 @@
 #include "miniapps/framework/history_checks.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
 #include "common/scene/codec.hpp"
@@ -80,6 +79,8 @@ void require_measurable(const scene::Table& root, const std::vector<HistoryCheck
     if (is_frequency && !(check.value > 0.0)) refuse(".value", " must be positive: it is a frequency");
     if (check.statistic == Statistic::amplitude && check.value < 0.0)
       refuse(".value", " must not be negative: it is an amplitude");
+    if (check.value != 0.0 && check.tolerance > 1.0)
+      refuse(".tolerance", " is relative to value: above 1 it accepts the opposite sign too");
   }
 }
 
@@ -88,11 +89,10 @@ void add_history_checks(const std::vector<HistoryCheck>& checks, const run::Hist
   const std::vector<double>& time = history.at("time");
   std::map<std::string, int> earlier;  // checks of the same name
   for (const HistoryCheck& check : checks) {
-    constexpr double never = std::numeric_limits<double>::infinity();
+    const double end = check.to.value_or(run::never);
     const run::HistoryRows all = {time, history.at(check.column)};
-    const run::HistoryRows rows = run::rows_between(all, check.from, check.to.value_or(never));
-    const double statistic = check.statistic == Statistic::last ? run::value_at(all, check.to.value_or(never))
-                                                                : run::statistic_of(check.statistic, rows);
+    const run::HistoryRows rows = run::rows_between(all, check.from, end);
+    const double statistic = run::statistic_of(check.statistic, all, check.from, end);
     std::string name = check.column + "_" + scene::choice_name(statistic_choices, check.statistic);
     if (const int count = earlier[name]++; count > 0) name += "_" + std::to_string(count);
     result.add_deviation(name, statistic / check.reference, check.value, check.tolerance);

@@ -20,7 +20,7 @@ struct Leak {
 Leak leak_of(const CanopyLeak& wanted, const run::History& history) {
   const std::vector<double>& time = history.at("time");
   const auto mean = [&](const std::vector<double>& values) {
-    return run::mean_of(run::rows_between({time, values}, wanted.from, wanted.to));
+    return run::mean_between({time, values}, wanted.from, wanted.to);
   };
   const auto column = [&](const char* name) -> const std::vector<double>& {
     return history.at("canopy_" + std::to_string(wanted.canopy) + name);
@@ -70,7 +70,8 @@ void check_canopies(const Verify& wanted, const PeakPulls& peaks, const run::His
   const auto check_largest = [&](const std::string& column, std::optional<double> tolerance) {
     if (!tolerance) return;
     const run::HistoryRows rows{history.at("time"), history.at(column)};
-    result.add_check(column, run::statistic_of(run::Statistic::max, rows), *tolerance);
+    const double begin = rows.time.empty() ? 0.0 : rows.time.front();
+    result.add_check(column, run::statistic_of(run::Statistic::max, rows, begin, run::never), *tolerance);
     result.state_rows(rows.time.size());
   };
   check_largest("force_balance", wanted.force_balance);

@@ -15,6 +15,9 @@ struct Rows {
   [[nodiscard]] HistoryRows from(double from, double to = 1e9) const {
     return rows_between({time, value}, from, to);
   }
+  [[nodiscard]] double statistic(Statistic wanted, double from, double to = 1e9) const {
+    return statistic_of(wanted, {time, value}, from, to);
+  }
 };
 
 /// A transient, then a mean of 2 and an oscillation of 0.8 Hz, in rows of unequal distance.
@@ -73,6 +76,13 @@ TEST(HistoryStatistics, InterpolatesBetweenRows) {
   EXPECT_EQ(value_at({rows.time, rows.value}, 1e9), -1.0);
 }
 
+TEST(HistoryStatistics, MeanCoversTheWholeInterval) {
+  const Rows ramp = {{0.0, 1.0, 2.0, 3.0}, {0.0, 1.0, 2.0, 3.0}};
+  EXPECT_DOUBLE_EQ(ramp.statistic(Statistic::mean, 0.5, 2.75), 1.625);
+  EXPECT_DOUBLE_EQ(ramp.statistic(Statistic::mean, 0.5), 1.75) << "to the last row";
+  EXPECT_TRUE(std::isnan(ramp.statistic(Statistic::mean, 0.5, 1.5))) << "one row";
+}
+
 TEST(HistoryStatistics, RoundOffMovesNoRowOutOfAnInterval) {
   Rows rows;
   double time = 0.0;
@@ -89,17 +99,17 @@ TEST(HistoryStatistics, RoundOffMovesNoRowOutOfAnInterval) {
 TEST(HistoryStatistics, TakesTheRowsOfAnInterval) {
   const Rows rows = {{0.0, 1.0, 3.0, 4.0}, {1e6, 1.0, -3.0, 2.0}};
   // Trapezoids of 2 s and 1 s.
-  EXPECT_NEAR(statistic_of(Statistic::mean, rows.from(0.5)), (2.0 * -1.0 + 1.0 * -0.5) / 3.0, 1e-15);
-  EXPECT_EQ(statistic_of(Statistic::mean, rows.from(1.0, 3.0)), -1.0);
-  EXPECT_EQ(statistic_of(Statistic::max, rows.from(0.5)), 2.0);
-  EXPECT_EQ(statistic_of(Statistic::max, rows.from(3.0, 3.5)), -3.0);
-  EXPECT_EQ(statistic_of(Statistic::min, rows.from(0.0)), -3.0);
-  EXPECT_EQ(statistic_of(Statistic::min, rows.from(0.0, 2.0)), 1.0);
-  EXPECT_EQ(statistic_of(Statistic::last, rows.from(0.0)), 2.0);
-  EXPECT_EQ(statistic_of(Statistic::last, rows.from(0.0, 3.0)), -3.0);
-  EXPECT_EQ(statistic_of(Statistic::amplitude, rows.from(3.0)), 2.5);
+  EXPECT_NEAR(rows.statistic(Statistic::mean, 1.0), (2.0 * -1.0 + 1.0 * -0.5) / 3.0, 1e-15);
+  EXPECT_EQ(rows.statistic(Statistic::mean, 1.0, 3.0), -1.0);
+  EXPECT_EQ(rows.statistic(Statistic::max, 0.5), 2.0);
+  EXPECT_EQ(rows.statistic(Statistic::max, 3.0, 3.5), -3.0);
+  EXPECT_EQ(rows.statistic(Statistic::min, 0.0), -3.0);
+  EXPECT_EQ(rows.statistic(Statistic::min, 0.0, 2.0), 1.0);
+  EXPECT_EQ(rows.statistic(Statistic::last, 0.0), 2.0);
+  EXPECT_EQ(rows.statistic(Statistic::last, 0.0, 3.0), -3.0);
+  EXPECT_EQ(rows.statistic(Statistic::amplitude, 3.0), 2.5);
   const Rows waves = oscillation();
-  EXPECT_EQ(statistic_of(Statistic::frequency, waves.from(10.0)), frequency_of(waves.from(10.0)));
+  EXPECT_EQ(waves.statistic(Statistic::frequency, 10.0), frequency_of(waves.from(10.0)));
 }
 
 TEST(HistoryStatistics, CountsRows) {
@@ -118,13 +128,13 @@ TEST(HistoryStatistics, ReportsNoValueForTooFewRows) {
   EXPECT_TRUE(std::isnan(frequency_of(rows.from(38.0))));
   for (const Statistic statistic : {Statistic::mean, Statistic::max, Statistic::min, Statistic::last,
                                     Statistic::frequency, Statistic::amplitude})
-    EXPECT_TRUE(std::isnan(statistic_of(statistic, {})));
+    EXPECT_TRUE(std::isnan(statistic_of(statistic, {}, 0.0, 1.0)));
 }
 
 TEST(HistoryStatistics, NanIsNotHidden) {
   const Rows rows = {{0.0, 1.0, 2.0, 3.0}, {1.0, std::nan(""), 3.0, 2.0}};
   for (const Statistic statistic : {Statistic::mean, Statistic::max, Statistic::min, Statistic::frequency})
-    EXPECT_TRUE(std::isnan(statistic_of(statistic, rows.from(0.0))));
+    EXPECT_TRUE(std::isnan(rows.statistic(statistic, 0.0)));
 }
 
 }  // namespace
