@@ -127,8 +127,9 @@ class Transfers(unittest.TestCase):
         text = "".join(json.dumps(line) + "\n" for line in lines)
         (self.evidence / f"{app}-transfers-{machine}.jsonl").write_text(text, encoding="utf-8")
 
-    def test_page_equals_its_records(self):
-        self.assertEqual(transfers.page(), (ROOT / "docs/transfers.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
+    def test_pages_equal_their_records(self):
+        for name, page in (("transfers", transfers.page), ("transfers-tables", transfers.rows_page)):
+            self.assertEqual(page(), (ROOT / f"docs/{name}.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
 
     def test_shows_our_scheme_of_gas_beside_that_of_the_dissertation(self):
         thesis = {"h2d_us": 500, "compute_us": 300, "d2h_us": 200, "total_us": 1000}
@@ -147,11 +148,13 @@ class Transfers(unittest.TestCase):
         self.write("gas", *(row | {"cells": cells, "thesis": thesis | printed} | core
                             for cells, printed, core in ((1024, {}, {"cpu_s": 6e-4}), (2048, {"cpu_us": 6000}, {"cpu_s": 1.2e-3}),
                                                          (3072, {"cpu_us": 9000}, {}))))
-        text = transfers.page(self.evidence)
+        text = transfers.rows_page(self.evidence)
         self.assertIn("| total | CPU | CPU / compute | CPU / total | error |", text)
         cells = {line.split(" | ")[2]: line.split(" | ")[7:10] for line in text.splitlines() if line.startswith("| of [Shi]")}
         self.assertEqual({"1024": ["600", "10", "6"], "2048": ["1200 (6000)", "20 (20)", "12 (6)"],
                           "3072": ["- (9000)", "- (30)", "- (9)"]}, cells)
+        largest = [line.split(" | ")[2] for line in transfers.page(self.evidence).splitlines() if line.startswith("| of [Shi]")]
+        self.assertEqual(["3072"], largest)
 
     def test_latest_record_of_a_gpu_counts_with_the_times_of_a_core_of_the_latest_host(self):
         row = {"cells": 1024, "memory": "pageable", "method": "seed", "thesis": {"h2d_us": 5, "compute_us": 3, "d2h_us": 2, "total_us": 10}}
