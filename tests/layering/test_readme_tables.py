@@ -17,7 +17,7 @@ ROOT = layers.repository(os.environ)
 sys.path.insert(0, str(ROOT / "scripts"))
 import publish_records  # noqa: E402
 from plot.evidence.perf_record import SCHEMA  # noqa: E402
-from tables import forms, readme, transfers  # noqa: E402
+from tables import forms, readme, results, transfers  # noqa: E402
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -107,6 +107,15 @@ class Generator(unittest.TestCase):
         self.assertEqual(list(times.values()), [forms.time_of(SimpleNamespace(samples=[s]), 1e3) for s in times])
         errors = [(0.045, 3, "0.045"), (0.017, 2, "1.7e-2"), (2.5e-18, 2, "2.5e-18"), (3.6e-6, 2, "3.6e-6"), (0.0, 2, "0.0e+00")]
         self.assertEqual([text for *_, text in errors], [forms.error_of(SimpleNamespace(error=e), n) for e, n, _ in errors])
+
+
+class Results(unittest.TestCase):
+    def test_page_equals_its_records(self):
+        self.assertEqual(results.page(), (ROOT / "docs/results.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
+
+    def test_numbers_are_short(self):
+        values = {0.0: "0", 2e-3: "2e-3", 2.026e-3: "2.03e-3", 1e-14: "1e-14", 0.0784: "0.0784", 0.325: "0.325", 43.1: "43.1", 2250.0: "2250"}
+        self.assertEqual(list(values.values()), [results.number(value) for value in values])
 
 
 class Transfers(unittest.TestCase):
