@@ -6,9 +6,9 @@
 
 FOLDER: that of bench.sh, here or brought from the machine; its files NAME.txt begin with the command of NAME.jsonl. Copies
 NAME.jsonl to docs/evidence/NAME-MACHINE.jsonl; writes their rows in docs/evidence/README.md (one of the same name is replaced);
-writes the tables of README.md, docs/transfers.md and docs/lessons/tables.md, and with drogue-plot of --bin the pictures of ladders.
-Older records of the same cases in other files of MACHINE go, with the rows of files that hold no other; files that documents, code
-or tests quote stay. Does nothing if a record failed its check, or was made with --quick.
+writes the tables of README.md, docs/results.md, docs/transfers.md, docs/transfers-tables.md and docs/lessons/tables.md, and with
+drogue-plot of --bin the pictures of ladders. Older records of the same cases in other files of MACHINE go, with the rows of files that
+hold no other; files that documents, code or tests quote stay. Does nothing if a record failed its check, or was made with --quick.
 """
 
 import argparse

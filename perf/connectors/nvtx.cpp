@@ -1,5 +1,5 @@
 // Connector of Kokkos Tools: NVTX ranges named as kernels and regions, for Nsight Systems and Nsight Compute.
-// KOKKOS_TOOLS_LIBS names the library (docs/perf.md). The interface is that of
+// KOKKOS_TOOLS_LIBS names the library (docs/perf-reference.md). The interface is that of
 // Kokkos_Profiling_C_Interface.h.
 
 #include <nvtx3/nvToolsExt.h>

@@ -7,7 +7,7 @@
 #include "kernels/device/runtime.hpp"
 #include "perf/measure/measurement.hpp"
 
-/// Records of measurements: JSON, schema drogue.perf/1 (docs/perf.md).
+/// Records of measurements: JSON, schema drogue.perf/1 (docs/perf-records.md).
 namespace drogue::perf {
 
 /// Facts that all records of a process share: the build, the machine and the date. Does not throw.

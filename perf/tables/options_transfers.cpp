@@ -21,7 +21,7 @@ struct OptionsTransfer {
 /// Fewer rounds than elsewhere: a put on the largest meshes takes seconds.
 constexpr int options_rounds = 5, options_warm_up_rounds = 1;
 /// Largest error of the baseline scheme, of first order, relative to the strike: 4.4e-4 at mesh 128
-/// (docs/options.md).
+/// (docs/options-notebook.md).
 constexpr double baseline_tolerance(int mesh) { return 4.4e-4 * 128 / mesh; }
 
 /// Largest mesh on which the scheme of [Shi] is measured from either kind of memory: on larger ones a solve

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs taylor-green-3d with every turbulence model and prints the table of docs/flow.md.
+"""Runs taylor-green-3d with every turbulence model and prints the table of docs/flow-notebook.md.
 
     scripts/studies/measure_turbulence.py [--cells 32,64] [--advections weno5,central] [--models none,smagorinsky,vreman]
                                           [--bin build/host/bin] [--out out/turbulence] [-- ARGUMENT...]

@@ -2,10 +2,11 @@
 
 import sys
 
-from . import lessons, readme, transfers
+from . import lessons, readme, results, transfers
 from .forms import ROOT
 
-PAGES = {"README.md": readme.renewed, "docs/transfers.md": transfers.page, "docs/lessons/tables.md": lessons.page}
+PAGES = {"README.md": readme.renewed, "docs/results.md": results.page, "docs/transfers.md": transfers.page,
+         "docs/transfers-tables.md": transfers.rows_page, "docs/lessons/tables.md": lessons.page}
 
 
 def renew(check=False):

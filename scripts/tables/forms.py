@@ -40,10 +40,10 @@ def table(heading, rows, left=()):
 
 
 def wrapped(lines):
-    """Text of lines; prose before and after a table is one paragraph of at most 120 columns, with whole commands."""
+    """Text of lines; prose before and after a table or heading is one paragraph of at most 120 columns, with whole commands."""
     found, prose, space = [], [], "\0"
     for line in [*lines, ""]:
-        if line and not line.startswith("|"):
+        if line and not line.startswith(("|", "#")):
             prose.append(line)
             continue
         if prose:

@@ -1,4 +1,4 @@
-"""docs/transfers.md: the tables of transfers as recorded in docs/evidence/*-transfers-MACHINE.jsonl."""
+"""docs/transfers.md and transfers-tables.md: transfers as recorded in docs/evidence/*-transfers-MACHINE.jsonl."""
 
 import statistics
 
@@ -6,12 +6,30 @@ from .forms import EVIDENCE, error_of, passed, table, wrapped
 
 HEAD = """# Transfers: tables 5.5 to 5.8 of [Shi]
 
-Written by `scripts/publish_records.py --tables` from the records that `drogue-perf table transfers --app A --out FILE` wrote:
-copy to the device, compute, copy to the host, total, microseconds. In brackets: the times of [Shi] on its Quadro 6000.
-Parts and total are medians of their own, which need not add up. CPU: the computation of the row on one core, and its
-ratios to compute and total, in brackets those of the CPU of [Shi]; a dash where no record has such a time. Of several
-records of a mini-app the latest of a GPU counts; times of a core that it lacks are those of the latest record of a
-host, which the line above a table names.
+What copies between host and device cost, beside the times of [Shi] on its Quadro 6000. `scripts/publish_records.py
+--tables` writes this page and [all rows](transfers-tables.md) from the records that `drogue-perf table transfers --app A
+--out FILE` wrote. [Shi] is the dissertation that the [README](../README.md#source) cites.
+
+A sample is a copy to the device (H2D), k steps or a batch (compute), and a copy to the host (D2H). A step then takes
+
+$$t=\\frac{t_{\\mathrm{H2D}}+t_{\\mathrm{D2H}}}{k}+t_{\\mathrm{step}},$$
+
+so copies matter the less the longer a state stays on the device. From pageable memory the driver copies by way of a
+page-locked buffer of its own; pinned memory has no such detour.
+
+* Times are microseconds, per step of gas and of parachutes, of cloth for all steps between copies, of options per batch;
+  in brackets those of [Shi]. Parts and total are medians of their own, which need not add up.
+* CPU: the computation of the row on one core, and its ratios to compute and total, in brackets those of the CPU of
+  [Shi]; a dash where no record has such a time.
+* Of several records of a mini-app the latest of a GPU counts; times of a core that it lacks are those of the latest
+  record of a host, which the line above a table names.
+* Trust the shares of copies and the errors. Ratios to the times of [Shi] compare devices that are a decade apart, and
+  mean nothing where [Shi] does not state the number of steps.
+"""
+ROWS_HEAD = """# Transfers: all rows
+
+All recorded rows of [transfers](transfers.md), which explains the columns and has those of the largest sizes. Written by
+`scripts/publish_records.py --tables`. Times are in microseconds, in brackets those of [Shi].
 """
 PARTS = {"h2d": "H2D", "compute": "compute", "d2h": "D2H", "total": "total"}
 ON_CORE = ["CPU", "CPU / compute", "CPU / total"]
@@ -161,8 +179,8 @@ def origin(file, rows):
     return f"{record.device(rows[0].on_gpu)}, {date[:10]}, commit {commit} ([records](evidence/{file.name}))"
 
 
-def section(app, files):
-    """Heading, paragraph and table of the records of a mini-app."""
+def section(app, files, whole):
+    """Heading and table of the records of a mini-app: all rows, or, after a paragraph, those of the largest size."""
     found = [(file, read(file)) for file in files]
     host = latest([one for one in found if not one[1][0].on_gpu])
     file, rows = latest([one for one in found if one[1][0].on_gpu]) or host
@@ -177,11 +195,18 @@ def section(app, files):
         source += f" CPU: one core of {origin(*host)}."
     with_core = any(row.core or row.thesis["cpu"] for row in rows)
     heading = [*columns, *PARTS.values(), *(ON_CORE if with_core else []), "error"]
-    lines = table(heading, (row.cells(with_core) for row in rows), range(columns.index("memory") + 1))
-    return f"\n## {title}\n" + wrapped([words(rows)]) + "\n" + wrapped([source, "", *lines])
+    size, mesh = max(row.size for row in rows), max(row.mesh or 0 for row in rows)
+    shown = [row for row in rows if whole or row.size == size or row.mesh == mesh]
+    lines = table(heading, (row.cells(with_core) for row in shown), range(columns.index("memory") + 1))
+    return f"\n## {title}\n" + ("" if whole else wrapped([words(rows)]) + "\n") + wrapped([source, "", *lines])
 
 
-def page(evidence=EVIDENCE):
-    """Text of the page."""
+def page(evidence=EVIDENCE, whole=False):
+    """Text of docs/transfers.md, or of the page of the whole tables."""
     found = {app: sorted(evidence.glob(f"{app}-transfers-*.jsonl")) for app in APPS}
-    return HEAD + "".join(section(app, files) for app, files in found.items() if files)
+    return (ROWS_HEAD if whole else HEAD) + "".join(section(app, files, whole) for app, files in found.items() if files)
+
+
+def rows_page(evidence=EVIDENCE):
+    """Text of docs/transfers-tables.md."""
+    return page(evidence, whole=True)

@@ -17,7 +17,7 @@ ROOT = layers.repository(os.environ)
 sys.path.insert(0, str(ROOT / "scripts"))
 import publish_records  # noqa: E402
 from plot.evidence.perf_record import SCHEMA  # noqa: E402
-from tables import forms, readme, transfers  # noqa: E402
+from tables import forms, readme, results, transfers  # noqa: E402
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -109,6 +109,15 @@ class Generator(unittest.TestCase):
         self.assertEqual([text for *_, text in errors], [forms.error_of(SimpleNamespace(error=e), n) for e, n, _ in errors])
 
 
+class Results(unittest.TestCase):
+    def test_page_equals_its_records(self):
+        self.assertEqual(results.page(), (ROOT / "docs/results.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
+
+    def test_numbers_are_short(self):
+        values = {0.0: "0", 2e-3: "2e-3", 2.026e-3: "2.03e-3", 1e-14: "1e-14", 0.0784: "0.0784", 0.325: "0.325", 43.1: "43.1", 2250.0: "2250"}
+        self.assertEqual(list(values.values()), [results.number(value) for value in values])
+
+
 class Transfers(unittest.TestCase):
     """Records of a GPU with one time per part: copies of 10 and 30 us, compute of 60 us."""
 
@@ -127,8 +136,9 @@ class Transfers(unittest.TestCase):
         text = "".join(json.dumps(line) + "\n" for line in lines)
         (self.evidence / f"{app}-transfers-{machine}.jsonl").write_text(text, encoding="utf-8")
 
-    def test_page_equals_its_records(self):
-        self.assertEqual(transfers.page(), (ROOT / "docs/transfers.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
+    def test_pages_equal_their_records(self):
+        for name, page in (("transfers", transfers.page), ("transfers-tables", transfers.rows_page)):
+            self.assertEqual(page(), (ROOT / f"docs/{name}.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
 
     def test_shows_our_scheme_of_gas_beside_that_of_the_dissertation(self):
         thesis = {"h2d_us": 500, "compute_us": 300, "d2h_us": 200, "total_us": 1000}
@@ -147,11 +157,13 @@ class Transfers(unittest.TestCase):
         self.write("gas", *(row | {"cells": cells, "thesis": thesis | printed} | core
                             for cells, printed, core in ((1024, {}, {"cpu_s": 6e-4}), (2048, {"cpu_us": 6000}, {"cpu_s": 1.2e-3}),
                                                          (3072, {"cpu_us": 9000}, {}))))
-        text = transfers.page(self.evidence)
+        text = transfers.rows_page(self.evidence)
         self.assertIn("| total | CPU | CPU / compute | CPU / total | error |", text)
         cells = {line.split(" | ")[2]: line.split(" | ")[7:10] for line in text.splitlines() if line.startswith("| of [Shi]")}
         self.assertEqual({"1024": ["600", "10", "6"], "2048": ["1200 (6000)", "20 (20)", "12 (6)"],
                           "3072": ["- (9000)", "- (30)", "- (9)"]}, cells)
+        largest = [line.split(" | ")[2] for line in transfers.page(self.evidence).splitlines() if line.startswith("| of [Shi]")]
+        self.assertEqual(["3072"], largest)
 
     def test_latest_record_of_a_gpu_counts_with_the_times_of_a_core_of_the_latest_host(self):
         row = {"cells": 1024, "memory": "pageable", "method": "seed", "thesis": {"h2d_us": 5, "compute_us": 3, "d2h_us": 2, "total_us": 10}}

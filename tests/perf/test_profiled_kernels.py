@@ -1,4 +1,4 @@
-"""Kernels in the recorded profiles, and those that docs/perf.md names as missing there, are all that the sources have."""
+"""Kernels in the recorded profiles, and those that docs/perf-reference.md names as missing there, are all that the sources have."""
 
 import json
 import os
@@ -25,7 +25,7 @@ def in_records():
 
 def in_table():
     """Names in the table of functors without a row, and their number with repetitions."""
-    text = (SOURCE / "docs/perf.md").read_text(encoding="utf-8").partition("| functors | why |")[2].partition("\n\n")[0]
+    text = (SOURCE / "docs/perf-reference.md").read_text(encoding="utf-8").partition("| functors | why |")[2].partition("\n\n")[0]
     rows = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]
     return [name for row in rows for name in NAME.findall(row)]
 

@@ -17,7 +17,7 @@ KOKKOS_INLINE_FUNCTION double truncation_target(int mesh) { return 0.03 / (doubl
 /// Truncation error that is reported, as a fraction of the strike. The Chernoff bounds omit the prefactor of
 /// a tail. For a normal tail it is 1/(t s sqrt(2 pi)), t the tilt and s the standard deviation, below 0.09
 /// for a path to the end of the grid and back. Such a path also gains less than the strike. The factor 0.04
-/// is empirical: calibrated on random contracts against Fourier prices (docs/options.md);
+/// is empirical: calibrated on random contracts against Fourier prices (docs/options-error.md);
 /// `OptionsError.EqualsTheTruncationErrorFarOutOfTheMoney` tests it.
 KOKKOS_INLINE_FUNCTION double truncation_error(int mesh) { return 0.04 * truncation_target(mesh); }
 

@@ -10,7 +10,7 @@ namespace drogue::options {
 /// The numerical constants below are empirical unless a derivation is given. They were calibrated on random
 /// contracts, with maturities from an hour to thirty years, so that the estimate covers 95 % of the rows of
 /// each kind. The references were Fourier prices for European options and finer grids for others.
-/// docs/options.md, "Stated error", lists the constants. `scripts/studies/fit_error_estimate.py` fits those
+/// docs/options-error.md lists the constants. `scripts/studies/fit_error_estimate.py` fits those
 /// of `error_factor`; how the others were fitted is not preserved. `scripts/studies/measure_coverage.py`
 /// measures the coverage on random contracts against such references. The tests `OptionsError` assert nine
 /// rows of ten.
@@ -41,7 +41,7 @@ KOKKOS_INLINE_FUNCTION ErrorEstimate<double> estimate_without_premium(const Erro
 /// Error of split exercise with a known early exercise premium, as a fraction of the strike. It is at most a
 /// part of the premium that decreases with the steps. On coarse meshes it decreases with the mesh, since
 /// nodes resolve the two boundaries to a part of a step in space. The factors are empirical: 94 to 99 % of
-/// 800 random contracts were covered (docs/options.md).
+/// 800 random contracts were covered (docs/options-notebook.md).
 KOKKOS_INLINE_FUNCTION double splitting_error(double premium, int mesh, int steps, double largest) {
   const double resolved = device::minimum(double(steps), 0.25 * mesh);
   return device::minimum(0.5 * device::absolute(premium) / resolved, splitting_factor * largest);

@@ -69,7 +69,7 @@ KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>
 ///   (3/2 z^2 - 2 z + 1/2)/dt + I z^2 + E (2 z - 1) = 0.
 /// One of them is -1 where 3E = 4/dt + I: the limit of stability, at which the mode alternates without decay.
 /// The scheme keeps a tenth below it, 3E <= 3.6/dt + I, so that such modes decay. The tenth is empirical:
-/// docs/options.md, "Stability".
+/// docs/options-notebook.md, "Margin of stability".
 template <class R>
 KOKKOS_INLINE_FUNCTION R added_diffusion(const PutPack<R>& put, const Jumps<R>& jumps, R diffusion, R dt) {
   constexpr double limit = 4.0, margin = 0.9;

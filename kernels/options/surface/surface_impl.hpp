@@ -22,7 +22,7 @@ namespace drogue::options {
 
 /// Pricer whose contracts share solves. Consecutive contracts that differ only in the strike form runs, which
 /// are divided into strike groups. The price of a strike does not depend on the other strikes:
-/// docs/options.md, "Surfaces".
+/// docs/options-implementation.md, "Surfaces".
 template <class ExecutionSpace>
 class SurfaceImpl final : public Pricer {
   using Space = typename ExecutionSpace::memory_space;

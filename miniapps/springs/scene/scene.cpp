@@ -53,7 +53,7 @@ std::string document_springs_scene() {
       declare_springs_scene, "Springs", "SpringsSceneDocument",
       R"(Expressions use the syntax of muParser; x, y, z are coordinates at rest, t is the time. Those of t, of follower pressure
 and of contact.objects are evaluated in every step: each has at most 96 operations, names and numbers, of them at most
-32 numbers, and waits with at most 16 operands. How a scene is verified: [springs](springs.md).
+32 numbers, and waits with at most 16 operands. How a scene is verified: [springs](springs-output.md).
 )");
 }
 
