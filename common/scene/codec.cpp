@@ -20,40 +20,28 @@ std::string must_be(const std::string& what, const Limits& limits, const Node& n
   return "must be " + what + (range.empty() ? "" : " " + range) + ", not " + describe(node);
 }
 
+/// Prints a text that is absent if it is empty.
+std::optional<std::string> print_text(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(toml_string(text));
+}
+
 std::string count_text(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " number" : " numbers");
 }
 
-std::string array_text(const std::vector<std::string>& elements) {
-  std::string text;
-  for (const std::string& element : elements) text += (text.empty() ? "" : ", ") + element;
-  return "[" + text + "]";
-}
-
-/// Reads an array element by element; `read` takes a node and its index and returns the fault.
-template <class Read>
-std::string read_array(const Node& node, const std::string& of, Read read) {
-  const auto* array = node.as<Node::Array>();
-  if (array == nullptr) return "must be an array of " + of + ", not " + describe(node);
-  for (std::size_t i = 0; i < array->size(); ++i) {
-    const std::string complaint = read((*array)[i], i);
-    if (!complaint.empty()) return "[" + std::to_string(i) + "] " + complaint;
-  }
-  return {};
-}
-
 std::string read_reals(const Node& node, const Limits& limits, bool increasing, std::vector<double>& values) {
   std::vector<double> numbers;
-  std::string complaint = read_array(node, "numbers", [&](const Node& element, std::size_t) -> std::string {
-    double number = 0.0;
-    std::string wrong = read_real(element, limits, number);
-    if (wrong.empty() && increasing && !numbers.empty() && number <= numbers.back()) {
-      wrong = "= " + real_text(number) + " is not greater than the element before it, " +
-              real_text(numbers.back());
-    }
-    numbers.push_back(number);
-    return wrong;
-  });
+  std::string complaint =
+      read_elements(node, 0, "numbers", [&](const Node& element, std::size_t) -> std::string {
+        double number = 0.0;
+        std::string wrong = read_real(element, limits, number);
+        if (wrong.empty() && increasing && !numbers.empty() && number <= numbers.back()) {
+          wrong = "= " + real_text(number) + " is not greater than the element before it, " +
+                  real_text(numbers.back());
+        }
+        numbers.push_back(number);
+        return wrong;
+      });
   if (complaint.empty()) values = numbers;
   return complaint;
 }
@@ -78,8 +66,34 @@ std::string Limits::text() const {
   return text;
 }
 
+std::string joined(const std::vector<std::string>& texts, const std::string& between) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : between) + text;
+  return all;
+}
+
 std::string toml_text(double value) { return real_text(value); }
-std::string toml_text(std::int64_t value) { return std::to_string(value); }
+std::string toml_text(bool value) { return value ? "true" : "false"; }
+
+std::string read_elements(const Node& node, std::size_t size, const std::string& elements,
+                          const std::function<std::string(const Node&, std::size_t)>& read) {
+  const std::string wanted = "must be an array of " + (size > 0 ? std::to_string(size) + " " : "") + elements;
+  const auto* array = node.as<Node::Array>();
+  if (array == nullptr) return wanted + ", not " + describe(node);
+  if (size > 0 && array->size() != size) return wanted + ", not of " + std::to_string(array->size());
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const std::string fault = read((*array)[i], i);
+    if (!fault.empty()) return "[" + std::to_string(i) + "]" + (fault.starts_with('[') ? "" : " ") + fault;
+  }
+  return {};
+}
+
+std::string Form<bool>::read(const Node& node, const Limits& /*limits*/, bool& value) {
+  const auto* boolean = node.as<bool>();
+  if (boolean == nullptr) return "must be true or false, not " + describe(node);
+  value = *boolean;
+  return {};
+}
 
 std::string read_real(const Node& node, const Limits& limits, double& value) {
   double number = 0.0;
@@ -106,16 +120,19 @@ std::string read_integer(const Node& node, const Limits& limits, std::int64_t& v
   return {};
 }
 
+std::string name_type(const std::vector<std::string>& names) {
+  std::vector<std::string> quoted;
+  for (const std::string& name : names) quoted.push_back(toml_string(name));
+  return joined(quoted, " | ");
+}
+
 Codec block_codec(int& threads) {
-  Codec codec = zero_is_unset(integer_codec(threads), threads);
-  codec.read = [read = codec.read, &threads](const Node& node, const Limits& limits) {
-    const int before = threads;
-    std::string fault = read(node, limits);
-    if (!fault.empty() || threads % 32 == 0) return fault;
-    threads = before;
-    return "= " + describe(node) + " is not a multiple of 32";
+  const auto read = [](const Node& node, const Limits& limits, int& value) {
+    std::string fault = Form<int>::read(node, limits, value);
+    if (fault.empty() && value % 32 != 0) fault = "= " + describe(node) + " is not a multiple of 32";
+    return fault;
   };
-  return codec;
+  return zero_is_unset(make_codec("integer", threads, read, toml_text<int>), threads);
 }
 
 std::string read_name(const Node& node, const std::vector<std::string>& valid, std::string& value) {
@@ -146,23 +163,6 @@ std::string read_expression(const Node& node, const std::vector<std::string>& va
   return {};
 }
 
-Codec real_codec(double& value) {
-  return {"real", [&value](const Node& node, const Limits& limits) { return read_real(node, limits, value); },
-          [&value] { return std::optional(toml_text(value)); }, back_to_default(value)};
-}
-
-Codec real_codec(std::optional<double>& value) {
-  return {"real",
-          [&value](const Node& node, const Limits& limits) {
-            double number = 0.0;
-            std::string complaint = read_real(node, limits, number);
-            if (complaint.empty()) value = number;
-            return complaint;
-          },
-          [&value] { return value ? std::optional(toml_text(*value)) : std::nullopt; },
-          back_to_default(value)};
-}
-
 Codec real_codec(std::map<std::string, double>& values, const std::string& name) {
   return {"real",
           [&values, name](const Node& node, const Limits& limits) {
@@ -178,27 +178,16 @@ Codec real_codec(std::map<std::string, double>& values, const std::string& name)
           [&values, name] { values.erase(name); }};
 }
 
-Codec boolean_codec(bool& value) {
-  return {"boolean",
-          [&value](const Node& node, const Limits&) -> std::string {
-            const auto* boolean = node.as<bool>();
-            if (boolean == nullptr) return "must be true or false, not " + describe(node);
-            value = *boolean;
-            return {};
-          },
-          [&value] { return std::optional<std::string>(value ? "true" : "false"); }, back_to_default(value)};
-}
-
 Codec text_codec(std::string& value) {
-  return {"string",
-          [&value](const Node& node, const Limits&) -> std::string {
-            const auto* text = node.as<std::string>();
-            if (text == nullptr) return "must be a string, not " + describe(node);
-            value = *text;
-            return {};
-          },
-          [&value] { return value.empty() ? std::nullopt : std::optional(toml_string(value)); },
-          back_to_default(value)};
+  return make_codec(
+      "string", value,
+      [](const Node& node, const Limits&, std::string& place) -> std::string {
+        const auto* text = node.as<std::string>();
+        if (text == nullptr) return "must be a string, not " + describe(node);
+        place = *text;
+        return {};
+      },
+      print_text);
 }
 
 Codec fixed_codec(std::string value) {
@@ -211,27 +200,26 @@ Codec fixed_codec(std::string value) {
 }
 
 Codec expression_codec(std::string& value, std::vector<std::string> variables) {
-  std::string names;
-  for (const std::string& variable : variables) names += (names.empty() ? "" : ", ") + variable;
-  return {"expression of " + names,
-          [&value, variables](const Node& node, const Limits&) {
-            return read_expression(node, variables, value);
-          },
-          [&value] { return value.empty() ? std::nullopt : std::optional(toml_string(value)); },
-          back_to_default(value)};
+  const auto read = [variables](const Node& node, const Limits&, std::string& place) {
+    return read_expression(node, variables, place);
+  };
+  return make_codec("expression of " + joined(variables, ", "), value, read, print_text);
+}
+
+std::string read_real_or_expression(const Node& node, const Limits& limits,
+                                    const std::vector<std::string>& variables, std::string& value) {
+  if (node.as<std::string>() != nullptr) return read_expression(node, variables, value);
+  double number = 0.0;
+  std::string fault = read_real(node, limits, number);
+  if (fault.empty()) value = real_text(number);
+  return fault;
 }
 
 Codec real_or_expression_codec(std::string& value, std::vector<std::string> variables) {
-  Codec codec = expression_codec(value, std::move(variables));
-  codec.type = "real or " + codec.type;
-  codec.read = [&value, read_text = codec.read](const Node& node, const Limits& limits) -> std::string {
-    if (node.as<std::string>() != nullptr) return read_text(node, limits);
-    double number = 0.0;
-    std::string complaint = read_real(node, limits, number);
-    if (complaint.empty()) value = real_text(number);
-    return complaint;
+  const auto read = [variables](const Node& node, const Limits& limits, std::string& place) {
+    return read_real_or_expression(node, limits, variables, place);
   };
-  return codec;
+  return make_codec("real or expression of " + joined(variables, ", "), value, read, print_text);
 }
 
 Codec interval_codec(double& low, double& high) {
@@ -246,7 +234,7 @@ Codec interval_codec(double& low, double& high) {
             return {};
           },
           [&low, &high] {
-            return std::optional(array_text({toml_text(low), toml_text(high)}));
+            return std::optional(toml_text(std::array{low, high}));
           },
           [reset_low = back_to_default(low), reset_high = back_to_default(high)] {
             reset_low();
@@ -255,49 +243,32 @@ Codec interval_codec(double& low, double& high) {
 }
 
 Codec reals_codec(std::vector<double>& values, std::size_t size, bool increasing) {
-  return {increasing ? "array of increasing reals" : "array of reals",
-          [&values, size, increasing](const Node& node, const Limits& limits) -> std::string {
-            std::vector<double> numbers;
-            std::string complaint = read_reals(node, limits, increasing, numbers);
-            if (!complaint.empty()) return complaint;
-            if (size != 0 && numbers.size() != size) {
-              return "must be " + count_text(size) + ", not " + count_text(numbers.size());
-            }
-            values = numbers;
-            return {};
-          },
-          [&values] {
-            std::vector<std::string> texts;
-            for (const double value : values) texts.push_back(toml_text(value));
-            return std::optional(array_text(texts));
-          },
-          back_to_default(values)};
+  return make_codec(
+      increasing ? "array of increasing reals" : "array of reals", values,
+      [size, increasing](const Node& node, const Limits& limits, std::vector<double>& numbers) {
+        std::string complaint = read_reals(node, limits, increasing, numbers);
+        if (complaint.empty() && size != 0 && numbers.size() != size)
+          complaint = "must be " + count_text(size) + ", not " + count_text(numbers.size());
+        return complaint;
+      },
+      [](const std::vector<double>& numbers) { return array_text(numbers, real_text); });
 }
 
 Codec names_codec(std::vector<std::string>& values, std::vector<std::string> valid) {
-  std::string type;
-  for (const std::string& name : valid) type += (type.empty() ? "" : " | ") + toml_string(name);
-  return {"array of " + type,
-          [&values, valid](const Node& node, const Limits&) {
-            std::vector<std::string> names;
-            std::string complaint = read_array(node, "names", [&](const Node& element, std::size_t) {
-              std::string name;
-              std::string wrong = read_name(element, valid, name);
-              if (wrong.empty() && std::find(names.begin(), names.end(), name) != names.end()) {
-                wrong = "= " + toml_string(name) + " is given twice";
-              }
-              names.push_back(name);
-              return wrong;
-            });
-            if (complaint.empty()) values = names;
-            return complaint;
-          },
-          [&values] {
-            std::vector<std::string> texts;
-            for (const std::string& value : values) texts.push_back(toml_string(value));
-            return std::optional(array_text(texts));
-          },
-          back_to_default(values)};
+  return make_codec(
+      "array of " + name_type(valid), values,
+      [valid](const Node& node, const Limits&, std::vector<std::string>& names) {
+        names.clear();
+        return read_elements(node, 0, "names", [&](const Node& element, std::size_t) {
+          std::string name;
+          std::string wrong = read_name(element, valid, name);
+          if (wrong.empty() && std::find(names.begin(), names.end(), name) != names.end())
+            wrong = "= " + toml_string(name) + " is given twice";
+          names.push_back(name);
+          return wrong;
+        });
+      },
+      [](const std::vector<std::string>& names) { return array_text(names, toml_string); });
 }
 
 }  // namespace drogue::scene

@@ -53,18 +53,18 @@ class Documenter {
 
   static std::string remark(const Key& key) {
     std::string text;
-    if (!key._condition.empty()) text += " Only " + cell(key._condition) + ".";
-    if (key._kind != Key::Kind::value && key._required) text += " Required.";
+    if (!key._rules.when.text.empty()) text += " Only " + cell(key._rules.when.text) + ".";
+    if (key._kind != Key::Kind::value && key._rules.required) text += " Required.";
     return text;
   }
 
   static std::string row(const Key& key) {
-    std::string standard = key._default_text;
-    if (standard.empty() && key._required) standard = "required";
+    std::string standard = key._rules.default_text;
+    if (standard.empty() && key._rules.required) standard = "required";
     if (standard.empty()) standard = code(key._codec.print().value_or(""));
     if (standard.empty()) standard = "none";
-    return "| `" + key._name + "` | " + cell(key._codec.type) + " | " + key._unit + " | " + standard + " | " +
-           cell(key._limits.text()) + " | " + key._help + "." + remark(key) + " |\n";
+    return "| `" + key._name + "` | " + cell(key._codec.type) + " | " + key._rules.unit + " | " + standard +
+           " | " + cell(key._rules.range.text()) + " | " + key._help + "." + remark(key) + " |\n";
   }
 };
 

@@ -56,6 +56,16 @@ std::string rounded_text(double value) {
   return real_text(std::strtod(buffer.data(), nullptr));
 }
 
+std::string rough_text(double value) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
+  return buffer.data();
+}
+
+std::string element(const std::string& array, std::size_t index) {
+  return array + "[" + std::to_string(index) + "]";
+}
+
 std::string shortened(const std::string& text, std::size_t longest) {
   if (text.size() <= longest) return text;
   std::size_t cut = longest;

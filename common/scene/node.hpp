@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -58,5 +59,26 @@ std::string real_text(double value);
 
 /// `real_text` of the value rounded to 12 digits: a computed number without its round-off, for sentences.
 std::string rounded_text(double value);
+
+/// Three digits of a value, without a point where they need none, for sentences.
+std::string rough_text(double value);
+
+/// A sentence of parts: texts, integers, and real numbers by `real_text`. Throws only std::bad_alloc.
+template <class... Parts>
+std::string sentence(const Parts&... parts) {
+  const auto text = [](const auto& part) {
+    using Part = std::remove_cvref_t<decltype(part)>;
+    if constexpr (std::is_floating_point_v<Part>)
+      return real_text(part);
+    else if constexpr (std::is_integral_v<Part>)
+      return std::to_string(part);
+    else
+      return std::string(part);
+  };
+  return (std::string() + ... + text(parts));
+}
+
+/// Name of an element of an array: `body[0]`.
+std::string element(const std::string& array, std::size_t index);
 
 }  // namespace drogue::scene

@@ -7,12 +7,12 @@ class Printer {
   static std::string document(const Table& root) {
     std::string text = lines(root, true);
     for (const auto& key : root._keys) {
-      if (key->_kind == Key::Kind::value || !key->_applies()) continue;
+      if (key->_kind == Key::Kind::value || !key->applies()) continue;
       const bool array = key->_kind == Key::Kind::tables;
       const std::string header = array ? "[[" + key->_name + "]]\n" : "[" + key->_name + "]\n";
       for (const auto& table : key->_tables) {
         const std::string body = lines(*table, false);
-        if (body.empty() && !array && !key->_required) continue;
+        if (body.empty() && !array && !key->_rules.required) continue;
         text += (text.empty() ? "" : "\n") + header + body;
       }
     }
@@ -23,7 +23,7 @@ class Printer {
   static std::string lines(const Table& table, bool values_only) {
     std::string text;
     for (const auto& key : table._keys) {
-      if (!key->_applies() || (values_only && key->_kind != Key::Kind::value)) continue;
+      if (!key->applies() || (values_only && key->_kind != Key::Kind::value)) continue;
       const std::string value = key->_kind == Key::Kind::tables ? long_array(*key) : inline_text(*key);
       if (!value.empty()) text += key->_name + " = " + value + "\n";
     }
@@ -42,7 +42,7 @@ class Printer {
   static std::string inline_table(const Table& table) {
     std::string text;
     for (const auto& key : table._keys) {
-      if (!key->_applies()) continue;
+      if (!key->applies()) continue;
       const std::string value = inline_text(*key);
       if (!value.empty()) text += (text.empty() ? "" : ", ") + key->_name + " = " + value;
     }

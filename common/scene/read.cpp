@@ -52,9 +52,9 @@ class Reader {
   void bind(Key& key, const Member& member, const std::string& path) {
     key._origin = member.origin;
     if (key._kind == Key::Kind::value) {
-      const std::string fault = key._codec.read(member.node, key._limits);
+      const std::string fault = key._codec.read(member.node, key._rules.range);
       const std::string gap = fault.starts_with('[') ? "" : " ";
-      const Rank rank = key._decisive ? Rank::decisive : Rank::value;
+      const Rank rank = key._rules.decisive ? Rank::decisive : Rank::value;
       if (!fault.empty()) report(rank, member.origin, path + gap + fault);
     } else if (key._kind == Key::Kind::tables) {
       bind_tables(key, member, path);
@@ -120,7 +120,7 @@ class Reader {
       const bool replaced = set_alternative != table._alternatives.end() &&
                             std::find(table._alternatives.begin(), table._alternatives.end(), key->_name) !=
                                 table._alternatives.end();
-      const bool meaningless = is_set(table.find(key->_decided_by)) && !key->_applies();
+      const bool meaningless = is_set(table.find(key->_rules.when.decided_by)) && !key->applies();
       if (from_file && (replaced || meaningless)) drop(*key);
       for (const auto& child : key->_tables) drop_overridden(*child);
     }
@@ -130,28 +130,30 @@ class Reader {
   static std::string remedy(const Key& key, const std::string& path) {
     if (key._kind != Key::Kind::table) return {};
     const auto& keys = key._tables.front()->_keys;
-    const bool needs_values = !key._tables.front()->_alternatives.empty() ||
-                              std::ranges::any_of(keys, [](const auto& each) { return each->_required; });
+    const bool needs_values =
+        !key._tables.front()->_alternatives.empty() ||
+        std::ranges::any_of(keys, [](const auto& each) { return each->_rules.required; });
     return needs_values ? "" : "; add the line [" + path + "], its keys have defaults";
   }
 
   /// Checks that need all values.
   void check(const Table& table) {
     for (const auto& key : table._keys) {
-      const bool applies = key->_applies();
+      const bool applies = key->applies();
       const std::string path = table.path_of(key->_name);
       if (key->given() && !applies) {
-        report(Rank::contradiction, key->_origin, path + " applies only " + key->_condition);
+        report(Rank::contradiction, key->_origin, path + " applies only " + key->_rules.when.text);
       }
-      if (key->_required && applies && !key->given()) {
-        const std::string condition = key->_condition.empty() ? "" : " (needed " + key->_condition + ")";
+      if (key->_rules.required && applies && !key->given()) {
+        const std::string condition =
+            key->_rules.when.text.empty() ? "" : " (needed " + key->_rules.when.text + ")";
         report(Rank::missing, table._origin.empty() ? _root._origin : table._origin,
                "missing " + std::string(key->_kind == Key::Kind::value ? "key " : "table ") +
                    toml_string(path) + condition + ": " + key->_help + remedy(*key, path));
       }
       for (const auto& child : key->_tables) {
         // a fixed table that is missing is one error, not one for each of its keys
-        if (key->given() || !key->_required) check(*child);
+        if (key->given() || !key->_rules.required) check(*child);
       }
     }
     check_alternatives(table);
@@ -188,8 +190,8 @@ void read_file(Table& root, const std::filesystem::path& file, const std::vector
   read(root, document);
 }
 
-void contradict(const Table& root, const std::string& path, const std::string& sentence) {
-  throw Failure(ExitCode::invalid_scene, root.origin(path) + ": " + sentence);
+void Place::fail(const std::string& path, const std::string& sentence) const {
+  throw Failure(ExitCode::invalid_scene, _root.origin(path) + ": " + sentence);
 }
 
 }  // namespace drogue::scene

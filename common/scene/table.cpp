@@ -1,84 +1,32 @@
 #include "common/scene/table.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <stdexcept>
 
 namespace drogue::scene {
 
-Key& Key::unit(std::string unit) {
-  _unit = std::move(unit);
-  return *this;
+Condition operator&&(const Condition& first, const Condition& second) {
+  const std::string clause = second.text.starts_with("with ") ? second.text.substr(5) : second.text;
+  return {[a = first.applies, b = second.applies] { return a() && b(); }, first.text + " and " + clause,
+          second.decided_by};
 }
 
-Key& Key::required() {
-  _required = true;
-  return *this;
-}
-
-Key& Key::when(std::function<bool()> applies, std::string condition, std::string decided_by) {
-  _applies = std::move(applies);
-  _condition = std::move(condition);
-  _decided_by = std::move(decided_by);
-  return *this;
-}
-
-Key& Key::above(double low) {
-  _limits.low = low;
-  _limits.low_excluded = true;
-  return *this;
-}
-
-Key& Key::at_least(double low) {
-  _limits.low = low;
-  return *this;
-}
-
-Key& Key::at_most(double high) {
-  _limits.high = high;
-  return *this;
-}
-
-Key& Key::below(double high) {
-  _limits.high = high;
-  _limits.high_excluded = true;
-  return *this;
-}
-
-Key& Key::range(double low, double high) { return at_least(low).at_most(high); }
-
-Key& Key::default_text(std::string text) {
-  _default_text = std::move(text);
-  return *this;
-}
-
-Key& Key::decisive() {
-  _decisive = true;
-  return *this;
-}
-
-Key& Table::add(Key::Kind kind, const std::string& name, std::string help) {
-  _keys.push_back(std::make_unique<Key>(kind, name, std::move(help)));
+Key& Table::add(Key::Kind kind, const std::string& name, std::string help, KeyRules rules) {
+  _keys.push_back(std::make_unique<Key>(kind, name, std::move(help), std::move(rules)));
   return *_keys.back();
 }
 
-Key& Table::value(std::string name, Codec codec, std::string help) {
-  Key& key = add(Key::Kind::value, name, std::move(help));
+Key& Table::value(const std::string& name, Codec codec, std::string help, KeyRules rules) {
+  Key& key = add(Key::Kind::value, name, std::move(help), std::move(rules));
   key._codec = std::move(codec);
   return key;
 }
 
-Key& Table::table(const std::string& name, const std::function<void(Table&)>& describe, std::string help) {
-  Key& key = add(Key::Kind::table, name, std::move(help));
+Key& Table::table(const std::string& name, const std::function<void(Table&)>& describe, std::string help,
+                  KeyRules rules) {
+  Key& key = add(Key::Kind::table, name, std::move(help), std::move(rules));
   key._tables.push_back(std::make_unique<Table>(path_of(name)));
   describe(*key._tables.back());
   return key;
-}
-
-Key& Table::at(const std::string& name) {
-  for (const auto& key : _keys)
-    if (key->_name == name) return *key;
-  throw std::out_of_range("no key \"" + path_of(name) + "\" is declared");
 }
 
 Table& Table::exactly_one_of(std::vector<std::string> names) {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <concepts>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,31 +20,65 @@ namespace drogue::scene {
 
 class Table;
 
+/// Where a key is allowed. `text` names the condition: `with kind = "disk"`. A `--set` of the sibling key
+/// `decided_by` drops the key from the file where it no longer applies.
+struct Condition {
+  std::function<bool()> applies = {};  ///< empty: everywhere
+  std::string text = {}, decided_by = {};
+};
+
+/// Both, with a clause on each: `with [fluid] and kind = "disk"`. That of the second key counts.
+Condition operator&&(const Condition& first, const Condition& second);
+
+/// Condition that the key `name` has one of several values: `with kind = "disk" or "sphere"`.
+template <class T, class Place>
+Condition with_choice(const std::string& name, const Place& place, const Choices<T>& choices,
+                      const std::vector<std::type_identity_t<T>>& values) {
+  std::string names;
+  for (const auto& [text, value] : choices)
+    if (std::ranges::find(values, value) != values.end())
+      names += (names.empty() ? "" : " or ") + toml_string(text);
+  return {[&place, values] { return std::ranges::find(values, place) != values.end(); },
+          "with " + name + " = " + names, name};
+}
+
+/// Condition that the key `name`, which may be absent or empty, has a value.
+template <class T>
+Condition with_given(const std::string& name, const T& place) {
+  const auto has_value = [&place] {
+    if constexpr (requires { place.has_value(); })
+      return place.has_value();
+    else
+      return !place.empty();
+  };
+  return {has_value, "with " + name, name};
+}
+
+inline Condition with_true(const std::string& name, const bool& place) {
+  return {[&place] { return place; }, "with " + name + " = true", name};
+}
+
+/// What a declaration says of a key beside its name, its value and its meaning.
+struct KeyRules {
+  std::string unit = {};
+  Limits range = {};
+  Condition when = {};
+  bool required = false;
+  std::string default_text = {};  ///< documentation of a default that the variable cannot show
+  /// An invalid value is reported before any other error: the rest of the scene is meaningless then.
+  bool decisive = false;
+};
+
 /// One declared key: a value, a table, or an array of tables.
 class Key {
  public:
   enum class Kind { value, table, optional_table, tables };
 
-  Key(Kind kind, std::string name, std::string help)
-      : _kind(kind), _name(std::move(name)), _help(std::move(help)) {}
-
-  Key& unit(std::string unit);
-  Key& required();
-  /// Allows the key only where `applies` returns true; `condition` names the condition: `with kind = "disk"`.
-  /// A
-  /// `--set` of the sibling key `decided_by` drops this key from the file where it no longer applies.
-  Key& when(std::function<bool()> applies, std::string condition, std::string decided_by);
-  Key& above(double low);
-  Key& at_least(double low);
-  Key& at_most(double high);
-  Key& below(double high);
-  Key& range(double low, double high);
-  /// Documentation of a default that the variable cannot show.
-  Key& default_text(std::string text);
-  /// Reports an invalid value of this key before any other error: the rest of the scene is meaningless then.
-  Key& decisive();
+  Key(Kind kind, std::string name, std::string help, KeyRules rules)
+      : _kind(kind), _name(std::move(name)), _help(std::move(help)), _rules(std::move(rules)) {}
 
   [[nodiscard]] bool given() const { return !_origin.empty(); }
+  [[nodiscard]] bool applies() const { return !_rules.when.applies || _rules.when.applies(); }
 
  private:
   friend class Table;
@@ -52,16 +89,9 @@ class Key {
   Kind _kind;
   std::string _name;
   std::string _help;
-  std::string _unit;
-  std::string _default_text;
-  bool _required = false;
-  bool _decisive = false;
-  Limits _limits;
+  KeyRules _rules;
   Codec _codec;
-  std::function<bool()> _applies = [] { return true; };
-  std::string _condition;
-  std::string _decided_by;
-  std::string _origin;                          ///< origin of the key in the scene
+  std::string _origin;                          ///< of the key in the scene
   std::vector<std::unique_ptr<Table>> _tables;  ///< one, or one an element
   std::function<void(std::size_t)>
       _resize;  ///< makes the optional value or the elements and their tables, or none
@@ -72,18 +102,36 @@ class Table {
  public:
   explicit Table(std::string path = "") : _path(std::move(path)) {}
 
-  Key& value(std::string name, Codec codec, std::string help);
+  Key& value(const std::string& name, Codec codec, std::string help, KeyRules rules = {});
+  /// Value of a type that `codec_of` knows.
+  template <class T>
+  requires(!std::convertible_to<T, Codec>) Key& value(const std::string& name, T& place, std::string help,
+                                                      KeyRules rules = {}) {
+    return value(name, codec_of(place), std::move(help), std::move(rules));
+  }
+  /// One of several names.
+  template <class T, class Place>
+  Key& value(const std::string& name, Place& place, const Choices<T>& choices, std::string help,
+             KeyRules rules = {}) {
+    return value(name, choice_codec(place, choices), std::move(help), std::move(rules));
+  }
   /// Table that always exists in the struct. `describe(Table&)` declares its keys.
-  Key& table(const std::string& name, const std::function<void(Table&)>& describe, std::string help);
+  Key& table(const std::string& name, const std::function<void(Table&)>& describe, std::string help,
+             KeyRules rules = {});
+  /// The same with `describe(Table&, T&)`.
+  template <class T, class Describe>
+  Key& table(const std::string& name, T& place, Describe describe, std::string help, KeyRules rules = {}) {
+    return table(
+        name, [&](Table& keys) { describe(keys, place); }, std::move(help), std::move(rules));
+  }
   /// Optional table. `describe(Table&, T&)` declares its keys.
   template <class T, class Describe>
-  Key& optional_table(const std::string& name, std::optional<T>& place, Describe describe, std::string help);
+  Key& optional_table(const std::string& name, std::optional<T>& place, Describe describe, std::string help,
+                      KeyRules rules = {});
   /// An array of tables.
   template <class T, class Describe>
-  Key& tables(const std::string& name, std::vector<T>& place, Describe describe, std::string help);
-
-  /// Key that has been declared. Throws std::out_of_range for another name.
-  [[nodiscard]] Key& at(const std::string& name);
+  Key& tables(const std::string& name, std::vector<T>& place, Describe describe, std::string help,
+              KeyRules rules = {});
 
   /// Names a former key, which is refused with the words that replace it.
   void former(const std::string& name, const std::string& replacement) { _former[name] = replacement; }
@@ -101,9 +149,18 @@ class Table {
   friend class Printer;
   friend class Documenter;
 
-  Key& add(Key::Kind kind, const std::string& name, std::string help);
+  Key& add(Key::Kind kind, const std::string& name, std::string help, KeyRules rules);
   [[nodiscard]] std::string path_of(const std::string& name) const {
     return _path.empty() ? name : _path + "." + name;
+  }
+  /// A table bound to a default value, for the documentation.
+  template <class T, class Describe>
+  static std::unique_ptr<Table> prototype(const std::string& path, const Describe& describe) {
+    auto table = std::make_unique<Table>(path);
+    const auto value = std::make_shared<T>();
+    describe(*table, *value);
+    table->_keep = value;
+    return table;
   }
   [[nodiscard]] const Key* find(const std::string& name) const;
   [[nodiscard]] const Key* locate(const std::string& path, std::string& origin) const;
@@ -118,8 +175,8 @@ class Table {
 
 template <class T, class Describe>
 Key& Table::optional_table(const std::string& name, std::optional<T>& place, Describe describe,
-                           std::string help) {
-  Key& key = add(Key::Kind::optional_table, name, std::move(help));
+                           std::string help, KeyRules rules) {
+  Key& key = add(Key::Kind::optional_table, name, std::move(help), std::move(rules));
   const std::string path = path_of(name);
   const auto attach = [&key, &place, describe, path] {
     key._tables.clear();
@@ -133,20 +190,15 @@ Key& Table::optional_table(const std::string& name, std::optional<T>& place, Des
     place.emplace();
     attach();
   };
-  key._prototype = [describe, path] {
-    auto table = std::make_unique<Table>(path);
-    const auto value = std::make_shared<T>();
-    describe(*table, *value);
-    table->_keep = value;
-    return table;
-  };
+  key._prototype = [describe, path] { return prototype<T>(path, describe); };
   if (place) attach();
   return key;
 }
 
 template <class T, class Describe>
-Key& Table::tables(const std::string& name, std::vector<T>& place, Describe describe, std::string help) {
-  Key& key = add(Key::Kind::tables, name, std::move(help));
+Key& Table::tables(const std::string& name, std::vector<T>& place, Describe describe, std::string help,
+                   KeyRules rules) {
+  Key& key = add(Key::Kind::tables, name, std::move(help), std::move(rules));
   const std::string path = path_of(name);
   const auto attach = [&key, &place, describe, path] {
     key._tables.clear();
@@ -159,13 +211,7 @@ Key& Table::tables(const std::string& name, std::vector<T>& place, Describe desc
     place.assign(size, T{});
     attach();
   };
-  key._prototype = [describe, path] {
-    auto table = std::make_unique<Table>(path + "[]");
-    const auto value = std::make_shared<T>();
-    describe(*table, *value);
-    table->_keep = value;
-    return table;
-  };
+  key._prototype = [describe, path] { return prototype<T>(path + "[]", describe); };
   attach();
   return key;
 }

@@ -104,9 +104,9 @@ struct Heat final : Simulation {
 struct HeatScene final : Scene {
   HeatScene(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
     declare_app(_root, "heat", _data.description);
-    _root.value("cells", scene::integer_codec(_data.cells), "Number of cells").range(4, 4096);
-    _root.value("end_time", scene::real_codec(_data.end_time), "End").unit("s").above(0.0).required();
-    _root.value("linf", scene::real_codec(_data.linf), "Tolerance of the largest error").at_least(0.0);
+    _root.value("cells", _data.cells, "Number of cells", {.range = scene::between(4, 4096)});
+    _root.value("end_time", _data.end_time, "End", {.unit = "s", .range = scene::positive, .required = true});
+    _root.value("linf", _data.linf, "Tolerance of the largest error", {.range = scene::not_negative});
     _root.table(
         "output", [this](scene::Table& t) { declare_output(t, _data.output, {"u"}); }, "Files");
     scene::read_file(_root, file, assignments);

@@ -12,6 +12,7 @@ namespace drogue::framework {
 namespace {
 
 using run::Statistic;
+using scene::not_negative, scene::positive;
 
 const scene::Choices<Statistic> statistic_choices = {{"mean", Statistic::mean},
                                                      {"max", Statistic::max},
@@ -21,31 +22,25 @@ const scene::Choices<Statistic> statistic_choices = {{"mean", Statistic::mean},
                                                      {"amplitude", Statistic::amplitude}};
 
 void declare_check(scene::Table& table, HistoryCheck& check) {
-  table.value("column", scene::text_codec(check.column), "Column of history.csv, without its unit")
-      .required();
-  table
-      .value(
-          "statistic", scene::choice_codec(check.statistic, statistic_choices),
-          "Mean by the trapezoidal rule, largest or least value in rows of the interval, value at its end by "
-          "linear interpolation, frequency (1/s) at which they cross their mean upwards, or half of their "
-          "range, whose ends are vertices of parabolas through three rows")
-      .required();
-  table.value("from", scene::real_codec(check.from), "Begin of the interval").unit("s").at_least(0.0);
-  table.value("to", scene::real_codec(check.to), "End of the interval")
-      .unit("s")
-      .above(0.0)
-      .default_text("the end of the run");
-  table
-      .value("reference", scene::real_codec(check.reference),
-             "Value by which the statistic is divided, in its unit: half of density, squared speed and area "
-             "for a drag coefficient, speed over width for a Strouhal number")
-      .above(0.0);
-  table.value("value", scene::real_codec(check.value), "Expected value of the quotient").required();
-  table
-      .value("tolerance", scene::real_codec(check.tolerance),
-             "Largest relative deviation that passes, or largest magnitude if `value` is 0")
-      .at_least(0.0)
-      .required();
+  table.value("column", scene::text_codec(check.column), "Column of history.csv, without its unit",
+              {.required = true});
+  table.value(
+      "statistic", check.statistic, statistic_choices,
+      "Mean by the trapezoidal rule, largest or least value in rows of the interval, value at its end by "
+      "linear interpolation, frequency (1/s) at which they cross their mean upwards, or half of their "
+      "range, whose ends are vertices of parabolas through three rows",
+      {.required = true});
+  table.value("from", check.from, "Begin of the interval", {.unit = "s", .range = not_negative});
+  table.value("to", check.to, "End of the interval",
+              {.unit = "s", .range = positive, .default_text = "the end of the run"});
+  table.value("reference", check.reference,
+              "Value by which the statistic is divided, in its unit: half of density, squared speed and area "
+              "for a drag coefficient, speed over width for a Strouhal number",
+              {.range = positive});
+  table.value("value", check.value, "Expected value of the quotient", {.required = true});
+  table.value("tolerance", check.tolerance,
+              "Largest relative deviation that passes, or largest magnitude if `value` is 0",
+              {.range = not_negative, .required = true});
 }
 
 }  // namespace
@@ -55,32 +50,28 @@ void declare_history_checks(scene::Table& verify, std::vector<HistoryCheck>& che
                 "Statistics of columns of history.csv over intervals of time");
 }
 
-void require_measurable(const scene::Table& root, const std::vector<HistoryCheck>& checks,
+void require_measurable(const scene::Place& root, const std::vector<HistoryCheck>& checks,
                         const OutputRequest& output, const EndTime& end,
                         const std::vector<run::Column>& columns) {
   std::vector<std::string> names;
   for (const run::Column& column : columns) names.push_back(column.name);
   for (std::size_t i = 0; i < checks.size(); ++i) {
     const HistoryCheck& check = checks[i];
-    const std::string path = "verify.history[" + std::to_string(i) + "]";
-    const auto refuse = [&](const std::string& key, const std::string& sentence) {
-      scene::contradict(root, path + key, path + key + sentence);
-    };
-    if (output.history_every == 0) refuse("", " needs rows of the history; output.history_every is 0");
+    const scene::Place at = root.at("verify.history", i);
+    at.refuse_if(output.history_every == 0, "", " needs rows of the history; output.history_every is 0");
     if (std::ranges::find(names, check.column) == names.end())
-      refuse(".column", " = \"" + check.column + "\" is no column of the history.csv of this scene; " +
-                            scene::suggestion(check.column, names));
-    const std::string end_text = std::string(end.key) + " = " + scene::real_text(end.time) + " s";
+      at.refuse("column", " = \"", check.column, "\" is no column of the history.csv of this scene; ",
+                scene::suggestion(check.column, names));
     if (check.to && !(check.from < *check.to && *check.to <= end.time))
-      refuse(".to", " = " + scene::real_text(*check.to) + " s must lie between from and " + end_text);
-    if (check.from >= end.time)
-      refuse(".from", " = " + scene::real_text(check.from) + " s must be before " + end_text);
-    const bool is_frequency = check.statistic == Statistic::frequency;
-    if (is_frequency && !(check.value > 0.0)) refuse(".value", " must be positive: it is a frequency");
-    if (check.statistic == Statistic::amplitude && check.value < 0.0)
-      refuse(".value", " must not be negative: it is an amplitude");
-    if (check.value != 0.0 && check.tolerance > 1.0)
-      refuse(".tolerance", " is relative to value: above 1 it accepts the opposite sign too");
+      at.refuse("to", " = ", *check.to, " s must lie between from and ", end.key, " = ", end.time, " s");
+    at.refuse_if(check.from >= end.time, "from", " = ", check.from, " s must be before ", end.key, " = ",
+                 end.time, " s");
+    at.refuse_if(check.statistic == Statistic::frequency && !(check.value > 0.0), "value",
+                 " must be positive: it is a frequency");
+    at.refuse_if(check.statistic == Statistic::amplitude && check.value < 0.0, "value",
+                 " must not be negative: it is an amplitude");
+    at.refuse_if(check.value != 0.0 && check.tolerance > 1.0, "tolerance",
+                 " is relative to value: above 1 it accepts the opposite sign too");
   }
 }
 

@@ -29,7 +29,7 @@ void declare_history_checks(scene::Table& verify, std::vector<HistoryCheck>& che
 
 /// Requires that a run until `end`, whose history.csv has `columns` beside the time, can be checked. Throws
 /// `Failure` (invalid_scene).
-void require_measurable(const scene::Table& root, const std::vector<HistoryCheck>& checks,
+void require_measurable(const scene::Place& root, const std::vector<HistoryCheck>& checks,
                         const OutputRequest& output, const EndTime& end,
                         const std::vector<run::Column>& columns);
 

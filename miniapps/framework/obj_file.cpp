@@ -225,18 +225,17 @@ void warn_of_near_vertices(const ObjContents& contents, const std::string& file,
 
 ObjContents parse_obj(std::string_view text, const std::string& name) { return ObjParser(text, name).run(); }
 
-mesh::Mesh read_obj(const scene::Table& root, const ObjKeys& keys, const std::filesystem::path& scene_file,
+mesh::Mesh read_obj(const scene::Place& at, double metres, const std::filesystem::path& scene_file,
                     std::string& file, std::vector<std::string>& notices) {
   const std::filesystem::path path =
       std::filesystem::absolute(scene_file.parent_path() / file).lexically_normal();
   file = path.string();
   std::error_code unreadable;
-  if (!std::filesystem::is_regular_file(path, unreadable))
-    scene::contradict(
-        root, keys.file,
-        keys.file + ": " +
-            (std::filesystem::exists(path, unreadable) ? file + " is no file but a directory or device"
-                                                       : "there is no file " + file));
+  if (!std::filesystem::is_regular_file(path, unreadable)) {
+    if (std::filesystem::exists(path, unreadable))
+      at.refuse("file", ": ", file, " is no file but a directory or device");
+    at.refuse("file", ": there is no file ", file);
+  }
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   if (!stream || !(text << stream.rdbuf()))
@@ -245,12 +244,10 @@ mesh::Mesh read_obj(const scene::Table& root, const ObjKeys& keys, const std::fi
   check_obj(contents, file);
   warn_of_near_vertices(contents, file, notices);
   for (mesh::Vector& x : contents.mesh.rest)
-    for (double& coordinate : x) coordinate *= keys.metres;
+    for (double& coordinate : x) coordinate *= metres;
   const double extent = mesh::extent_of(contents.mesh);
-  if (!(extent >= 1e-60 && extent <= 1e60))
-    scene::contradict(root, keys.scale,
-                      keys.scale + " = " + scene::real_text(keys.metres) + ": " + file + " would be " +
-                          scene::real_text(extent) + " m large; it must be between 1e-60 and 1e60 m");
+  at.refuse_if(!(extent >= 1e-60 && extent <= 1e60), "scale", " = ", metres, ": ", file, " would be ", extent,
+               " m large; it must be between 1e-60 and 1e60 m");
   return contents.mesh;
 }
 

@@ -16,12 +16,6 @@ struct ObjContents {
   std::vector<std::size_t> face_of;  ///< number of the face of each triangle, from 0
 };
 
-/// Key of a scene that names a mesh file, and the metres per unit of length that another one gives.
-struct ObjKeys {
-  std::string file, scale;
-  double metres = 1.0;
-};
-
 /// Name of vertex or face k in errors. k counts from 0, the number in the file from 1. Does not throw.
 std::string part_of_file(const std::string& kind, std::size_t k);
 
@@ -36,11 +30,12 @@ ObjContents parse_obj(std::string_view text, const std::string& name);
 /// triangles, edges of three triangles, and repeated lines.
 void check_obj(const ObjContents& contents, const std::string& name);
 
-/// Reads and checks the file that a key of a scene names, relative to the folder of the scene. Replaces its
-/// name by its absolute path, so that the resolved scene is valid in any folder. The mesh is in m. Adds a
+/// Reads and checks the file that the key `file` of a table names, relative to the folder of the scene.
+/// Replaces its name by its absolute path, so that the resolved scene is valid in any folder. The mesh is in
+/// m; `metres` of the key `scale`: m per unit of length of the file. Adds a
 /// sentence to `notices` for vertices nearer than 1e-6 of its extent. Throws Failure(invalid_scene), also for
 /// a file that is missing or cannot be read, and for an extent that is not between 1e-60 and 1e60 m.
-mesh::Mesh read_obj(const scene::Table& root, const ObjKeys& keys, const std::filesystem::path& scene_file,
+mesh::Mesh read_obj(const scene::Place& at, double metres, const std::filesystem::path& scene_file,
                     std::string& file, std::vector<std::string>& notices);
 
 /// Coordinates and indices of a mesh as text: of a file, the content counts in a fingerprint, not the path.

@@ -1,13 +1,10 @@
 #include "miniapps/framework/scene_keys.hpp"
 
 #include <algorithm>
-#include <sstream>
-
-#include "common/scene/codec.hpp"
-#include "common/scene/node.hpp"
-#include "common/scene/read.hpp"
 
 namespace drogue::framework {
+
+using scene::between, scene::not_negative;
 
 double next_stop(const OutputRequest& output, double time, double end_time) {
   const auto later = std::ranges::find_if(output.times, [time](double each) { return each > time; });
@@ -19,60 +16,54 @@ bool is_output_time(const OutputRequest& output, double time) {
 }
 
 void declare_app(scene::Table& root, const std::string& name, std::string& description) {
-  root.value("app", scene::fixed_codec(name), "The program the scene is for").required().decisive();
+  root.value("app", scene::fixed_codec(name), "The program the scene is for",
+             {.required = true, .decisive = true});
   root.value("description", scene::text_codec(description), "Sentence for --list-scenes");
 }
 
 void declare_output_times(scene::Table& table, OutputRequest& output, const scene::Key& fields) {
-  table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
-      .unit("s")
-      .at_least(0.0)
-      .default_text("the end time where fields are given")
-      .when(
-          [&output, &fields] { return !output.fields.empty() || (!fields.given() && !output.times.empty()); },
-          "with fields", "fields");
+  table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written",
+              {.unit = "s",
+               .range = not_negative,
+               .when = {[&output, &fields] {
+                          return !output.fields.empty() || (!fields.given() && !output.times.empty());
+                        },
+                        "with fields", "fields"},
+               .default_text = "the end time where fields are given"});
 }
 
 void declare_output_intervals(scene::Table& table, OutputRequest& output) {
-  table
-      .value("history_every", scene::integer_codec(output.history_every),
-             "Steps between rows of history.csv; 0: none")
-      .range(0, 1e9);
-  table
-      .value("restart_every", scene::integer_codec(output.restart_every),
-             "Steps between restart files; 0: none, not even at the end of the run")
-      .range(0, 1e9)
-      .default_text("none between; one at the end");
+  table.value("history_every", output.history_every, "Steps between rows of history.csv; 0: none",
+              {.range = between(0, 1e9)});
+  table.value("restart_every", output.restart_every,
+              "Steps between restart files; 0: none, not even at the end of the run",
+              {.range = between(0, 1e9), .default_text = "none between; one at the end"});
 }
 
 void declare_output(scene::Table& table, OutputRequest& output, const std::vector<std::string>& names) {
   const scene::Key& fields =
-      table.value("fields", scene::names_codec(output.fields, names), "Fields written to fields.h5")
-          .default_text("all of them where times are given, else none");
+      table.value("fields", scene::names_codec(output.fields, names), "Fields written to fields.h5",
+                  {.default_text = "all of them where times are given, else none"});
   declare_output_times(table, output, fields);
   declare_output_intervals(table, output);
 }
 
-void complete_output(const scene::Table& root, OutputRequest& output,
+void complete_output(const scene::Place& root, OutputRequest& output,
                      const std::vector<std::string>& default_fields, const EndTime& end) {
   if (!output.times.empty() && output.fields.empty()) output.fields = default_fields;
   if (!output.fields.empty() && !root.given("output.times")) output.times = {end.time};
-  if (!output.fields.empty() && output.times.empty())
-    scene::contradict(root, "output.times", "output.times is empty, yet output.fields names fields");
+  root.refuse_if(!output.fields.empty() && output.times.empty(), "output.times",
+                 " is empty, yet output.fields names fields");
   if (!output.times.empty() && output.times.back() > end.time)
-    scene::contradict(root, "output.times",
-                      "output.times: " + scene::real_text(output.times.back()) + " is later than " + end.key +
-                          " = " + scene::real_text(end.time));
+    root.refuse("output.times", ": ", output.times.back(), " is later than ", end.key, " = ", end.time);
 }
 
-std::string too_many_steps(const scene::Table& root, const std::string& what, double dt, double end_time,
+std::string too_many_steps(const scene::Place& root, const std::string& what, double dt, double end_time,
                            std::int64_t most) {
   const double steps = end_time / dt;
   if (steps <= static_cast<double>(most) || root.given("run.max_steps")) return {};
-  std::ostringstream text;
-  text.precision(3);
-  text << what << dt << " s: " << steps << " steps to run.end_time, more than run.max_steps = " << most;
-  return text.str();
+  return scene::sentence(what, scene::rough_text(dt), " s: ", scene::rough_text(steps),
+                         " steps to run.end_time, more than run.max_steps = ", most);
 }
 
 }  // namespace drogue::framework

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/table.hpp"
+#include "common/scene/read.hpp"
 
 namespace drogue::framework {
 
@@ -44,13 +44,13 @@ void declare_output(scene::Table& table, OutputRequest& output, const std::vecto
 
 /// Fills in the defaults of [output]: `default_fields` where only times are given, the end time where only
 /// fields are given. Throws `Failure` (invalid_scene) for fields without times and for times after `end`.
-void complete_output(const scene::Table& root, OutputRequest& output,
+void complete_output(const scene::Place& root, OutputRequest& output,
                      const std::vector<std::string>& default_fields, const EndTime& end);
 
 /// Sentence that begins with `what` sets steps of `dt`, s, where a run until run.end_time takes more of them
 /// than run.max_steps = `most` and the scene leaves that at its default; else empty. Throws only
 /// std::bad_alloc.
-[[nodiscard]] std::string too_many_steps(const scene::Table& root, const std::string& what, double dt,
+[[nodiscard]] std::string too_many_steps(const scene::Place& root, const std::string& what, double dt,
                                          double end_time, std::int64_t most);
 
 }  // namespace drogue::framework

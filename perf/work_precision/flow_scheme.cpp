@@ -14,10 +14,10 @@ void FlowScheme::apply(flow::Parameters& p) const {
 }
 
 void FlowScheme::describe(Solution& s) const {
-  const std::string advection_name = parachute_app::advection_name(advection),
-                    time_name = parachute_app::time_scheme_name(time),
-                    diffusion_name = parachute_app::diffusion_name(diffusion),
-                    pressure_name = parachute_app::pressure_solver_name(pressure);
+  const std::string advection_name = parachute_app::name_of(advection),
+                    time_name = parachute_app::name_of(time),
+                    diffusion_name = parachute_app::name_of(diffusion),
+                    pressure_name = parachute_app::name_of(pressure);
   s.label = advection_name + " " + time_name + " " + pressure_name;
   if (diffusion_name != "explicit") s.label += " " + diffusion_name;
   s.scheme = {{"advection", advection_name},

@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
 #include "kernels/reference/gas/exact_riemann.hpp"
 #include "miniapps/framework/scene_keys.hpp"
@@ -15,9 +14,7 @@
 namespace drogue::gas_app {
 namespace {
 
-using scene::contradict;
-using scene::real_text;
-using scene::Table;
+using scene::Place, scene::sentence;
 
 /// Largest ratio of initial pressures that the FP32 part of the split precision resolves.
 constexpr double split_pressure_ratio = 1e11;
@@ -26,115 +23,96 @@ constexpr double split_pressure_ratio = 1e11;
 /// quarters of their size at least; a mesh that is hardly finer has the same error.
 constexpr std::int64_t least_refinement = 4;
 
-std::string domain_text(const gas::Parameters& parameters) {
-  return "the domain [" + real_text(parameters.x_min) + ", " + real_text(parameters.x_max) + "]";
+std::string domain_text(const gas::Parameters& p) {
+  return sentence("the domain [", p.x_min, ", ", p.x_max, "]");
 }
 
 bool inside(const gas::Parameters& parameters, double x) {
   return x > parameters.x_min && x < parameters.x_max;
 }
 
-void check_mesh(const Table& root, const GasScene& scene) {
+void check_mesh(const Place& root, const GasScene& scene) {
   const gas::Parameters& parameters = scene.parameters;
   const double length = parameters.x_max - parameters.x_min;
   const double largest = std::max(std::abs(parameters.x_min), std::abs(parameters.x_max));
   const double spacing = std::numeric_limits<double>::epsilon() * largest;
-  if (!std::isfinite(length) || length / static_cast<double>(parameters.cells) < 16.0 * spacing) {
-    contradict(root, "mesh.domain",
-               "mesh.domain: " + domain_text(parameters) + " cannot be divided into " +
-                   std::to_string(parameters.cells) + " cells whose centres differ in FP64");
-  }
+  root.refuse_if(!std::isfinite(length) || length / static_cast<double>(parameters.cells) < 16.0 * spacing,
+                 "mesh.domain", ": ", domain_text(parameters), " cannot be divided into ", parameters.cells,
+                 " cells whose centres differ in FP64");
 }
 
-void check_boundary(const Table& root, const gas::Parameters& parameters) {
+void check_boundary(const Place& root, const gas::Parameters& parameters) {
   const bool left = parameters.left == gas::Boundary::periodic;
   const bool right = parameters.right == gas::Boundary::periodic;
   if (left == right) return;
   const std::string here = left ? "boundary.left" : "boundary.right";
   const std::string other = left ? "boundary.right" : "boundary.left";
-  contradict(root, here, here + " = \"periodic\" needs " + other + " = \"periodic\" too");
+  root.refuse(here, " = \"periodic\" needs ", other, " = \"periodic\" too");
 }
 
-void check_riemann(const Table& root, const GasScene& scene) {
+void check_riemann(const Place& root, const GasScene& scene) {
   const double x0 = scene.initial.riemann->x0;
-  if (!inside(scene.parameters, x0)) {
-    contradict(root, "initial.riemann.x0",
-               "initial.riemann.x0 = " + real_text(x0) + " is not inside " + domain_text(scene.parameters));
-  }
+  root.refuse_if(!inside(scene.parameters, x0), "initial.riemann.x0", " = ", x0, " is not inside ",
+                 domain_text(scene.parameters));
 }
 
-void check_regions(const Table& root, const GasScene& scene) {
+void check_regions(const Place& root, const GasScene& scene) {
   const std::vector<Region>& regions = scene.initial.regions;
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    const std::string path = "initial.regions[" + std::to_string(i) + "]";
+    const Place at = root.at("initial.regions", i);
     const bool last = i + 1 == regions.size();
     if (!regions[i].until && !last)
-      contradict(root, path + ".rho", path + " needs \"until\": only the last region has none");
+      at.contradict("rho", at.path(), " needs \"until\": only the last region has none");
     if (!regions[i].until) continue;
     const double until = *regions[i].until;
-    const std::string shown = path + ".until = " + real_text(until);
-    if (last)
-      contradict(root, path + ".until",
-                 shown + ": the last region reaches the end of the domain and has none");
-    if (!inside(scene.parameters, until)) {
-      contradict(root, path + ".until", shown + " is not inside " + domain_text(scene.parameters));
-    }
-    if (i > 0 && until <= *regions[i - 1].until) {
-      contradict(root, path + ".until",
-                 shown + " is not greater than the one before it, " + real_text(*regions[i - 1].until));
-    }
+    at.refuse_if(last, "until", " = ", until, ": the last region reaches the end of the domain and has none");
+    at.refuse_if(!inside(scene.parameters, until), "until", " = ", until, " is not inside ",
+                 domain_text(scene.parameters));
+    if (i > 0 && until <= *regions[i - 1].until)
+      at.refuse("until", " = ", until, " is not greater than the one before it, ", *regions[i - 1].until);
   }
 }
 
 /// Refuses an exact solution of two half spaces that the ends of the domain have disturbed by the end of the
 /// run. Waves leave through an outflow.
-void check_exact_riemann(const Table& root, const GasScene& scene) {
+void check_exact_riemann(const Place& root, const GasScene& scene) {
   const gas::Parameters& p = scene.parameters;
-  const std::string key = "verify.exact = \"riemann\" is the solution without ends: ";
-  if (p.left == gas::Boundary::periodic)
-    contradict(root, "verify.exact", key + "periodic boundaries add a second jump; take \"outflow\"");
+  const std::string without_ends = " = \"riemann\" is the solution without ends: ";
+  root.refuse_if(p.left == gas::Boundary::periodic, "verify.exact", without_ends,
+                 "periodic boundaries add a second jump; take \"outflow\"");
   if (p.left != gas::Boundary::reflecting && p.right != gas::Boundary::reflecting) return;
   const Riemann& r = *scene.initial.riemann;
   const auto state = [](const Primitive& w) { return reference::Primitive{w.rho, w.u, w.p}; };
   const auto is_gas = [](const Primitive& w) { return w.rho > 0.0 && w.p > 0.0; };
   if (!is_gas(r.left) || !is_gas(r.right)) return;  // refused with its cell
   const reference::ExactRiemann exact(state(r.left), state(r.right), p.gamma);
-  const auto check_wall = [&](const std::string& side, const Primitive& gas, std::optional<double> speed,
+  const auto check_wall = [&](const char* side, const Primitive& gas, std::optional<double> speed,
                               double distance) {
-    const std::string wall = "the reflecting " + side + " end ";
-    if (gas.u != 0.0)
-      contradict(root, "verify.exact",
-                 key + wall + "sends a wave from the start, since the gas beside it moves at " +
-                     real_text(gas.u) + " m/s");
-    if (!speed || distance / *speed < 0.0 || scene.end_time <= distance / *speed) return;
-    contradict(root, "verify.exact",
-               key + wall + "reflects a wave from t = " + real_text(distance / *speed) +
-                   " s on, before run.end_time = " + real_text(scene.end_time) + " s");
+    const std::string wall = sentence(without_ends, "the reflecting ", side, " end ");
+    root.refuse_if(gas.u != 0.0, "verify.exact", wall,
+                   "sends a wave from the start, since the gas beside it moves at ", gas.u, " m/s");
+    if (speed && !(distance / *speed < 0.0) && !(scene.end_time <= distance / *speed))
+      root.refuse("verify.exact", wall, "reflects a wave from t = ", distance / *speed,
+                  " s on, before run.end_time = ", scene.end_time, " s");
   };
   if (p.left == gas::Boundary::reflecting) check_wall("left", r.left, exact.left_wave(), p.x_min - r.x0);
   if (p.right == gas::Boundary::reflecting) check_wall("right", r.right, exact.right_wave(), p.x_max - r.x0);
 }
 
-void complete_verify(const Table& root, GasScene& scene) {
+void complete_verify(const Place& root, GasScene& scene) {
   Verify& verify = scene.verify;
-  if (verify.exact == Exact::riemann && !scene.initial.riemann) {
-    contradict(root, "verify.exact", "verify.exact = \"riemann\" needs initial.riemann");
-  }
+  root.refuse_if(verify.exact == Exact::riemann && !scene.initial.riemann, "verify.exact",
+                 " = \"riemann\" needs initial.riemann");
   if (verify.exact == Exact::riemann) check_exact_riemann(root, scene);
-  if (verify.exact == Exact::advection &&
-      (!scene.initial.expression || scene.parameters.left != gas::Boundary::periodic)) {
-    contradict(root, "verify.exact",
-               "verify.exact = \"advection\" needs initial.expression and periodic boundaries");
-  }
+  root.refuse_if(verify.exact == Exact::advection &&
+                     (!scene.initial.expression || scene.parameters.left != gas::Boundary::periodic),
+                 "verify.exact", " = \"advection\" needs initial.expression and periodic boundaries");
   if (!verify.reference) return;
   gas::Parameters& reference = *verify.reference;
-  if (reference.cells / least_refinement < scene.parameters.cells) {
-    contradict(root, "verify.reference.cells",
-               "verify.reference.cells = " + std::to_string(reference.cells) + " is less than " +
-                   std::to_string(least_refinement) +
-                   " times mesh.cells = " + std::to_string(scene.parameters.cells) +
-                   ", so that the reference shares the error of the run");
-  }
+  root.refuse_if(reference.cells / least_refinement < scene.parameters.cells, "verify.reference.cells", " = ",
+                 reference.cells, " is less than ", least_refinement,
+                 " times mesh.cells = ", scene.parameters.cells,
+                 ", so that the reference shares the error of the run");
   reference.gamma = scene.parameters.gamma;
   reference.x_min = scene.parameters.x_min;
   reference.x_max = scene.parameters.x_max;
@@ -144,18 +122,18 @@ void complete_verify(const Table& root, GasScene& scene) {
 }
 
 /// Surveys the initial state at every cell centre. Throws `Failure` for the first invalid one.
-Survey require_gas(const Table& root, const GasScene& scene) {
+Survey require_gas(const Place& root, const GasScene& scene) {
   const Survey seen = survey_initial_state(scene);
   if (seen.first_bad < scene.parameters.cells) {
     const BadCell bad = describe_bad_cell(scene, seen.first_bad);
-    contradict(root, bad.path, bad.sentence);
+    root.contradict(bad.path, bad.sentence);
   }
   return seen;
 }
 
 /// Refuses a given dt with which the run would need more steps than it may take. Notes one that follows from
 /// the CFL condition at the start, since it may grow.
-void check_steps(const Table& root, GasScene& scene, double largest_speed) {
+void check_steps(const Place& root, GasScene& scene, double largest_speed) {
   const gas::Parameters& p = scene.parameters;
   const bool is_fixed = p.fixed_dt > 0.0;
   const double cells = static_cast<double>(p.cells), dx = (p.x_max - p.x_min) / cells;
@@ -163,11 +141,11 @@ void check_steps(const Table& root, GasScene& scene, double largest_speed) {
       root, is_fixed ? "scheme.fixed_dt = " : "the CFL condition limits the first steps to ",
       is_fixed ? p.fixed_dt : p.cfl * dx / largest_speed, scene.end_time, p.max_steps);
   if (text.empty()) return;
-  if (is_fixed) contradict(root, "scheme.fixed_dt", text);
+  if (is_fixed) root.contradict("scheme.fixed_dt", text);
   scene.notices.push_back(text + ", at which a run fails");
 }
 
-void check_initial(const Table& root, GasScene& scene) {
+void check_initial(const Place& root, GasScene& scene) {
   const Survey seen = require_gas(root, scene);
   check_steps(root, scene, seen.speed_max);
   if (scene.verify.reference) {
@@ -176,20 +154,18 @@ void check_initial(const Table& root, GasScene& scene) {
     require_gas(root, finer);
   }
   const double ratio = seen.p_max / seen.p_min;
-  if (scene.parameters.precision == gas::Precision::split && ratio > split_pressure_ratio) {
-    contradict(root, "scheme.precision",
-               "scheme.precision = \"split\" does its nonlinear part in FP32, which does not carry the ratio "
-               "of initial pressures " +
-                   real_text(ratio) + " of this scene; at most 1e11 is allowed");
-  }
-  if (scene.verify.exact == Exact::advection && !seen.uniform_flow()) {
-    contradict(root, "verify.exact", "verify.exact = \"advection\" needs initial u and p that do not vary");
-  }
+  root.refuse_if(scene.parameters.precision == gas::Precision::split && ratio > split_pressure_ratio,
+                 "scheme.precision",
+                 " = \"split\" does its nonlinear part in FP32, which does not carry the ratio of initial "
+                 "pressures ",
+                 ratio, " of this scene; at most 1e11 is allowed");
+  root.refuse_if(scene.verify.exact == Exact::advection && !seen.uniform_flow(), "verify.exact",
+                 " = \"advection\" needs initial u and p that do not vary");
 }
 
 }  // namespace
 
-void complete_and_check(const Table& root, GasScene& scene) {
+void complete_and_check(const Place& root, GasScene& scene) {
   check_mesh(root, scene);
   check_boundary(root, scene.parameters);
   if (scene.initial.riemann) check_riemann(root, scene);

@@ -13,7 +13,9 @@ namespace drogue::parachute_app {
 class BodyMotion {
  public:
   explicit BodyMotion(const Body& body)
-      : _along{function(body, 0), function(body, 1), function(body, 2)}, _moves(body.moves()) {}
+      : _along{SpaceTimeFunction(body.motion[0]), SpaceTimeFunction(body.motion[1]),
+               SpaceTimeFunction(body.motion[2])},
+        _moves(body.moves()) {}
 
   [[nodiscard]] bool moves() const { return _moves; }
   /// Displacement at a time, s, in m.
@@ -22,10 +24,6 @@ class BodyMotion {
   }
 
  private:
-  static SpaceTimeFunction function(const Body& body, std::size_t axis) {
-    return SpaceTimeFunction(body.motion[axis].empty() ? "0" : body.motion[axis]);
-  }
-
   std::array<SpaceTimeFunction, 3> _along;
   bool _moves;
 };

@@ -1,15 +1,11 @@
-#include "miniapps/parachute/bodies/body_overlap.hpp"
-
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <string>
-#include <vector>
 
-#include "common/scene/read.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "miniapps/parachute/bodies/body_motion.hpp"
 #include "miniapps/parachute/canopy/periodic_images.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -106,7 +102,7 @@ Surface surface_at(const mesh::Mesh& mesh, const BodyMotion& motion, double time
 
 }  // namespace
 
-void check_body_overlaps(const scene::Table& root, FlowScene& scene) {
+void check_body_overlaps(const scene::Place& root, FlowScene& scene) {
   if (scene.bodies.size() < 2) return;
   std::vector<BodyMotion> motions(scene.bodies.begin(), scene.bodies.end());
   std::vector<mesh::Mesh> meshes;
@@ -121,36 +117,32 @@ void check_body_overlaps(const scene::Table& root, FlowScene& scene) {
     for (std::size_t i = 0; i < surfaces.size(); ++i)
       for (std::size_t k = 0; k < i; ++k) {
         const Body &body = scene.bodies[i], &other = scene.bodies[k];
-        if (step > 0 && body.motion == other.motion) continue;
+        const bool move_together = body.motion == other.motion;
+        if (step > 0 && move_together) continue;
         const double edge = std::min(body.largest_edge(), other.largest_edge());
         if (!cross(surfaces[i], surfaces[k], displacement * edge)) continue;
-        const std::string name = "body[" + std::to_string(i) + "]",
-                          other_name = "body[" + std::to_string(k) + "]";
-        if (body.motion == other.motion)
-          scene.notices.push_back(name + " overlaps " + other_name +
-                                  ": each has a share of the force on both together");
-        else
-          scene::contradict(root, name + (body.moves() ? ".motion" : ".centre"),
-                            name + " crosses " + other_name + " at t = " + scene::real_text(time) +
-                                " s: bodies that move against each other may touch, and not overlap");
+        const scene::Place at = root.at("body", i);
+        if (!move_together)
+          at.contradict(body.moves() ? "motion" : "centre", at.path(), " crosses ", scene::element("body", k),
+                        " at t = ", time,
+                        " s: bodies that move against each other may touch, and not overlap");
+        scene.notices.push_back(scene::sentence(at.path(), " overlaps ", scene::element("body", k),
+                                                ": each has a share of the force on both together"));
       }
   }
 }
 
-void check_canopies_beside_bodies(const scene::Table& root, const FlowScene& scene) {
+void check_canopies_beside_bodies(const scene::Place& root, const FlowScene& scene, const Sheets& sheets) {
   if (scene.bodies.empty() || scene.canopies.empty()) return;
-  const Sheets sheets =
-      make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density, scene.parameters.viscosity);
   const SheetParts parts = parts_of(scene.bodies, sheets);
   for (const reference::Intersection& found :
        reference::intersections(sheets.positions, sheets.fabric.mesh.triangles, sheets.fabric.mesh.lines)) {
     const std::size_t one = parts.of(found.segment[0]),
                       other = parts.of(sheets.fabric.mesh.triangles[found.triangle][0]),
                       body = std::min(one, other), canopy = std::max(one, other);
-    if (body >= parts.bodies || canopy < parts.bodies) continue;
-    scene::contradict(root, parts.name(canopy) + ".centre",
-                      parts.name(canopy) + " with its lines crosses " + parts.name(body) +
-                          " at the start: cloth and lines cannot pass a body");
+    if (body < parts.bodies && canopy >= parts.bodies)
+      root.contradict(parts.name(canopy) + ".centre", parts.name(canopy), " with its lines crosses ",
+                      parts.name(body), " at the start: cloth and lines cannot pass a body");
   }
 }
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
-#include "common/scene/read.hpp"
 #include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -32,7 +31,9 @@ class Section {
 
   /// Covers the cells whose centre line a triangle crosses, also beyond periodic sides. Returns its projected
   /// area, m^2.
-  double cover(const std::array<mesh::Vector, 3>& corner) {
+  double cover(const std::array<int, 3>& triangle, const std::vector<mesh::Vector>& positions) {
+    std::array<mesh::Vector, 3> corner{};
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = positions[static_cast<std::size_t>(triangle[k])];
     const auto side = [&](std::size_t from, std::size_t to, double a, double b) {
       const double along = corner[to][_across] - corner[from][_across],
                    up = corner[to][_last] - corner[from][_last];
@@ -83,10 +84,8 @@ class Section {
 /// True if the fluid of a channel along an axis cannot leave it sideways.
 bool has_sides(const flow::Parameters& p, std::size_t axis) {
   for (const std::size_t across : {(axis + 1) % 3, (axis + 2) % 3})
-    for (std::size_t end = 0; end < 2; ++end)
-      if (const BoundaryKind kind = p.boundary[2 * across + end].kind;
-          kind == BoundaryKind::inflow || kind == BoundaryKind::outflow)
-        return false;
+    for (const std::size_t side : {2 * across, 2 * across + 1})
+      if (is_open(p.boundary[side].kind)) return false;
   return p.cells[axis] > 1;
 }
 
@@ -94,11 +93,7 @@ bool has_sides(const flow::Parameters& p, std::size_t axis) {
 double cover(Section& section, const Body& body) {
   const mesh::Mesh mesh = mesh_of(body);
   double area = 0.0;
-  for (const auto& corners : mesh.triangles) {
-    std::array<mesh::Vector, 3> corner{};
-    for (std::size_t k = 0; k < 3; ++k) corner[k] = mesh.rest[static_cast<std::size_t>(corners[k])];
-    area += section.cover(corner);
-  }
+  for (const auto& corners : mesh.triangles) area += section.cover(corners, mesh.rest);
   return area;
 }
 
@@ -121,20 +116,11 @@ bool is_free(const flow::Parameters& p, std::size_t axis) {
   return low == high && (low == BoundaryKind::periodic || low == BoundaryKind::outflow);
 }
 
-bool is_zero(const std::string& text) { return text.empty() || SpaceTimeFunction(text).constant() == 0.0; }
-
-/// True if the displacement of a body along an axis changes in time.
-bool moves_along(const Body& body, std::size_t axis) {
-  return !body.motion[axis].empty() && !SpaceTimeFunction(body.motion[axis]).constant();
-}
-
 /// True if fluid must pass a body that closes the channel along an axis with a prescribed flow rate.
 bool must_be_passed(const FlowScene& scene, const Body& body, std::size_t axis) {
-  bool flows = false;
-  for (std::size_t end = 0; end < 2; ++end)
-    flows = flows || (scene.parameters.boundary[2 * axis + end].kind == BoundaryKind::inflow &&
-                      !is_zero(scene.velocity[axis]));
-  return flows || moves_along(body, axis);
+  const auto* const sides = &scene.parameters.boundary[2 * axis];
+  const bool has_inflow = sides[0].kind == BoundaryKind::inflow || sides[1].kind == BoundaryKind::inflow;
+  return (has_inflow && constant_value(scene.velocity[axis]) != 0.0) || !constant_value(body.motion[axis]);
 }
 
 bool is_impermeable(const Body& body) { return body.porosity.law == PorosityLaw::none; }
@@ -181,7 +167,7 @@ std::vector<coupling::ClosingSheet> closing_sheets(const FlowScene& scene) {
   return sheets;
 }
 
-void check_closed_channels(const scene::Table& root, const FlowScene& scene) {
+void check_closed_channels(const scene::Place& root, const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   const bool has_own_step = p.fixed_dt > 0.0 || root.given("run.max_dt");
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -191,56 +177,48 @@ void check_closed_channels(const scene::Table& root, const FlowScene& scene) {
       const Body& body = scene.bodies[i];
       const bool are_several = are_jointly_closing(scene, body, axis);
       if (body.mount || (closed_part(p, body, axis) == 0.0 && !are_several)) continue;
-      const std::string name = "body[" + std::to_string(i) + "]",
-                        closes = name + (are_several ? " with others" : "") + " closes the channel along " +
-                                 axis_names[axis];
+      const scene::Place at = root.at("body", i);
+      const std::string closes =
+          scene::sentence(are_several ? " with others" : "", " closes the channel along ", axis_names[axis]);
       const auto beside = are_several ? bodies_beside(scene, body, axis) : std::vector{&body};
-      if (std::ranges::all_of(beside, [](const Body* other) { return is_impermeable(*other); }) &&
-          !is_free(p, axis) && must_be_passed(scene, body, axis))
-        scene::contradict(root, name,
-                          closes +
-                              " and is impermeable, while the sides of the domain prescribe how much "
-                              "fluid flows there: it would have to pass the body; give it porosity, or "
-                              "another size, or sides that are both \"periodic\" or both \"outflow\"");
+      at.refuse_if(std::ranges::all_of(beside, [](const Body* other) { return is_impermeable(*other); }) &&
+                       !is_free(p, axis) && must_be_passed(scene, body, axis),
+                   "", closes,
+                   " and is impermeable, while the sides of the domain prescribe how much fluid flows there: "
+                   "it would have to pass the body; give it porosity, or another size, or sides that are "
+                   "both \"periodic\" or both \"outflow\"");
       if ((are_several || !is_flat(body, p, axis)) && !has_own_step)
-        scene::contradict(root, "run",
-                          "missing key \"run.max_dt\": " + closes + ", and is not one flat body normal to " +
-                              axis_names[axis] + "; its force follows the flow within some " +
-                              std::to_string(p.cells[axis]) + " steps");
+        root.contradict("run", "missing key \"run.max_dt\": ", at.path(), closes,
+                        ", and is not one flat body normal to ", axis_names[axis],
+                        "; its force follows the flow within some ", p.cells[axis], " steps");
       if (!is_impermeable(body) || are_several) continue;
-      if (is_free(p, axis) && has_impermeable && moved != body.motion[axis])
-        scene::contradict(root, name,
-                          closes +
-                              " and is impermeable, as another body that moves otherwise: the fluid "
-                              "between them, which is incompressible, would have to pass");
+      at.refuse_if(is_free(p, axis) && has_impermeable && moved != body.motion[axis], "", closes,
+                   " and is impermeable, as another body that moves otherwise: the fluid between them, which "
+                   "is incompressible, would have to pass");
       has_impermeable = true, moved = body.motion[axis];
     }
   }
 }
 
-void note_narrow_channels(const scene::Table& root, FlowScene& scene) {
+void note_narrow_channels(const scene::Place& root, FlowScene& scene, const Sheets& sheets) {
   constexpr double wide = 0.6;
   const flow::Parameters& p = scene.parameters;
   if (!scene.has_sheets() || p.fixed_dt > 0.0 || root.given("run.max_dt")) return;
-  const Sheets sheets = make_all_sheets(scene.bodies, scene.canopies, p.density, p.viscosity, scene.flags);
   const SheetParts parts = parts_of(scene.bodies, sheets);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!has_sides(p, axis)) continue;
     std::vector<Section> sections(parts.ends.size(), Section(p, axis));
-    for (const auto& corners : sheets.fabric.mesh.triangles) {
-      std::array<mesh::Vector, 3> corner{};
-      for (std::size_t k = 0; k < 3; ++k) corner[k] = sheets.positions[static_cast<std::size_t>(corners[k])];
-      sections[parts.of(corners[0])].cover(corner);
-    }
+    for (const auto& corners : sheets.fabric.mesh.triangles)
+      sections[parts.of(corners[0])].cover(corners, sheets.positions);
     for (std::size_t part = 0; part < sections.size(); ++part) {
       // Of bodies that close a channel, the step is exact or needs a given bound.
       const bool is_body = part < parts.bodies,
                  is_treated = is_body && (scene.bodies[part].mount || sections[part].is_covered());
       if (is_treated || sections[part].covered_part() < wide) continue;
-      scene.notices.push_back(parts.name(part) + " covers most of the channel along " + axis_names[axis] +
-                              (is_body ? "" : " at the start") +
-                              ": its force follows sudden changes of the flow within some " +
-                              std::to_string(p.cells[axis]) + " steps; run.max_dt shortens them");
+      scene.notices.push_back(scene::sentence(parts.name(part), " covers most of the channel along ",
+                                              axis_names[axis], is_body ? "" : " at the start",
+                                              ": its force follows sudden changes of the flow within some ",
+                                              p.cells[axis], " steps; run.max_dt shortens them"));
     }
   }
 }

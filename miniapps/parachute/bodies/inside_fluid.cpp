@@ -41,26 +41,23 @@ double inside_volume(const Body& body, const flow::Parameters& p) {
   return sides.one_sided ? 0.0 : mesh::enclosed_volume(surface, sides);
 }
 
-InsideFluid::InsideFluid(const Body& body, const flow::Parameters& p) {
-  if (!body.moves() || body.porosity.law != PorosityLaw::none) return;
-  _mass = p.density * inside_volume(body, p);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (!body.motion[axis].empty()) _motion[axis].emplace(body.motion[axis]);
+InsideFluid::InsideFluid(const Body& body, const flow::Parameters& p) : _motion(body) {
+  if (body.moves() && body.porosity.law == PorosityLaw::none) _mass = p.density * inside_volume(body, p);
 }
 
 fabric::Vector InsideFluid::inertia(double time, double dt) {
   fabric::Vector force{};
-  if (!(dt > 0.0)) return force;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!_motion[axis]) continue;
-    SpaceTimeFunction& x = *_motion[axis];
-    const auto velocity = [&](double at) {
-      // There may be no displacement before time 0.
-      const double before = std::max(at - 0.5 * dt, 0.0), after = at + 0.5 * dt;
-      return (x({}, after) - x({}, before)) / (after - before);
-    };
-    force[axis] = _mass * (velocity(time) - velocity(time - dt)) / dt;
-  }
+  if (!moves() || !(dt > 0.0)) return force;
+  const auto velocity = [&](double at) {
+    // There may be no displacement before time 0.
+    const double before = std::max(at - 0.5 * dt, 0.0), after = at + 0.5 * dt;
+    const fabric::Vector from = _motion.at(before), to = _motion.at(after);
+    fabric::Vector result{};
+    for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = (to[axis] - from[axis]) / (after - before);
+    return result;
+  };
+  const fabric::Vector now = velocity(time), before = velocity(time - dt);
+  for (std::size_t axis = 0; axis < 3; ++axis) force[axis] = _mass * (now[axis] - before[axis]) / dt;
   return force;
 }
 

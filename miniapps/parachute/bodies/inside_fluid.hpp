@@ -1,10 +1,7 @@
 #pragma once
 
-#include <array>
-#include <optional>
-
-#include "miniapps/parachute/bodies/body.hpp"
-#include "miniapps/parachute/scene/functions.hpp"
+#include "kernels/flow/parameters.hpp"
+#include "miniapps/parachute/bodies/body_motion.hpp"
 
 namespace drogue::parachute_app {
 
@@ -13,7 +10,7 @@ namespace drogue::parachute_app {
 /// body. Not thread-safe.
 class InsideFluid {
  public:
-  /// For a body in a domain. Throws only std::bad_alloc.
+  /// For a body in a domain. Throws std::invalid_argument for an invalid expression.
   InsideFluid(const Body& body, const flow::Parameters& p);
 
   /// True unless the body is at rest, open, or lets the fluid through. Does not throw.
@@ -25,7 +22,7 @@ class InsideFluid {
 
  private:
   double _mass = 0.0;  ///< kg
-  std::array<std::optional<SpaceTimeFunction>, 3> _motion;
+  BodyMotion _motion;
 };
 
 /// Volume of the fluid inside a body without its retraction, m^3; 0 of an open one. A tube that spans a

@@ -1,132 +1,91 @@
-#include "miniapps/parachute/canopy/canopy_check.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <optional>
-#include <sstream>
-#include <string>
 
-#include "common/scene/node.hpp"
-#include "common/scene/read.hpp"
 #include "kernels/fabric/contact/features.hpp"
-#include "miniapps/parachute/bodies/body_check.hpp"
 #include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/canopy/stiffness.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
 namespace {
 
 using fabric::Vector;
-using scene::contradict;
-using scene::real_text;
-using scene::rounded_text;
-using scene::Table;
+using scene::element, scene::Place, scene::rough_text, scene::rounded_text;
 
 constexpr double most_canopy_vertices = 1048576.0;  // 2^20
 
-std::string name_of(std::size_t index) { return "canopy[" + std::to_string(index) + "]"; }
-
 /// Key that places a canopy.
-std::string place_key(const Canopy& canopy, const std::string& name) {
-  return name + (canopy.payload.shared ? ".payload.shared" : ".centre");
-}
+std::string place_key(const Canopy& canopy) { return canopy.payload.shared ? "payload.shared" : "centre"; }
 
-void check_measures(const Table& root, const Canopy& canopy, const std::string& name) {
-  if (canopy.vent == 0.0 && canopy.reinforcement.vent > 0.0)
-    contradict(root, name + ".reinforcement.vent", name + ".reinforcement.vent: this canopy has no vent");
-  if (canopy.vent == 0.0 && canopy.vent_lines)
-    contradict(root, name + ".vent_lines", name + ".vent_lines: this canopy has no vent");
-  if (canopy.perturbation.amplitude > 0.25 * canopy.edge_length)
-    contradict(root, name + ".perturbation.amplitude",
-               name + ".perturbation.amplitude = " + real_text(canopy.perturbation.amplitude) +
-                   " m exceeds a quarter of edge_length, " + real_text(0.25 * canopy.edge_length) + " m");
-  const double radius = canopy.skirt_radius();
-  if (canopy.vent >= canopy.diameter)
-    contradict(root, name + ".vent",
-               name + ".vent = " + real_text(canopy.vent) + " m leaves nothing of a canopy of " +
-                   real_text(canopy.diameter) + " m diameter: it must be smaller");
-  const double narrowing = std::abs(0.5 * canopy.diameter - radius);
-  if (canopy.has_skirt() && canopy.skirt.length < narrowing)
-    contradict(root, name + ".skirt.length",
-               name + ".skirt.length = " + real_text(canopy.skirt.length) +
-                   " m: the skirt does not reach from a radius of " + real_text(0.5 * canopy.diameter) +
-                   " m to one of " + real_text(radius) + " m; at least " + real_text(narrowing) + " m");
-  if (canopy.has_skirt() && canopy.shape == CanopyShape::partly_closed)
-    contradict(
-        root, name + ".shape",
-        name + ".shape = \"partly-closed\" needs kind = \"flat-circular\", whose cloth folds to a cone");
-  if (canopy.kind == CanopyKind::drum && canopy.shape == CanopyShape::partly_closed)
-    contradict(root, name + ".shape",
-               name + ".shape = \"partly-closed\": a drum is flat but for its deflection");
-  if (canopy.kind == CanopyKind::drum && std::abs(canopy.deflection) > 0.5 * radius)
-    contradict(root, name + ".deflection",
-               name + ".deflection = " + real_text(canopy.deflection) +
-                   " m exceeds half of the radius of the drum, " + real_text(0.5 * radius) + " m");
-  if (canopy.has_lines() && canopy.lines.length <= radius)
-    contradict(root, name + ".lines.length",
-               name + ".lines.length = " + real_text(canopy.lines.length) +
-                   " m: the lines do not reach the payload from a skirt of " + real_text(radius) +
-                   " m radius; they must be longer");
-  const double least = std::sin(std::numbers::pi / canopy.gores);
-  if (canopy.shape == CanopyShape::partly_closed && canopy.closure <= least)
-    contradict(root, name + ".closure",
-               name + ".closure = " + real_text(canopy.closure) + ": the folds of " +
-                   std::to_string(canopy.gores) + " gores would meet at the axis; it must be larger than " +
-                   real_text(least));
+void check_measures(const Place& at, const Canopy& canopy) {
+  const bool has_vent = canopy.vent > 0.0, is_drum = canopy.kind == CanopyKind::drum,
+             is_closed = canopy.shape == CanopyShape::partly_closed;
+  const double radius = canopy.skirt_radius(), flat_radius = 0.5 * canopy.diameter,
+               narrowing = std::abs(flat_radius - radius),
+               least_closure = std::sin(std::numbers::pi / canopy.gores);
+  at.refuse_if(!has_vent && canopy.reinforcement.vent > 0.0, "reinforcement.vent",
+               ": this canopy has no vent");
+  at.refuse_if(!has_vent && canopy.vent_lines, "vent_lines", ": this canopy has no vent");
+  at.refuse_if(canopy.perturbation.amplitude > 0.25 * canopy.edge_length, "perturbation.amplitude", " = ",
+               canopy.perturbation.amplitude, " m exceeds a quarter of edge_length, ",
+               0.25 * canopy.edge_length, " m");
+  at.refuse_if(canopy.vent >= canopy.diameter, "vent", " = ", canopy.vent,
+               " m leaves nothing of a canopy of ", canopy.diameter, " m diameter: it must be smaller");
+  at.refuse_if(canopy.has_skirt() && canopy.skirt.length < narrowing, "skirt.length", " = ",
+               canopy.skirt.length, " m: the skirt does not reach from a radius of ", flat_radius,
+               " m to one of ", radius, " m; at least ", narrowing, " m");
+  at.refuse_if(canopy.has_skirt() && is_closed, "shape",
+               " = \"partly-closed\" needs kind = \"flat-circular\", whose cloth folds to a cone");
+  at.refuse_if(is_drum && is_closed, "shape", " = \"partly-closed\": a drum is flat but for its deflection");
+  at.refuse_if(is_drum && std::abs(canopy.deflection) > 0.5 * radius, "deflection", " = ", canopy.deflection,
+               " m exceeds half of the radius of the drum, ", 0.5 * radius, " m");
+  at.refuse_if(canopy.has_lines() && canopy.lines.length <= radius, "lines.length", " = ",
+               canopy.lines.length, " m: the lines do not reach the payload from a skirt of ", radius,
+               " m radius; they must be longer");
+  at.refuse_if(is_closed && canopy.closure <= least_closure, "closure", " = ", canopy.closure,
+               ": the folds of ", canopy.gores, " gores would meet at the axis; it must be larger than ",
+               least_closure);
 }
 
 /// A reefing line that is stretched from the start on would pull the skirt together at once.
-void check_reefing(const Table& root, const Canopy& canopy, const std::string& name) {
+void check_reefing(const Place& at, const Canopy& canopy) {
   if (!canopy.reefing) return;
-  const std::string key = name + ".reefing.length";
-  const double side = 2.0 * std::sin(std::numbers::pi / canopy.gores),
+  const double length = canopy.reefing->length, side = 2.0 * std::sin(std::numbers::pi / canopy.gores),
                around = canopy.gores * side * canopy.starting_skirt_radius(),
                open = canopy.gores * side * canopy.skirt_radius();
-  if (canopy.reefing->length < (1.0 - 1e-9) * around)
-    contradict(root, key,
-               key + " = " + real_text(canopy.reefing->length) +
-                   " m is shorter than the skirt at the start, " + real_text(around) +
-                   " m around; shape = \"partly-closed\" with a smaller closure shortens it");
-  if (canopy.reefing->length >= open)
-    contradict(root, key,
-               key + " = " + real_text(canopy.reefing->length) + " m does not reef: it must be less than " +
-                   real_text(open) + " m, the length around the skirt");
+  at.refuse_if(length < (1.0 - 1e-9) * around, "reefing.length", " = ", length,
+               " m is shorter than the skirt at the start, ", around,
+               " m around; shape = \"partly-closed\" with a smaller closure shortens it");
+  at.refuse_if(length >= open, "reefing.length", " = ", length, " m does not reef: it must be less than ",
+               open, " m, the length around the skirt");
 }
 
 /// Cuts after the end of the run would not happen.
-void check_cuts(const Table& root, const FlowScene& scene, const Canopy& canopy, const std::string& name) {
+void check_cuts(const Place& at, const Canopy& canopy, double end_time) {
   const auto check = [&](const std::string& key, const std::optional<double>& time) {
-    if (time && *time > scene.end_time)
-      contradict(root, key,
-                 key + " = " + real_text(*time) + " s is later than run.end_time = " +
-                     real_text(scene.end_time) + " s; a run that continues this one may have it");
+    if (time && *time > end_time)
+      at.refuse(key, " = ", *time, " s is later than run.end_time = ", end_time,
+                " s; a run that continues this one may have it");
   };
-  check(name + ".payload.release", canopy.payload.release);
-  if (canopy.reefing) check(name + ".reefing.cut", canopy.reefing->cut);
+  check("payload.release", canopy.payload.release);
+  if (canopy.reefing) check("reefing.cut", canopy.reefing->cut);
 }
 
-void check_edges(const Table& root, const flow::Parameters& p, const Canopy& canopy,
-                 const std::string& name) {
+void check_edges(const Place& at, const flow::Parameters& p, const Canopy& canopy) {
   double width = cell_width(p, 0);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (p.cells[axis] == 1)
-      contradict(root, name, name + ": the grid has one cell along " + axis_names[axis]);
+    at.refuse_if(p.cells[axis] == 1, "", ": the grid has one cell along ", axis_names[axis]);
     width = std::min(width, cell_width(p, axis));
   }
-  const std::string key = name + ".edge_length";
   const double longest = largest_edge_in_cells * width;
-  if (canopy.edge_length > (1.0 + 1e-9) * longest)
-    contradict(root, key,
-               key + " = " + real_text(canopy.edge_length) +
-                   " m is too coarse: the cloth leaks on cells of " + real_text(width) + " m; at most " +
-                   real_text(longest) + " m");
+  at.refuse_if(canopy.edge_length > (1.0 + 1e-9) * longest, "edge_length", " = ", canopy.edge_length,
+               " m is too coarse: the cloth leaks on cells of ", width, " m; at most ", longest, " m");
 }
 
-void check_size(const Table& root, const Canopy& canopy, const std::string& name) {
-  const std::string key = name + ".edge_length";
+void check_size(const Place& at, const Canopy& canopy) {
   // Counting takes as long as there are rings, of three vertices at least.
   const double along = 0.5 * canopy.diameter + (canopy.has_skirt() ? canopy.skirt.length : 0.0);
   bool is_too_large = 3.0 * along / canopy.edge_length > most_canopy_vertices;
@@ -134,9 +93,7 @@ void check_size(const Table& root, const Canopy& canopy, const std::string& name
     const std::vector<int> sizes = ring_sizes(canopy);
     is_too_large = std::accumulate(sizes.begin(), sizes.end(), 0.0) > most_canopy_vertices;
   }
-  if (is_too_large)
-    contradict(root, key,
-               key + " = " + real_text(canopy.edge_length) + " m: the vertices are more than 2^20");
+  at.refuse_if(is_too_large, "edge_length", " = ", canopy.edge_length, " m: the vertices are more than 2^20");
 }
 
 /// Duration of the first step of the flow, s; 0 if it is not known.
@@ -145,7 +102,7 @@ double first_dt(const FlowScene& scene) {
   if (p.fixed_dt > 0.0) return p.fixed_dt;
   double rate = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto speed = SpaceTimeFunction(scene.initial_velocity()[axis]).constant();
+    const std::optional<double> speed = constant_value(scene.initial_velocity()[axis]);
     if (!speed) return 0.0;
     rate += std::abs(*speed) / cell_width(p, axis);
   }
@@ -154,23 +111,18 @@ double first_dt(const FlowScene& scene) {
 
 /// Signals are answered between steps of the flow: one must not hold more steps of the cloth than pass within
 /// a second or so.
-void check_stiffness(const Table& root, const FlowScene& scene, const Canopy& canopy, const CanopyMesh& mesh,
-                     const std::string& name) {
+void check_stiffness(const Place& at, const FlowScene& scene, const Canopy& canopy, const CanopyMesh& mesh) {
   const StiffPart part = stiffest_part(canopy, mesh);
   const double dt = first_dt(scene), steps = part.frequency * dt;
-  if (steps <= static_cast<double>(coupling::most_substeps)) return;
-  std::ostringstream text;
-  text.precision(3);
-  text << name << "." << part.key << ": " << part.value << " " << part.unit << " needs some " << steps
-       << " steps of the cloth in each step of the flow, of " << dt << " s; at most "
-       << coupling::most_substeps << ", with " << part.remedy << " " << part.key
-       << ", a larger edge_length or a smaller "
-       << (scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.max_dt");
-  contradict(root, name + "." + part.key, text.str());
+  at.refuse_if(
+      !(steps <= static_cast<double>(coupling::most_substeps)), part.key, ": ", rough_text(part.value), " ",
+      part.unit, " needs some ", rough_text(steps), " steps of the cloth in each step of the flow, of ",
+      rough_text(dt), " s; at most ", coupling::most_substeps, ", with ", part.remedy, " ", part.key,
+      ", a larger edge_length or a smaller ", scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.max_dt");
 }
 
 /// The forces of cloth act up to one cell beyond it.
-void check_inside(const Table& root, const flow::Parameters& p, const std::vector<Vector>& positions,
+void check_inside(const Place& root, const flow::Parameters& p, const std::vector<Vector>& positions,
                   const std::string& key, const std::string& name) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) continue;
@@ -178,11 +130,7 @@ void check_inside(const Table& root, const flow::Parameters& p, const std::vecto
     const double margin = cell_width(p, axis), least = p.low[axis] + margin, most = p.high[axis] - margin;
     const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
     if (low[axis] >= least - rounding && high[axis] <= most + rounding) continue;
-    contradict(root, key,
-               name + " with its payload reaches from " + rounded_text(low[axis]) + " to " +
-                   rounded_text(high[axis]) + " m along " + axis_names[axis] +
-                   ", beyond the cells beside the sides of the domain: it must lie between " +
-                   rounded_text(least) + " and " + rounded_text(most) + " m");
+    refuse_beyond_sides(root, key, name + " with its payload", axis, {low[axis], high[axis]}, {least, most});
   }
 }
 
@@ -213,156 +161,134 @@ std::vector<Vector> displaced(std::vector<Vector> points, const Vector& by) {
 /// Checks that no triangles of a canopy cross those of a body or an earlier canopy, or their images beyond
 /// periodic sides: then, vertices of both lie within an edge of each other. `cloths`: vertices of the
 /// canopies so far, the last one included.
-void check_overlaps(const Table& root, const FlowScene& scene, const std::vector<std::vector<Vector>>& cloths,
+void check_overlaps(const Place& root, const FlowScene& scene, const std::vector<std::vector<Vector>>& cloths,
                     const std::vector<std::vector<Vector>>& bodies) {
   const std::size_t i = cloths.size() - 1;
   const Canopy& canopy = scene.canopies[i];
+  const std::string name = element("canopy", i), image = "the image, beyond periodic sides, of ";
   const auto check = [&](const std::vector<Vector>& other, double edge_length, const std::string& what) {
     const double distance = canopy.edge_length + edge_length;
     if (are_near(other, cloths[i], distance))
-      contradict(root, place_key(canopy, name_of(i)),
-                 name_of(i) + " overlaps " + what + " at the start: they come closer than " +
-                     real_text(distance) + " m, the sum of their edge lengths");
+      root.at(name).contradict(place_key(canopy), name, " overlaps ", what,
+                               " at the start: they come closer than ", distance,
+                               " m, the sum of their edge lengths");
   };
-  const std::string image = "the image, beyond periodic sides, of ";
   std::vector<Vector> periods = scene.has_fluid() ? periods_of(scene.parameters) : std::vector<Vector>{};
-  for (const Vector& period : periods)
-    check(displaced(cloths[i], period), canopy.edge_length, image + name_of(i));
+  for (const Vector& period : periods) check(displaced(cloths[i], period), canopy.edge_length, image + name);
   for (std::size_t k = periods.size(); k-- > 0;)
     periods.push_back({-periods[k][0], -periods[k][1], -periods[k][2]});
   const auto check_all = [&](const std::vector<Vector>& other, double edge_length, const std::string& what) {
     check(other, edge_length, what);
     for (const Vector& period : periods) check(displaced(other, period), edge_length, image + what);
   };
-  for (std::size_t k = 0; k < i; ++k) check_all(cloths[k], scene.canopies[k].edge_length, name_of(k));
+  for (std::size_t k = 0; k < i; ++k)
+    check_all(cloths[k], scene.canopies[k].edge_length, element("canopy", k));
   for (std::size_t k = 0; k < bodies.size(); ++k)
-    check_all(bodies[k], scene.bodies[k].largest_edge(), "body[" + std::to_string(k) + "]");
+    check_all(bodies[k], scene.bodies[k].largest_edge(), element("body", k));
 }
 
-/// The grid moves with the first payload.
-void check_frame(const Table& root, const FlowScene& scene) {
+}  // namespace
+
+void check_frame(const Place& root, const FlowScene& scene) {
   if (scene.frame != Frame::follow) return;
-  const std::string follow = "grid.frame = \"follow\"";
-  if (scene.canopies.empty()) contradict(root, "grid.frame", follow + " applies only with a [[canopy]]");
-  if (std::ranges::none_of(scene.open_axes(), [](bool open) { return open; }))
-    contradict(root, "grid.frame",
-               follow + " needs an axis whose sides are \"inflow\" or \"outflow\": the grid moves along it");
-  if (!scene.bodies.empty())
-    contradict(root, "grid.frame", follow + " cannot be combined with a [[body]], which stays in its place");
-  if (!scene.canopies.front().has_lines())
-    contradict(root, "grid.frame", follow + " needs a payload; canopy[0] has none");
+  const std::string key = "grid.frame", follow = " = \"follow\"";
+  root.refuse_if(scene.canopies.empty(), key, follow, " applies only with a [[canopy]]");
+  root.refuse_if(std::ranges::none_of(scene.open_axes(), [](bool open) { return open; }), key, follow,
+                 " needs an axis whose sides are \"inflow\" or \"outflow\": the grid moves along it");
+  root.refuse_if(!scene.bodies.empty(), key, follow,
+                 " cannot be combined with a [[body]], which stays in its place");
+  root.refuse_if(!scene.canopies.front().has_lines(), key, follow, " needs a payload; canopy[0] has none");
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
-    if (scene.canopies[i].payload.fixed && !scene.canopies[i].payload.shared)
-      contradict(root, "grid.frame",
-                 follow + " needs payloads that move freely; " + name_of(i) + ".payload.fixed is true");
+    root.refuse_if(scene.canopies[i].payload.fixed && !scene.canopies[i].payload.shared, key, follow,
+                   " needs payloads that move freely; ", element("canopy", i), ".payload.fixed is true");
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
     for (const std::size_t axis : {0U, 1U})
-      if (scene.canopies[i].payload.guided && scene.open_axes()[axis])
-        contradict(root, "grid.frame",
-                   follow + " moves along " + axis_names[axis] + ", whose sides are open; " + name_of(i) +
-                       ".payload.guided keeps the payload from it");
-  const auto require_constant = [&](const std::string& key, const VectorExpression& velocity) {
+      root.refuse_if(scene.canopies[i].payload.guided && scene.open_axes()[axis], key, follow,
+                     " moves along ", axis_names[axis], ", whose sides are open; ", element("canopy", i),
+                     ".payload.guided keeps the payload from it");
+  const auto require_constant = [&](const std::string& of, const VectorExpression& velocity) {
     for (const std::string& component : velocity)
-      if (!component.empty() && !SpaceTimeFunction(component).constant())
-        contradict(root, key, key + " = " + scene::shortened(component) + " must be a number with " + follow);
+      root.refuse_if(!constant_value(component), of, " = ", scene::shortened(component),
+                     " must be a number with ", key, follow);
   };
   require_constant("fluid.velocity", scene.velocity);
   for (std::size_t side = 0; side < 6; ++side)
     require_constant(std::string("grid.wall_velocity.") + side_names[side], scene.wall_velocity[side]);
 }
 
-void check_contact(const Table& root, const FlowScene& scene) {
+void check_contact(const Place& root, const FlowScene& scene, const fabric::Mesh& mesh) {
   if (!scene.contact) return;
-  const double height = fabric::shortest_altitude(
-      make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density, scene.parameters.viscosity)
-          .fabric.mesh);
-  if (scene.thickness < height) return;
-  contradict(root, "coupling.thickness",
-             "coupling.thickness = " + real_text(scene.thickness) +
-                 " m must be less than the least height of a triangle, " + real_text(height) +
-                 " m, with contact");
+  const double height = fabric::shortest_altitude(mesh);
+  root.refuse_if(!(scene.thickness < height), "coupling.thickness", " = ", scene.thickness,
+                 " m must be less than the least height of a triangle, ", height, " m, with contact");
 }
 
-/// Explicit coupling needs cloth that outweighs the air that moves with it, sharp coupling prescribed motion.
-void check_method(const Table& root, const FlowScene& scene) {
-  if (scene.coupling.method == coupling::CouplingMethod::sharp)
-    contradict(root, "coupling.method",
-               "coupling.method = \"sharp\" takes a [[body]] and no [[canopy]]: the force on a free vertex "
-               "would jump where cloth passes the centre of a cell");
+void check_method(const Place& root, const FlowScene& scene) {
+  const std::string key = "coupling.method";
+  root.refuse_if(scene.coupling.method == coupling::CouplingMethod::sharp && !scene.canopies.empty(), key,
+                 " = \"sharp\" takes a [[body]] and no [[canopy]]: the force on a free vertex would jump "
+                 "where cloth passes the centre of a cell");
   if (!scene.is_explicit() || scene.allow_unstable) return;
   for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
     const Canopy& canopy = scene.canopies[i];
     const double ratio = scene.added_mass_ratio(canopy);
-    if (ratio <= 1.0) continue;
-    std::ostringstream text;
-    text.precision(3);
-    text << "coupling.method = \"explicit\": waves as long as " << name_of(i) << ", " << canopy.diameter
-         << " m, move " << ratio * canopy.area_density << " kg/m^2 of fluid, " << ratio << " times the "
-         << canopy.area_density
-         << " kg/m^2 of its cloth; forces that act a step late need at most 1, \"spread\" takes any cloth";
-    contradict(root, "coupling.method", text.str());
+    root.refuse_if(!(ratio <= 1.0), key, " = \"explicit\": waves as long as ", element("canopy", i), ", ",
+                   rough_text(canopy.diameter), " m, move ", rough_text(ratio * canopy.area_density),
+                   " kg/m^2 of fluid, ", rough_text(ratio), " times the ", rough_text(canopy.area_density),
+                   " kg/m^2 of its cloth; forces that act a step late need at most 1, \"spread\" takes any "
+                   "cloth");
   }
 }
 
-}  // namespace
-
-void check_and_place_canopies(const Table& root, std::vector<Canopy>& canopies) {
+void check_and_place_canopies(const Place& root, std::vector<Canopy>& canopies) {
   for (std::size_t i = 0; i < canopies.size(); ++i) {
     const std::optional<int> shared = canopies[i].payload.shared;
     if (!shared) continue;
-    const std::string key = name_of(i) + ".payload.shared";
-    const std::string given = key + " = " + std::to_string(*shared);
-    if (*shared >= static_cast<int>(i))
-      contradict(root, key, given + ": it must be the number of an earlier canopy, from 0");
-    const Canopy& owner = canopies[static_cast<std::size_t>(*shared)];
-    if (owner.payload.shared || !owner.has_lines())
-      contradict(root, key, given + ": this canopy has no payload of its own");
+    const Place at = root.at("canopy", i);
+    const std::string key = "payload.shared";
+    at.refuse_if(*shared >= static_cast<int>(i), key, " = ", *shared,
+                 ": it must be the number of an earlier canopy, from 0");
+    const auto payload = static_cast<std::size_t>(*shared);
+    at.refuse_if(canopies[payload].payload.shared || !canopies[payload].has_lines(), key, " = ", *shared,
+                 ": this canopy has no payload of its own");
     // With risers, the force of each canopy on the payload is that of one line.
-    for (const std::size_t of : {static_cast<std::size_t>(*shared), i})
+    for (const std::size_t of : {payload, i})
       if (!canopies[of].riser)
-        contradict(root, key,
-                   "missing key \"" + name_of(of) + ".riser\" (needed with " + key +
-                       "): it leads to the common payload");
+        at.contradict(key, "missing key \"", element("canopy", of), ".riser\" (needed with ", at.path(key),
+                      "): it leads to the common payload");
   }
   place_at_shared_payloads(canopies);
 }
 
-void check_canopies(const Table& root, const FlowScene& scene) {
-  if (scene.canopies.empty()) return check_frame(root, scene);
+void check_canopies(const Place& root, const FlowScene& scene) {
+  if (scene.canopies.empty()) return;
   const flow::Parameters& p = scene.parameters;
+  const Canopy& first = scene.canopies.front();
   std::vector<std::vector<Vector>> cloths, bodies;
   for (const Body& body : scene.bodies) bodies.push_back(sorted_by_x(mesh_of(body).rest));
   for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
     const Canopy& canopy = scene.canopies[i];
-    const std::string name = name_of(i);
-    check_measures(root, canopy, name);
-    check_reefing(root, canopy, name);
-    check_cuts(root, scene, canopy, name);
+    const Place at = root.at("canopy", i);
+    check_measures(at, canopy);
+    check_reefing(at, canopy);
+    check_cuts(at, canopy, scene.end_time);
     if (scene.has_fluid()) {
-      check_porosity(root, scene, name, canopy.porosity);
-      check_edges(root, p, canopy, name);
+      check_porosity(at, p, canopy.porosity);
+      check_edges(at, p, canopy);
     }
-    check_size(root, canopy, name);
-    const Canopy& first = scene.canopies.front();
-    if (canopy.membrane_modulus != first.membrane_modulus)
-      contradict(root, name + ".membrane_modulus",
-                 name + ".membrane_modulus differs from that of canopy[0]; all canopies have the same one");
-    if (canopy.poisson != first.poisson)
-      contradict(root, name + ".poisson",
-                 name + ".poisson differs from that of canopy[0]; all canopies have the same one");
+    check_size(at, canopy);
+    const char* const differs = " differs from that of canopy[0]; all canopies have the same one";
+    at.refuse_if(canopy.membrane_modulus != first.membrane_modulus, "membrane_modulus", differs);
+    at.refuse_if(canopy.poisson != first.poisson, "poisson", differs);
     CanopyMesh mesh = make_canopy(canopy);
     if (scene.has_fluid()) {
-      check_stiffness(root, scene, canopy, mesh, name);
-      check_inside(root, p, mesh.positions, place_key(canopy, name), name);
+      check_stiffness(at, scene, canopy, mesh);
+      check_inside(root, p, mesh.positions, at.path(place_key(canopy)), at.path());
     }
     mesh.positions.resize(mesh.cloth_vertices);
     cloths.push_back(sorted_by_x(std::move(mesh.positions)));
     check_overlaps(root, scene, cloths, bodies);
   }
-  check_contact(root, scene);
-  if (!scene.has_fluid()) return;
-  check_frame(root, scene);
-  check_method(root, scene);
 }
 
 }  // namespace drogue::parachute_app

@@ -20,8 +20,9 @@ bool varies(const std::string& text) {
 
 }  // namespace
 
-SpaceTimeFunction::SpaceTimeFunction(const std::string& text) : _text(text), _expression(text, variables) {
-  if (!varies(text)) _constant = _expression(std::array{0.0, 0.0, 0.0, 0.0});
+SpaceTimeFunction::SpaceTimeFunction(const std::string& text)
+    : _text(text.empty() ? "0" : text), _expression(_text, variables) {
+  if (!varies(_text)) _constant = _expression(std::array{0.0, 0.0, 0.0, 0.0});
 }
 
 std::vector<double> SpaceTimeFunction::sample_times(double end) const {

@@ -16,7 +16,7 @@ namespace drogue::parachute_app {
 /// every thread needs a copy.
 class SpaceTimeFunction {
  public:
-  /// Throws `expression::ExpressionError` for an invalid expression.
+  /// 0 for an empty text. Throws `expression::ExpressionError` for an invalid expression.
   explicit SpaceTimeFunction(const std::string& text);
 
   /// Value for all places and times; nothing if it varies. Does not throw.
@@ -35,6 +35,11 @@ class SpaceTimeFunction {
   expression::Expression _expression;
   std::optional<double> _constant;
 };
+
+/// Value of an expression for all places and times; nothing if it varies. Throws as `SpaceTimeFunction`.
+[[nodiscard]] inline std::optional<double> constant_value(const std::string& text) {
+  return SpaceTimeFunction(text).constant();
+}
 
 /// Program of an expression for kernels. Throws std::invalid_argument if it is too long.
 [[nodiscard]] device::ExpressionProgram device_program(const std::string& text);

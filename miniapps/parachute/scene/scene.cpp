@@ -67,7 +67,7 @@ double FlowScene::largest_added_mass_ratio() const {
 std::optional<std::array<double, 3>> FlowScene::stream() const {
   std::array<double, 3> stream{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::optional<double> component = SpaceTimeFunction(velocity[axis]).constant();
+    const std::optional<double> component = constant_value(velocity[axis]);
     if (!component) return std::nullopt;
     stream[axis] = *component;
   }
@@ -93,12 +93,10 @@ bool FlowScene::has_free_sheets() const {
 }
 
 std::array<bool, 3> FlowScene::open_axes() const {
-  const auto is_open = [this](std::size_t side) {
-    const flow::BoundaryKind kind = parameters.boundary[side].kind;
-    return kind == flow::BoundaryKind::inflow || kind == flow::BoundaryKind::outflow;
-  };
   std::array<bool, 3> axes{};
-  for (std::size_t axis = 0; axis < 3; ++axis) axes[axis] = is_open(2 * axis) && is_open(2 * axis + 1);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    axes[axis] =
+        is_open(parameters.boundary[2 * axis].kind) && is_open(parameters.boundary[2 * axis + 1].kind);
   return axes;
 }
 

@@ -41,6 +41,11 @@ enum class Frame {
 enum class AdvectionScheme { central, weno5 };
 enum class Weights { js, z };
 
+/// True for a kind of side through which fluid flows in or out. Does not throw.
+constexpr bool is_open(flow::BoundaryKind kind) {
+  return kind == flow::BoundaryKind::inflow || kind == flow::BoundaryKind::outflow;
+}
+
 /// Types of the low and the high side of an axis.
 using SidePair = std::array<flow::BoundaryKind, 2>;
 
@@ -194,14 +199,6 @@ struct FlowScene {
 /// throw.
 const std::vector<std::string>& field_names();
 
-/// Restriction of a key to scenes with a fluid; `scene` must outlive it.
-[[nodiscard]] inline std::function<bool()> with_fluid(const FlowScene& scene) {
-  return [&scene] { return scene.has_fluid(); };
-}
-
-/// Condition that `with_fluid` puts on a key.
-inline constexpr const char* fluid_condition = "with [fluid]";
-
 /// Width of the cells along an axis, m. Does not throw.
 double cell_width(const flow::Parameters& p, std::size_t axis);
 
@@ -226,14 +223,12 @@ framework::SceneIdentity scene_identity(FlowScene scene);
 /// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
 std::filesystem::path scene_folder();
 
-/// Name of a pressure solver in scenes: auto, fft, diagonalization, hypre-pfmg.
-std::string pressure_solver_name(flow::PressureSolver solver);
-/// Name of a time scheme in scenes: ab2, rk3.
-std::string time_scheme_name(flow::TimeScheme scheme);
-/// Name of a treatment of diffusion in scenes: explicit, crank-nicolson.
-std::string diffusion_name(flow::Diffusion diffusion);
-/// Name of an advection scheme with its weights, in studies: central, weno-js, weno-z.
-std::string advection_name(flow::Advection advection);
+/// Names in scenes of a pressure solver, a time scheme and a treatment of diffusion, and in studies that of
+/// an advection scheme with its weights: central, weno-js, weno-z.
+std::string name_of(flow::PressureSolver solver);
+std::string name_of(flow::TimeScheme scheme);
+std::string name_of(flow::Diffusion diffusion);
+std::string name_of(flow::Advection advection);
 
 /// Markdown page docs/scenes-parachute.md: all keys with type, range, unit, default and meaning.
 std::string document_flow_scene();

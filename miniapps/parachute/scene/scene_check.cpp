@@ -4,110 +4,92 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
-#include "common/scene/node.hpp"
-#include "common/scene/read.hpp"
 #include "kernels/flow/diffusive_step.hpp"
-#include "miniapps/parachute/bodies/body_check.hpp"
-#include "miniapps/parachute/bodies/body_overlap.hpp"
-#include "miniapps/parachute/bodies/closed_channel.hpp"
-#include "miniapps/parachute/canopy/canopy_check.hpp"
-#include "miniapps/parachute/canopy/image_check.hpp"
-#include "miniapps/parachute/flags/flag_check.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
 namespace {
 
 using flow::BoundaryKind;
-using scene::contradict;
-using scene::real_text;
-using scene::Table;
+using scene::Place, scene::rough_text, scene::rounded_text, scene::sentence;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Largest relative difference of inflow and outflow that rounded expressions explain.
 constexpr double flux_tolerance = 1e-10;
 
 std::string key_of_wall(std::size_t side) { return std::string("grid.wall_velocity.") + side_names[side]; }
 
-void check_grid(const Table& root, const flow::Parameters& p) {
+void check_grid(const Place& root, const flow::Parameters& p) {
+  constexpr int least_cells = 4;
+  constexpr double most_cells = 2147483647.0;
   double cells = 1.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    constexpr int least_cells = 4;
-    if (p.cells[axis] > 1 && p.cells[axis] < least_cells)
-      contradict(root, "grid.cells",
-                 "grid.cells[" + std::to_string(axis) + "] = " + std::to_string(p.cells[axis]) +
-                     " is out of range: an axis has 1 cell, or at least 4");
+    root.refuse_if(p.cells[axis] > 1 && p.cells[axis] < least_cells, "grid.cells", "[", axis,
+                   "] = ", p.cells[axis], " is out of range: an axis has 1 cell, or at least 4");
     cells *= p.cells[axis];
     const double length = p.high[axis] - p.low[axis], h = length / p.cells[axis];
     const double rounding =
         std::numeric_limits<double>::epsilon() * std::max(std::abs(p.low[axis]), std::abs(p.high[axis]));
-    if (!std::isfinite(length) || h < 16.0 * rounding)
-      contradict(root, "grid.domain",
-                 std::string("grid.domain: along ") + axis_names[axis] + ", " +
-                     std::to_string(p.cells[axis]) + " cells between " + real_text(p.low[axis]) + " and " +
-                     real_text(p.high[axis]) + " have faces that do not differ in FP64");
+    root.refuse_if(!std::isfinite(length) || h < 16.0 * rounding, "grid.domain", ": along ", axis_names[axis],
+                   ", ", p.cells[axis], " cells between ", p.low[axis], " and ", p.high[axis],
+                   " have faces that do not differ in FP64");
   }
-  constexpr double most_cells = 2147483647.0;
-  if (cells > most_cells)
-    contradict(
-        root, "grid.cells",
-        "grid.cells: " + std::to_string(static_cast<std::int64_t>(cells)) + " cells are more than 2^31 - 1");
+  root.refuse_if(cells > most_cells, "grid.cells", ": ", static_cast<std::int64_t>(cells),
+                 " cells are more than 2^31 - 1");
 }
 
-void complete_sides(const Table& root, FlowScene& scene) {
+void complete_sides(const Place& root, FlowScene& scene) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::optional<SidePair>& sides = scene.sides[axis];
     const std::string key = std::string("grid.boundary.") + axis_names[axis];
     const bool single = scene.parameters.cells[axis] == 1;
     if (!sides && !single)
-      contradict(root, "grid.boundary",
-                 "missing key \"" + key + "\" (needed with more than one cell along " + axis_names[axis] +
-                     "): the sides normal to this axis");
+      root.contradict("grid.boundary", "missing key \"", key, "\" (needed with more than one cell along ",
+                      axis_names[axis], "): the sides normal to this axis");
     if (!sides) sides = SidePair{BoundaryKind::periodic, BoundaryKind::periodic};
     const auto is_refused = [](BoundaryKind kind) {
       return kind != BoundaryKind::periodic && kind != BoundaryKind::slip;
     };
-    if (single && std::ranges::any_of(*sides, is_refused))
-      contradict(root, key,
-                 key + ": with one cell along " + axis_names[axis] + ", its sides are periodic or slip");
+    root.refuse_if(single && std::ranges::any_of(*sides, is_refused), key, ": with one cell along ",
+                   axis_names[axis], ", its sides are periodic or slip");
     for (std::size_t end = 0; end < 2; ++end) scene.parameters.boundary[2 * axis + end].kind = (*sides)[end];
   }
 }
 
-void check_scheme(const Table& root, flow::Parameters& p) {
+void complete_scheme(const Place& root, FlowScene& scene) {
+  flow::Parameters& p = scene.parameters;
+  p.advection = scene.advection == AdvectionScheme::central ? flow::Advection::central
+                : scene.weights == Weights::js              ? flow::Advection::weno_js
+                                                            : flow::Advection::weno_z;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (p.pressure_drop[axis] != 0.0 && p.boundary[2 * axis].kind != BoundaryKind::periodic)
-      contradict(root, "flow.pressure_drop",
-                 std::string("flow.pressure_drop: the axis ") + axis_names[axis] + " has no periodic sides");
+    root.refuse_if(p.pressure_drop[axis] != 0.0 && p.boundary[2 * axis].kind != BoundaryKind::periodic,
+                   "flow.pressure_drop", ": the axis ", axis_names[axis], " has no periodic sides");
   const bool is_implicit = p.diffusion == flow::Diffusion::crank_nicolson;
   if (is_implicit && !root.given("flow.time")) p.time_scheme = flow::TimeScheme::ab2;
-  if (is_implicit && p.time_scheme != flow::TimeScheme::ab2)
-    contradict(root, "flow.diffusion", "flow.diffusion = \"crank-nicolson\" needs flow.time = \"ab2\"");
+  root.refuse_if(is_implicit && p.time_scheme != flow::TimeScheme::ab2, "flow.diffusion",
+                 " = \"crank-nicolson\" needs flow.time = \"ab2\"");
   const double most = flow::stable_cfl(p.time_scheme);
-  if (p.cfl > most)
-    contradict(root, "run.cfl",
-               "run.cfl = " + real_text(p.cfl) + " is unstable: at most " + real_text(most) +
-                   " with flow.time = \"" + (p.time_scheme == flow::TimeScheme::rk3 ? "rk3" : "ab2") + "\"");
+  root.refuse_if(p.cfl > most, "run.cfl", " = ", p.cfl, " is unstable: at most ", most,
+                 " with flow.time = \"", name_of(p.time_scheme), "\"");
 }
 
 /// Sets the velocity of a side: three numbers, or three programs.
-void set_velocity(const Table& root, const std::string& key, const VectorExpression& text,
+void set_velocity(const Place& root, const std::string& key, const VectorExpression& text,
                   flow::Boundary& side) {
-  std::array<SpaceTimeFunction, 3> functions = {SpaceTimeFunction(text[0]), SpaceTimeFunction(text[1]),
-                                                SpaceTimeFunction(text[2])};
   const bool all_constant =
-      std::ranges::all_of(functions, [](const auto& f) { return f.constant().has_value(); });
+      std::ranges::all_of(text, [](const std::string& each) { return constant_value(each).has_value(); });
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (all_constant) {
-      side.velocity[axis] = *functions[axis].constant();
+      side.velocity[axis] = *constant_value(text[axis]);
       continue;
     }
     try {
       side.velocity_expressions.push_back(device_program(text[axis]));
     } catch (const std::invalid_argument& refused) {
-      contradict(root, key, key + "[" + std::to_string(axis) + "]: " + refused.what());
+      root.refuse(key, "[", axis, "]: ", refused.what());
     }
   }
 }
@@ -129,45 +111,43 @@ bool is_closed(const flow::Parameters& p, std::size_t axis) {
 
 /// Checks a prescribed velocity at time 0, and at some of its points during the run, and that walls move
 /// along themselves.
-void check_velocity(const Table& root, const FlowScene& scene, const std::string& key,
+void check_velocity(const Place& root, const FlowScene& scene, const std::string& key,
                     const VectorExpression& text, std::size_t side) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const SpaceTimeFunction velocity(text[axis]);
-    const std::string component = key + "[" + std::to_string(axis) + "] = " + scene::shortened(text[axis]);
+    const std::string component = sentence("[", axis, "] = ", scene::shortened(text[axis]));
     const bool is_wall = scene.parameters.boundary[side].kind == BoundaryKind::wall;
-    if (is_wall && axis == side / 2 && velocity.constant() != 0.0)
-      contradict(root, key, component + " is normal to the wall: it must be 0");
-    if (is_closed(scene.parameters, axis) && velocity.constant() != 0.0)
-      contradict(root, key,
-                 component + " is normal to the slip sides of an axis with one cell: it must be 0");
+    root.refuse_if(is_wall && axis == side / 2 && velocity.constant() != 0.0, key, component,
+                   " is normal to the wall: it must be 0");
+    root.refuse_if(is_closed(scene.parameters, axis) && velocity.constant() != 0.0, key, component,
+                   " is normal to the slip sides of an axis with one cell: it must be 0");
     // Tangential components belong to faces that begin at the edges of the side.
     const Lattice lattice = side_lattice(scene.parameters, side, velocity_field(axis));
-    const auto refuse = [&](std::size_t entry, double time) {
-      contradict(root, key,
-                 component + " is not finite at " + place_text(lattice.place(entry)) + " on the side " +
-                     side_names[side] + " at t = " + real_text(time) + (time > 0.0 ? " s" : ""));
+    const auto require_finite = [&](double value, std::size_t entry, double time) {
+      if (!std::isfinite(value))
+        root.refuse(key, component, " is not finite at ", place_text(lattice.place(entry)), " on the side ",
+                    side_names[side], " at t = ", time, time > 0.0 ? " s" : "");
     };
     const std::vector<double> values = evaluate(velocity, lattice, 0.0);
-    for (std::size_t entry = 0; entry < values.size(); ++entry)
-      if (!std::isfinite(values[entry])) refuse(entry, 0.0);
+    for (std::size_t entry = 0; entry < values.size(); ++entry) require_finite(values[entry], entry, 0.0);
     constexpr std::size_t points = 64;
     for (const double time : velocity.sample_times(scene.end_time))
       for (std::size_t entry = 0; entry < values.size(); entry += 1 + values.size() / points)
-        if (!std::isfinite(velocity(lattice.place(entry), time))) refuse(entry, time);
+        require_finite(velocity(lattice.place(entry), time), entry, time);
   }
 }
 
-void complete_velocities(const Table& root, FlowScene& scene) {
+void complete_velocities(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   for (std::size_t side = 0; side < 6; ++side) {
     const BoundaryKind kind = p.boundary[side].kind;
     const VectorExpression& wall = scene.wall_velocity[side];
-    if (!wall[0].empty() && kind != BoundaryKind::wall)
-      contradict(root, key_of_wall(side), key_of_wall(side) + ": this side is no wall");
+    root.refuse_if(!wall[0].empty() && kind != BoundaryKind::wall, key_of_wall(side),
+                   ": this side is no wall");
     if (kind == BoundaryKind::outflow)  // outside of it: the stream, at rest where that is not uniform
       for (std::size_t axis = 0; axis < 3; ++axis)
         if (!is_closed(p, axis))
-          p.boundary[side].velocity[axis] = SpaceTimeFunction(scene.velocity[axis]).constant().value_or(0.0);
+          p.boundary[side].velocity[axis] = constant_value(scene.velocity[axis]).value_or(0.0);
     const bool is_inflow = kind == BoundaryKind::inflow;
     if (!is_inflow && wall[0].empty()) continue;
     const std::string key = is_inflow ? "fluid.velocity" : key_of_wall(side);
@@ -195,43 +175,39 @@ std::array<double, 2> inflow_at(const FlowScene& scene, double time) {
 
 /// Without an outflow, what flows in must flow out through other inflow sides: checked at several times of
 /// the run.
-void check_net_inflow(const Table& root, const FlowScene& scene) {
+void check_net_inflow(const Place& root, const FlowScene& scene) {
   for (const flow::Boundary& side : scene.parameters.boundary)
     if (side.kind == BoundaryKind::outflow) return;
   constexpr int intervals = 17;
   for (int i = 0; i <= intervals; ++i) {
     const double time = scene.end_time * i / intervals;
     const auto [net, magnitude] = inflow_at(scene, time);
-    if (std::abs(net) > flux_tolerance * magnitude)
-      contradict(root, "fluid.velocity",
-                 "fluid.velocity: at t = " + real_text(time) + " s, " + real_text(net) +
-                     " m^3/s flow into a domain without an outflow; grid.boundary needs an \"outflow\" side");
+    root.refuse_if(std::abs(net) > flux_tolerance * magnitude, "fluid.velocity", ": at t = ", time, " s, ",
+                   net,
+                   " m^3/s flow into a domain without an outflow; grid.boundary needs an \"outflow\" side");
   }
 }
 
 /// Lets the solver check what remains; its sentence becomes that of the scene.
-void check_solver(const Table& root, const flow::Parameters& p) {
+void check_solver(const Place& root, const flow::Parameters& p) {
   try {
     flow::check_parameters(p);
   } catch (const std::invalid_argument& refused) {
-    contradict(root, root.given("flow") ? "flow" : "grid", refused.what());
+    root.contradict(root.given("flow") ? "flow" : "grid", refused.what());
   }
 }
 
-void check_initial(const Table& root, const FlowScene& scene) {
-  const bool own = !scene.initial[0].empty();
-  const std::string key = own ? "initial.velocity" : "fluid.velocity";
+void check_initial(const Place& root, const FlowScene& scene) {
+  const std::string key = scene.initial[0].empty() ? "fluid.velocity" : "initial.velocity";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string& text = scene.initial_velocity()[axis];
     const Lattice lattice = lattice_of(scene.parameters, velocity_field(axis));
     const std::vector<double> values = evaluate(SpaceTimeFunction(text), lattice, 0.0);
-    const auto refuse = [&](const auto& is_bad, const std::string& reason) {
+    const auto refuse = [&](const auto& is_bad, const char* reason) {
       const auto bad = std::ranges::find_if(values, is_bad);
       if (bad == values.end()) return;
-      contradict(root, key,
-                 key + "[" + std::to_string(axis) + "] = " + scene::shortened(text) + " is " + reason +
-                     " at " + place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) +
-                     " at t = 0");
+      root.refuse(key, "[", axis, "] = ", scene::shortened(text), " is ", reason, " at ",
+                  place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))), " at t = 0");
     };
     refuse([](double value) { return !std::isfinite(value); }, "not finite");
     if (is_closed(scene.parameters, axis))
@@ -263,7 +239,7 @@ void note_lasting_forces(FlowScene& scene) {
 }
 
 double least_width(const flow::Parameters& p) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (p.cells[axis] > 1) least = std::min(least, cell_width(p, axis));
   return least;
@@ -275,7 +251,7 @@ double known_speed(const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   double speed = 0.0, gravity = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    speed = std::max(speed, std::abs(SpaceTimeFunction(scene.velocity[axis]).constant().value_or(0.0)));
+    speed = std::max(speed, std::abs(constant_value(scene.velocity[axis]).value_or(0.0)));
     for (const flow::Boundary& side : p.boundary) speed = std::max(speed, std::abs(side.velocity[axis]));
     if (!scene.canopies.empty() || !scene.flags.empty()) gravity = std::hypot(gravity, scene.gravity[axis]);
   }
@@ -288,7 +264,7 @@ double known_speed(const FlowScene& scene) {
 
 /// True if the velocity of the fluid bounds dt by itself: that of the start, and sides that change in time.
 bool fluid_moves(const FlowScene& scene) {
-  const auto is_zero = [](const std::string& text) { return SpaceTimeFunction(text).constant() == 0.0; };
+  const auto is_zero = [](const std::string& text) { return constant_value(text) == 0.0; };
   return !std::ranges::all_of(scene.initial_velocity(), is_zero) ||
          std::ranges::any_of(scene.parameters.boundary,
                              [](const flow::Boundary& side) { return !side.velocity_expressions.empty(); });
@@ -322,12 +298,11 @@ void bound_step_by_mounts(FlowScene& scene) {
     if (given == 0.0) {
       p.max_dt = p.max_dt > 0.0 ? std::min(p.max_dt, enough) : enough;
     } else if (given > mount_step(scene, body, most)) {
-      std::ostringstream text;
-      text.precision(3);
-      text << (p.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ") << given << " s does not resolve body[" << i
-           << "].mount, which oscillates with " << mount_frequency(p, *body.mount) / (2.0 * std::numbers::pi)
-           << " Hz: its frequency will be wrong by more than 5 %; " << enough << " s give it to 0.5 %";
-      scene.notices.push_back(text.str());
+      scene.notices.push_back(sentence(p.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ", rough_text(given),
+                                       " s does not resolve body[", i, "].mount, which oscillates with ",
+                                       rough_text(mount_frequency(p, *body.mount) / (2.0 * std::numbers::pi)),
+                                       " Hz: its frequency will be wrong by more than 5 %; ",
+                                       rough_text(enough), " s give it to 0.5 %"));
     }
   }
 }
@@ -336,7 +311,7 @@ void bound_step_by_mounts(FlowScene& scene) {
 /// the response of the fluid to it for that without diffusion, and corrects this within some nu dt / h^2
 /// steps. Infinite for explicit diffusion, whose steps are shorter.
 double dt_of_sheets_in_implicit_diffusion(const flow::Parameters& p) {
-  if (p.diffusion != flow::Diffusion::crank_nicolson) return std::numeric_limits<double>::infinity();
+  if (p.diffusion != flow::Diffusion::crank_nicolson) return infinity;
   const double h = least_width(p);
   return h * h * p.density / p.viscosity;
 }
@@ -344,18 +319,16 @@ double dt_of_sheets_in_implicit_diffusion(const flow::Parameters& p) {
 /// Notes a given largest dt, s, beyond the one that sheets need in implicit diffusion.
 void note_slow_sheets(FlowScene& scene, double given, double enough) {
   if (given <= 2.0 * enough) return;
-  std::ostringstream text;
-  text.precision(3);
-  text << (scene.parameters.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ") << given
-       << " s: viscosity spreads the force of a sheet over several cells in a step, so that forces follow "
-          "changes of the flow late; "
-       << enough << " s do not";
-  scene.notices.push_back(text.str());
+  scene.notices.push_back(sentence(
+      scene.parameters.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ", rough_text(given),
+      " s: viscosity spreads the force of a sheet over several cells in a step, so that forces follow "
+      "changes of the flow late; ",
+      rough_text(enough), " s do not"));
 }
 
 /// Gives run.max_dt its default. Fluid at rest would leave dt without a bound, while sheets that it moves
 /// need one; steps resolve prescribed motion by themselves.
-void complete_time_step(const Table& root, FlowScene& scene) {
+void complete_time_step(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   const double given = p.fixed_dt > 0.0 ? p.fixed_dt : p.max_dt;
   bound_step_by_mounts(scene);
@@ -367,18 +340,18 @@ void complete_time_step(const Table& root, FlowScene& scene) {
   if (speed > 0.0)
     p.max_dt = std::min(p.max_dt, scene.cfl() * least_width(p) / speed);
   else if (!(scene.canopies.empty() && scene.flags.empty()) && !fluid_moves(scene))
-    contradict(root, "run",
-               "missing key \"run.max_dt\" (needed where neither stream nor gravity moves a sheet): the "
-               "largest dt");
+    root.contradict("run",
+                    "missing key \"run.max_dt\" (needed where neither stream nor gravity moves a sheet): the "
+                    "largest dt");
 }
 
 /// Refuses a dt, a largest one, or a viscosity that limits it, with which the run would need more steps than
 /// it may take.
-void check_steps(const Table& root, const FlowScene& scene) {
+void check_steps(const Place& root, const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   const auto refuse = [&](const std::string& key, const char* sets, double dt, const char* remedy) {
     const std::string text = framework::too_many_steps(root, key + sets, dt, scene.end_time, p.max_steps);
-    if (!text.empty()) contradict(root, key, text + remedy);
+    if (!text.empty()) root.contradict(key, text, remedy);
   };
   if (p.fixed_dt > 0.0) return refuse("run.dt", " = ", p.fixed_dt, "");
   if (!scene.has_fluid()) return;
@@ -389,78 +362,83 @@ void check_steps(const Table& root, const FlowScene& scene) {
 
 /// Refuses gravity under which an edge of cloth would double its length by its own weight: neither the cloth
 /// nor its mesh are meant for it.
-void check_gravity(const Table& root, const FlowScene& scene) {
+void check_gravity(const Place& root, const FlowScene& scene) {
   const auto [x, y, z] = scene.gravity;
   const double gravity = std::hypot(x, y, z);
-  const auto check = [&](const std::string& name, const auto& cloth) {
-    const double most = cloth.membrane_modulus / (cloth.area_density * cloth.edge_length);
-    if (gravity <= most) return;
-    std::ostringstream text;
-    text.precision(3);
-    text << "coupling.gravity: " << gravity << " m/s^2 would stretch an edge of " << name << " of "
-         << cloth.edge_length << " m to twice its length by the weight of its own cloth; at most " << most
-         << " m/s^2";
-    contradict(root, "coupling.gravity", text.str());
+  const auto check_all = [&](const std::string& array, const auto& cloths) {
+    for (std::size_t i = 0; i < cloths.size(); ++i) {
+      const auto& cloth = cloths[i];
+      const double most = cloth.membrane_modulus / (cloth.area_density * cloth.edge_length);
+      root.refuse_if(!(gravity <= most), "coupling.gravity", ": ", rough_text(gravity),
+                     " m/s^2 would stretch an edge of ", scene::element(array, i), " of ",
+                     rough_text(cloth.edge_length),
+                     " m to twice its length by the weight of its own cloth; "
+                     "at most ",
+                     rough_text(most), " m/s^2");
+    }
   };
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
-    check("canopy[" + std::to_string(i) + "]", scene.canopies[i]);
-  for (std::size_t i = 0; i < scene.flags.size(); ++i)
-    check("flag[" + std::to_string(i) + "]", scene.flags[i]);
+  check_all("canopy", scene.canopies);
+  check_all("flag", scene.flags);
 }
 
-void complete_fields(const Table& root, FlowScene& scene) {
+void complete_fields(const Place& root, FlowScene& scene) {
   std::vector<std::string> by_default;
   if (scene.has_fluid()) by_default = {"velocity", "pressure", "vorticity"};
   if (!scene.canopies.empty()) by_default.insert(by_default.end(), {"position", "von_mises"});
   framework::complete_output(root, scene.output, by_default, {scene.end_time, "run.end_time"});
-  const auto of_canopy = std::ranges::find_if(scene.output.fields, is_canopy_field);
-  if (scene.canopies.empty() && of_canopy != scene.output.fields.end())
-    contradict(root, "output.fields", "output.fields: \"" + *of_canopy + "\" needs a [[canopy]]");
-  const auto of_flow = std::ranges::find_if_not(scene.output.fields, is_canopy_field);
-  if (!scene.has_fluid() && of_flow != scene.output.fields.end())
-    contradict(root, "output.fields", "output.fields: \"" + *of_flow + "\" needs [fluid]");
+  for (const std::string& field : scene.output.fields)
+    if (is_canopy_field(field) ? scene.canopies.empty() : !scene.has_fluid())
+      root.refuse("output.fields", ": \"", field, "\" needs ",
+                  is_canopy_field(field) ? "a [[canopy]]" : "[fluid]");
 }
 
 }  // namespace
 
-void complete_and_check(const Table& root, FlowScene& scene) {
-  if (!scene.has_fluid()) {
-    if (scene.canopies.empty())
-      contradict(root, "", "missing table \"fluid\": the fluid, without which a scene needs a [[canopy]]");
-    check_and_place_canopies(root, scene.canopies);
-    check_canopies(root, scene);
-    check_steps(root, scene);
-    check_gravity(root, scene);
-    complete_fields(root, scene);
-    check_verify(root, scene);
-    return;
-  }
+void refuse_beyond_sides(const Place& root, const std::string& key, const std::string& name, std::size_t axis,
+                         std::array<double, 2> extent, std::array<double, 2> allowed, const char* remedy) {
+  root.contradict(key, name, " reaches from ", rounded_text(extent[0]), " to ", rounded_text(extent[1]),
+                  " m along ", axis_names[axis],
+                  ", beyond the cells beside the sides of the domain: it must lie between ",
+                  rounded_text(allowed[0]), " and ", rounded_text(allowed[1]), " m", remedy);
+}
+
+void complete_and_check(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  check_grid(root, p);
-  complete_sides(root, scene);
-  const bool is_central = scene.advection == AdvectionScheme::central;
-  p.advection = is_central                     ? flow::Advection::central
-                : scene.weights == Weights::js ? flow::Advection::weno_js
-                                               : flow::Advection::weno_z;
-  check_scheme(root, p);
-  note_growing_energy(scene);
-  note_lasting_forces(scene);
-  complete_velocities(root, scene);
-  complete_time_step(root, scene);
-  p.horizon = scene.end_time;
-  check_net_inflow(root, scene);
-  check_solver(root, p);
-  check_steps(root, scene);
-  complete_and_check_bodies(root, scene);
+  if (scene.has_fluid()) {
+    check_grid(root, p);
+    complete_sides(root, scene);
+    complete_scheme(root, scene);
+    note_growing_energy(scene);
+    note_lasting_forces(scene);
+    complete_velocities(root, scene);
+    complete_time_step(root, scene);
+    p.horizon = scene.end_time;
+    check_net_inflow(root, scene);
+    check_solver(root, p);
+    check_steps(root, scene);
+    complete_and_check_bodies(root, scene);
+  } else if (scene.canopies.empty()) {
+    root.contradict("", "missing table \"fluid\": the fluid, without which a scene needs a [[canopy]]");
+  }
   check_and_place_canopies(root, scene.canopies);
   check_canopies(root, scene);
-  check_canopies_beside_bodies(root, scene);
-  complete_and_check_flags(root, scene);
-  check_images(root, scene);
-  note_narrow_channels(root, scene);
+  Sheets sheets = make_all_sheets(scene.bodies, scene.canopies, p.density, p.viscosity);
+  check_contact(root, scene, sheets.fabric.mesh);
+  if (scene.has_fluid()) {
+    check_frame(root, scene);
+    check_method(root, scene);
+    check_canopies_beside_bodies(root, scene, sheets);
+    complete_and_check_flags(root, scene);
+    if (!scene.flags.empty()) sheets = make_all_sheets({}, {}, p.density, p.viscosity, scene.flags);
+    check_images(root, scene, sheets);
+    note_narrow_channels(root, scene, sheets);
+  } else {
+    check_steps(root, scene);
+  }
   check_gravity(root, scene);
   complete_fields(root, scene);
   check_verify(root, scene);
+  if (!scene.has_fluid()) return;
   p.watches_extremes = scene.verify.needs_extremes();
   check_initial(root, scene);
 }

@@ -1,16 +1,66 @@
 #pragma once
 
-#include "common/scene/table.hpp"
+#include "common/scene/read.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
+/// Checks of a parachute scene, which throw `Failure` (invalid_scene) at the key in error.
 namespace drogue::parachute_app {
 
 /// Fills in the parameters of the solver and the defaults that depend on other keys; checks combinations of
-/// keys, the velocities of the sides at time 0 and the initial velocity at every face. Throws `Failure`
-/// (invalid_scene) at the key in error.
-void complete_and_check(const scene::Table& root, FlowScene& scene);
+/// keys, the velocities of the sides at time 0 and the initial velocity at every face.
+void complete_and_check(const scene::Place& root, FlowScene& scene);
 
-/// Checks [verify] against the rest of the scene. Throws as `complete_and_check` does.
-void check_verify(const scene::Table& root, const FlowScene& scene);
+/// Checks [verify] against the rest of the scene.
+void check_verify(const scene::Place& root, const FlowScene& scene);
+
+/// Fills in defaults of bodies that depend on their kind, and checks bodies against the grid and the steps.
+void complete_and_check_bodies(const scene::Place& root, FlowScene& scene);
+
+/// Refuses bodies that move against each other and cross, at one of several times of the run, and notes
+/// others that overlap. They may touch.
+void check_body_overlaps(const scene::Place& root, FlowScene& scene);
+
+/// Refuses bodies that close a channel where no flow is possible, or whose flow the coupling would follow
+/// only after many steps, without a given bound of dt.
+void check_closed_channels(const scene::Place& root, const FlowScene& scene);
+
+/// Checks the coefficients that follow from the porosity of a body or canopy.
+void check_porosity(const scene::Place& at, const flow::Parameters& p, const Porosity& porosity);
+
+/// Checks which canopies share payloads, and places them.
+void check_and_place_canopies(const scene::Place& root, std::vector<Canopy>& canopies);
+
+/// Checks every canopy against the grid, the steps, the bodies and the canopies before it.
+void check_canopies(const scene::Place& root, const FlowScene& scene);
+
+/// Checks the thickness of contact against the `mesh` of all sheets.
+void check_contact(const scene::Place& root, const FlowScene& scene, const fabric::Mesh& mesh);
+
+/// Checks that the grid can move with the first payload where it has to.
+void check_frame(const scene::Place& root, const FlowScene& scene);
+
+/// Checks that the canopies suit the coupling: explicit coupling needs cloth that outweighs the air that
+/// moves with it, sharp coupling prescribed motion.
+void check_method(const scene::Place& root, const FlowScene& scene);
+
+/// Refuses canopies that cross a body at the start, with their cloth or their lines. `sheets`: of the scene.
+void check_canopies_beside_bodies(const scene::Place& root, const FlowScene& scene, const Sheets& sheets);
+
+/// Lets flags span the domain along z, and checks them against the grid, the steps and each other.
+void complete_and_check_flags(const scene::Place& root, FlowScene& scene);
+
+/// Refuses sheets that meet an image beyond periodic sides at the start, and bodies in prescribed motion that
+/// meet the image of another one at one of several times of the run.
+void check_images(const scene::Place& root, const FlowScene& scene, const Sheets& sheets);
+
+/// Notes sheets of a complete scene that leave so little of a channel open that nearly all of the fluid has
+/// to stop before them, which the coupling follows within many steps, without a given bound of dt.
+void note_narrow_channels(const scene::Place& root, FlowScene& scene, const Sheets& sheets);
+
+/// Refuses `name`, which reaches from `low` to `high` along an axis, m, beyond the cells beside the sides of
+/// the domain, as a fault of a key. `remedy`: the end of the sentence.
+[[noreturn]] void refuse_beyond_sides(const scene::Place& root, const std::string& key,
+                                      const std::string& name, std::size_t axis, std::array<double, 2> extent,
+                                      std::array<double, 2> allowed, const char* remedy = "");
 
 }  // namespace drogue::parachute_app

@@ -96,9 +96,8 @@ framework::RepeatedRun run_point(const FlowScene& scene, device::Backend backend
 
 study::StudyRow row_of(const FlowScene& scene, framework::RepeatedRun runs) {
   const flow::Parameters& p = scene.parameters;
-  const std::string advection = advection_name(p.advection), time = time_scheme_name(p.time_scheme),
-                    diffusion = diffusion_name(p.diffusion),
-                    pressure = pressure_solver_name(p.pressure_solver);
+  const std::string advection = name_of(p.advection), time = name_of(p.time_scheme),
+                    diffusion = name_of(p.diffusion), pressure = name_of(p.pressure_solver);
   study::StudyRow row = framework::study_row(std::move(runs));
   row.settings = {advection, time, diffusion, pressure};
   row.label = advection + " " + time;

@@ -10,10 +10,8 @@ namespace {
 
 using fabric::Integrator;
 using fabric::Model;
-using scene::Choices;
-using scene::Codec;
-using scene::Key;
-using scene::Table;
+using scene::between, scene::not_negative, scene::positive, scene::Table;
+using scene::Choices, scene::Codec, scene::Condition, scene::Key;
 
 constexpr double most_vertices = 16777216;  // 2^24
 
@@ -52,18 +50,15 @@ Codec axes_codec(std::string& axes) {
 
 /// "auto", which stands for no value, or a number.
 Codec real_or_auto_codec(std::optional<double>& value) {
-  return {"\"auto\" | real",
-          [&value](const scene::Node& node, const scene::Limits& limits) -> std::string {
-            const auto* text = node.as<std::string>();
-            if (text != nullptr && *text == "auto") {
-              value.reset();
-              return {};
-            }
-            if (text != nullptr) return "must be \"auto\" or a number, not " + scene::describe(node);
-            return scene::real_codec(value).read(node, limits);
-          },
-          [&value] { return std::optional(value ? scene::toml_text(*value) : "\"auto\""); },
-          scene::back_to_default(value)};
+  return scene::make_codec(
+      "\"auto\" | real", value,
+      [](const scene::Node& node, const scene::Limits& limits, std::optional<double>& dt) -> std::string {
+        const auto* text = node.as<std::string>();
+        if (text == nullptr) return scene::read_real(node, limits, dt.emplace());
+        dt.reset();
+        return *text == "auto" ? "" : "must be \"auto\" or a number, not " + scene::describe(node);
+      },
+      [](const std::optional<double>& dt) { return dt ? scene::toml_text(*dt) : "\"auto\""; });
 }
 
 Codec fields_codec(std::vector<std::string>& fields) {
@@ -76,18 +71,18 @@ Codec fields_codec(std::vector<std::string>& fields) {
 
 void declare_vector(Table& table, ExpressionVector& value, const std::vector<std::string>& variables,
                     const std::string& what, const std::string& unit) {
-  table.value("x", scene::real_or_expression_codec(value.x, variables), what + " along x").unit(unit);
-  table.value("y", scene::real_or_expression_codec(value.y, variables), what + " along y").unit(unit);
-  table.value("z", scene::real_or_expression_codec(value.z, variables), what + " along z").unit(unit);
+  const std::pair<std::string, std::string&> components[] = {{"x", value.x}, {"y", value.y}, {"z", value.z}};
+  for (const auto& [axis, component] : components)
+    table.value(axis, scene::real_or_expression_codec(component, variables), what + " along " + axis,
+                {.unit = unit});
 }
 
 void declare_vertices(Table& table, int& vertices, double least) {
-  table.value("vertices", scene::integer_codec(vertices), "Number of vertices, about")
-      .range(least, most_vertices);
+  table.value("vertices", vertices, "Number of vertices, about", {.range = between(least, most_vertices)});
 }
 
 void declare_length(Table& table, const std::string& name, double& value, const std::string& help) {
-  table.value(name, scene::real_codec(value), help).unit("m").above(0.0);
+  table.value(name, value, help, {.unit = "m", .range = positive});
 }
 
 void declare_mesh(Table& table, MeshSource& source) {
@@ -98,9 +93,9 @@ void declare_mesh(Table& table, MeshSource& source) {
         declare_length(t, "width", value.width, "Extent along x, from 0");
         declare_length(t, "height", value.height, "Extent along y, from 0");
         declare_vertices(t, value.vertices, 4);
-        t.value("distortion", scene::real_codec(value.distortion),
-                "Largest pseudo-random displacement of inner vertices, as a share of a cell")
-            .range(0.0, 0.2);
+        t.value("distortion", value.distortion,
+                "Largest pseudo-random displacement of inner vertices, as a share of a cell",
+                {.range = between(0.0, 0.2)});
       },
       "Nearly square cells with alternating diagonals in the plane z = 0");
   table.optional_table(
@@ -130,128 +125,105 @@ void declare_mesh(Table& table, MeshSource& source) {
   table.optional_table(
       "string", source.string,
       [](Table& t, mesh::String& value) {
-        t.value("from", vector_codec(value.from), "First end").unit("m");
-        t.value("to", vector_codec(value.to), "Last end").unit("m");
-        t.value("vertices", scene::integer_codec(value.vertices), "Number of vertices")
-            .range(2, most_vertices);
+        t.value("from", vector_codec(value.from), "First end", {.unit = "m"});
+        t.value("to", vector_codec(value.to), "Last end", {.unit = "m"});
+        t.value("vertices", value.vertices, "Number of vertices", {.range = between(2, most_vertices)});
       },
       "A string of equal pieces");
-  table
-      .value(
-          "file", scene::text_codec(source.file),
-          "A Wavefront OBJ file (v, f, l for strings), relative to the scene; larger faces are divided into "
-          "triangles")
-      .default_text("none");
-  table.value("scale", scene::real_codec(source.scale), "Metres per unit of length of the file")
-      .above(0.0)
-      .when([&source] { return !source.file.empty(); }, "with file", "file");
+  table.value(
+      "file", scene::text_codec(source.file),
+      "A Wavefront OBJ file (v, f, l for strings), relative to the scene; larger faces are divided into "
+      "triangles",
+      {.default_text = "none"});
+  table.value("scale", source.scale, "Metres per unit of length of the file",
+              {.range = positive, .when = scene::with_given("file", source.file)});
 }
 
 void declare_material(Table& table, SpringsScene& scene) {
   Fabric& f = scene.fabric;
-  const auto cloth = [&scene] { return scene.has_triangles(); };
-  const auto lines = [&scene] { return scene.has_lines(); };
-  const auto springs = [&f] {
+  const auto is_spring = [&f] {
     return f.material.model == Model::edge || f.material.model == Model::linear_vector;
   };
+  const Condition cloth = {[&scene] { return scene.has_triangles(); }, "with triangles"},
+                  lines = {[&scene] { return scene.has_lines(); }, "with lines"},
+                  membrane = {[=, &scene] { return scene.has_triangles() && !is_spring(); },
+                              "with triangles and model quadratic or biquadratic", "model"};
   Codec model = scene::choice_codec(f.material.model, model_choices);
-  model.print = [print = model.print, cloth] { return cloth() ? print() : std::nullopt; };
+  model.print = [print = model.print, &scene] { return scene.has_triangles() ? print() : std::nullopt; };
   table.value("model", model,
               "Constitutive model of triangles: Models I (linear-vector) and II (edge) of [Shi] have springs "
               "along edges, the others are membranes; strings are springs in every model");
-  table
-      .value("membrane_modulus", scene::real_codec(f.material.membrane_modulus),
-             "Young's modulus times thickness")
-      .unit("N/m")
-      .above(0.0)
-      .when([=] { return cloth() && !springs(); }, "with triangles and model quadratic or biquadratic",
-            "model");
-  table.value("poisson", scene::real_codec(f.material.poisson), "Poisson's ratio")
-      .range(-0.99, 0.5)
-      .when([=] { return cloth() && !springs(); }, "with triangles and model quadratic or biquadratic",
-            "model");
-  table
-      .value("stiffness", scene::real_codec(f.stiffness),
-             "Stiffness of an edge, and of strings without axial_stiffness")
-      .unit("N/m")
-      .above(0.0)
-      .default_text("1000 for model edge")
-      .when([=] { return lines() || springs(); }, "with lines, or model edge", "model");
-  table.value("area_density", scene::real_codec(f.area_density), "Mass per area of cloth at rest")
-      .unit("kg/m^2")
-      .above(0.0)
-      .when(cloth, "with triangles", "");
-  table
-      .value("mass", scene::choice_codec(f.mass, mass_choices),
-             "Mass of a vertex: a third of its triangles and half of its lines, or the same for all")
-      .default_text("`\"area\"`");
-  table.value("line_density", scene::real_codec(f.line_density), "Mass per length of strings at rest")
-      .unit("kg/m")
-      .above(0.0)
-      .when(lines, "with lines", "");
-  table.value("axial_stiffness", scene::real_codec(f.axial_stiffness), "E A of strings")
-      .unit("N")
-      .above(0.0)
-      .default_text("5000 without stiffness")
-      .when([=, &f] { return lines() && (!f.stiffness || (cloth() && springs())); },
-            "with lines and without stiffness, or with model edge", "stiffness");
-  table
-      .value("bending_stiffness", scene::real_codec(f.material.bending_stiffness),
-             "Bending stiffness of cloth that is flat at rest: of cloth bent to a cylinder. A free strip of "
-             "triangles is softer, and hangs 10 to 22 % lower than the beam (docs/springs.md, Limits)")
-      .unit("N m")
-      .at_least(0.0)
-      .when(cloth, "with triangles", "");
-  table
-      .value("tension_only", scene::boolean_codec(f.material.tension_only),
-             "No compression: cloth wrinkles and strings go slack without energy")
-      .when([&f] { return f.material.model != Model::linear_vector; },
-            "with another model than linear-vector", "model");
+  table.value("membrane_modulus", f.material.membrane_modulus, "Young's modulus times thickness",
+              {.unit = "N/m", .range = positive, .when = membrane});
+  table.value("poisson", f.material.poisson, "Poisson's ratio",
+              {.range = between(-0.99, 0.5), .when = membrane});
+  table.value("stiffness", f.stiffness, "Stiffness of an edge, and of strings without axial_stiffness",
+              {.unit = "N/m",
+               .range = positive,
+               .when = {[=, &scene] { return scene.has_lines() || is_spring(); }, "with lines, or model edge",
+                        "model"},
+               .default_text = "1000 for model edge"});
+  table.value("area_density", f.area_density, "Mass per area of cloth at rest",
+              {.unit = "kg/m^2", .range = positive, .when = cloth});
+  table.value("mass", f.mass, mass_choices,
+              "Mass of a vertex: a third of its triangles and half of its lines, or the same for all",
+              {.default_text = "`\"area\"`"});
+  table.value("line_density", f.line_density, "Mass per length of strings at rest",
+              {.unit = "kg/m", .range = positive, .when = lines});
+  table.value("axial_stiffness", f.axial_stiffness, "E A of strings",
+              {.unit = "N",
+               .range = positive,
+               .when = {[=, &scene, &f] {
+                          return scene.has_lines() &&
+                                 (!f.stiffness || (scene.has_triangles() && is_spring()));
+                        },
+                        "with lines and without stiffness, or with model edge", "stiffness"},
+               .default_text = "5000 without stiffness"});
+  table.value("bending_stiffness", f.material.bending_stiffness,
+              "Bending stiffness of cloth that is flat at rest: of cloth bent to a cylinder. A free strip of "
+              "triangles is softer, and hangs 10 to 22 % lower than the beam (docs/springs.md, Limits)",
+              {.unit = "N m", .range = not_negative, .when = cloth});
+  table.value("tension_only", f.material.tension_only,
+              "No compression: cloth wrinkles and strings go slack without energy",
+              {.when = {[&f] { return f.material.model != Model::linear_vector; },
+                        "with another model than linear-vector", "model"}});
 }
 
 void declare_load(Table& table, Load& load) {
   table.exactly_one_of({"gravity", "pressure", "follower_pressure", "force"});
-  table.value("gravity", optional_vector_codec(load.gravity), "Acceleration of all masses")
-      .unit("m/s^2")
-      .default_text("none");
-  table
-      .value("pressure", scene::real_or_expression_codec(load.pressure, of_place_and_time),
-             "Force per area at rest along the normal at rest; the normal of a counter-clockwise triangle "
-             "points up")
-      .unit("N/m^2");
-  table
-      .value("follower_pressure", scene::real_or_expression_codec(load.follower_pressure, of_place_and_time),
-             "Force per present area along the present normal")
-      .unit("N/m^2");
+  table.value("gravity", optional_vector_codec(load.gravity), "Acceleration of all masses",
+              {.unit = "m/s^2", .default_text = "none"});
+  table.value("pressure", scene::real_or_expression_codec(load.pressure, of_place_and_time),
+              "Force per area at rest along the normal at rest; the normal of a counter-clockwise triangle "
+              "points up",
+              {.unit = "N/m^2"});
+  table.value("follower_pressure", scene::real_or_expression_codec(load.follower_pressure, of_place_and_time),
+              "Force per present area along the present normal", {.unit = "N/m^2"});
   table.optional_table(
       "force", load.force,
       [](Table& t, ExpressionVector& value) {
         declare_vector(t, value, of_place_and_time, "Force on each vertex", "N");
       },
       "A force on vertices");
-  table
-      .value("where", scene::expression_codec(load.where, of_place),
-             "Vertices that the force acts on: where this is not 0")
-      .when([&load] { return load.force.has_value(); }, "with force", "force")
-      .default_text("all");
+  table.value("where", scene::expression_codec(load.where, of_place),
+              "Vertices that the force acts on: where this is not 0",
+              {.when = scene::with_given("force", load.force), .default_text = "all"});
 }
 
 void declare_output(Table& table, Output& output) {
   const Key& fields =
-      table
-          .value("fields", fields_codec(output.fields),
-                 "Fields written to fields.h5: position, velocity, and for every triangle stress, "
-                 "major_stress, minor_stress, major_direction, minor_direction, von_mises; with the prefix "
-                 "vertex_ for every vertex, with nominal_ before the name for nominal instead of Cauchy's "
-                 "stress, as in vertex_nominal_stress")
-          .default_text("position where times are given, else none");
+      table.value("fields", fields_codec(output.fields),
+                  "Fields written to fields.h5: position, velocity, and for every triangle stress, "
+                  "major_stress, minor_stress, major_direction, minor_direction, von_mises; with the prefix "
+                  "vertex_ for every vertex, with nominal_ before the name for nominal instead of Cauchy's "
+                  "stress, as in vertex_nominal_stress",
+                  {.default_text = "position where times are given, else none"});
   framework::declare_output_times(table, output, fields);
   table.tables(
       "probes", output.probes,
       [](Table& t, Probe& probe) {
-        t.value("at", optional_vector_codec(probe.at), "Position at rest; the nearest vertex is used")
-            .unit("m")
-            .required();
+        t.value("at", optional_vector_codec(probe.at), "Position at rest; the nearest vertex is used",
+                {.unit = "m", .required = true});
       },
       "Vertices whose positions are columns of history.csv");
   framework::declare_output_intervals(table, output);
@@ -259,22 +231,18 @@ void declare_output(Table& table, Output& output) {
 
 void declare_time(Table& table, Time& time) {
   table.value(
-      "integrator", scene::choice_codec(time.integrator, integrator_choices),
+      "integrator", time.integrator, integrator_choices,
       "Velocity Verlet, which keeps energy in violent motion, or classical Runge-Kutta, for vibrations "
       "that its steps resolve");
-  table
-      .value("dt", real_or_auto_codec(time.dt),
-             "Step; auto: from the fastest frequency, and short enough to resolve pins and loads that change")
-      .unit("s")
-      .above(0.0);
-  table.value("safety", scene::real_codec(time.safety), "Share of the largest stable step")
-      .at_least(1e-6)
-      .at_most(1.0)
-      .when([&time] { return !time.dt; }, "with dt = \"auto\"", "dt");
-  table.value("end_time", scene::real_codec(time.end_time), "End of the run")
-      .unit("s")
-      .at_least(0.0)
-      .required();
+  table.value(
+      "dt", real_or_auto_codec(time.dt),
+      "Step; auto: from the fastest frequency, and short enough to resolve pins and loads that change",
+      {.unit = "s", .range = positive});
+  table.value("safety", time.safety, "Share of the largest stable step",
+              {.range = scene::at_least(1e-6).at_most(1.0),
+               .when = {[&time] { return !time.dt; }, "with dt = \"auto\"", "dt"}});
+  table.value("end_time", time.end_time, "End of the run",
+              {.unit = "s", .range = not_negative, .required = true});
 }
 
 }  // namespace
@@ -287,45 +255,33 @@ scene::Codec optional_vector_codec(std::vector<double>& value) {
 }
 
 scene::Codec vector_codec(fabric::Vector& value) {
-  return {"[real, real, real]",
-          [&value](const scene::Node& node, const scene::Limits& limits) {
-            std::vector<double> numbers;
-            std::string complaint = scene::reals_codec(numbers, 3, false).read(node, limits);
-            if (complaint.empty()) std::copy(numbers.begin(), numbers.end(), value.begin());
-            return complaint;
-          },
-          [&value] {
-            std::vector<double> numbers(value.begin(), value.end());
-            return scene::reals_codec(numbers, 3, false).print();
-          },
-          scene::back_to_default(value)};
+  return scene::make_codec(
+      "[real, real, real]", value,
+      [](const scene::Node& node, const scene::Limits& limits, fabric::Vector& vector) {
+        std::vector<double> numbers;
+        std::string complaint = scene::reals_codec(numbers, 3, false).read(node, limits);
+        if (complaint.empty()) std::copy(numbers.begin(), numbers.end(), vector.begin());
+        return complaint;
+      },
+      scene::toml_text<double, 3>);
 }
 
 void declare_springs_scene(Table& root, SpringsScene& scene) {
   framework::declare_app(root, "springs", scene.description);
-  root.table(
-          "mesh", [&](Table& table) { declare_mesh(table, scene.source); }, "Cloth and strings at rest")
-      .required();
-  root.table(
-      "material", [&](Table& table) { declare_material(table, scene); }, "Material of cloth and strings");
+  root.table("mesh", scene.source, declare_mesh, "Cloth and strings at rest", {.required = true});
+  root.table("material", scene, declare_material, "Material of cloth and strings");
   root.tables(
       "reinforcement", scene.reinforcements,
       [](Table& table, Reinforcement& reinforcement) {
-        table
-            .value("where", scene::expression_codec(reinforcement.where, of_place),
-                   "The edges at both ends of which this is not 0; an edge has at most one reinforcement")
-            .required();
-        table
-            .value("axial_stiffness", scene::real_codec(reinforcement.axial_stiffness),
-                   "E A of each edge, added to the stiffness of the cloth")
-            .unit("N")
-            .above(0.0)
-            .required();
-        table
-            .value("line_density", scene::real_codec(reinforcement.line_density),
-                   "Mass per length at rest, added to that of the cloth")
-            .unit("kg/m")
-            .at_least(0.0);
+        table.value("where", scene::expression_codec(reinforcement.where, of_place),
+                    "The edges at both ends of which this is not 0; an edge has at most one reinforcement",
+                    {.required = true});
+        table.value("axial_stiffness", reinforcement.axial_stiffness,
+                    "E A of each edge, added to the stiffness of the cloth",
+                    {.unit = "N", .range = positive, .required = true});
+        table.value("line_density", reinforcement.line_density,
+                    "Mass per length at rest, added to that of the cloth",
+                    {.unit = "kg/m", .range = not_negative});
       },
       "Strings along edges of cloth, such as seams. For lines of the mesh they replace the values of "
       "[material]");
@@ -340,21 +296,18 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
             "velocity",
             [&](Table& t) { declare_vector(t, scene.initial.velocity, of_place, "Velocity", "m/s"); },
             "Velocity");
-        table
-            .value(
-                "prestretch", scene::real_codec(scene.initial.prestretch),
-                "Strain by which all coordinates at rest are stretched before they are displaced; lengths at "
-                "rest stay those of the mesh")
-            .range(-0.5, 10.0);
+        table.value(
+            "prestretch", scene.initial.prestretch,
+            "Strain by which all coordinates at rest are stretched before they are displaced; lengths at "
+            "rest stay those of the mesh",
+            {.range = between(-0.5, 10.0)});
       },
       "The state at the start");
   root.tables(
       "pin", scene.pins,
       [](Table& table, Pin& pin) {
-        table
-            .value("where", scene::expression_codec(pin.where, of_place),
-                   "Vertices that are fixed: where this is not 0")
-            .required();
+        table.value("where", scene::expression_codec(pin.where, of_place),
+                    "Vertices that are fixed: where this is not 0", {.required = true});
         table.value("axes", axes_codec(pin.axes), "Axes along which they are fixed");
         table.table(
             "motion",
@@ -368,45 +321,33 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
   root.tables(
       "mass", scene.payloads,
       [](Table& table, Payload& payload) {
-        table
-            .value("where", scene::expression_codec(payload.where, of_place), "Vertices: where this is not 0")
-            .required();
-        table.value("add", scene::real_codec(payload.add), "Mass added to each")
-            .unit("kg")
-            .above(0.0)
-            .required();
+        table.value("where", scene::expression_codec(payload.where, of_place),
+                    "Vertices: where this is not 0", {.required = true});
+        table.value("add", payload.add, "Mass added to each",
+                    {.unit = "kg", .range = positive, .required = true});
       },
       "Payloads");
   root.table(
       "damping",
       [&](Table& table) {
-        table.value("absolute", scene::real_codec(scene.damping.absolute), "Deceleration over the velocity")
-            .unit("1/s")
-            .at_least(0.0);
-        table
-            .value("relative", scene::real_codec(scene.damping.relative),
-                   "Rate at which two isolated vertices of an edge lose their relative velocity along it")
-            .unit("1/s")
-            .at_least(0.0);
+        table.value("absolute", scene.damping.absolute, "Deceleration over the velocity",
+                    {.unit = "1/s", .range = not_negative});
+        table.value("relative", scene.damping.relative,
+                    "Rate at which two isolated vertices of an edge lose their relative velocity along it",
+                    {.unit = "1/s", .range = not_negative});
       },
       "Damping");
-  root.table(
-      "contact", [&](Table& table) { declare_contact(table, scene.contact); },
-      "Contact of cloth and strings");
-  root.table(
-          "time", [&](Table& table) { declare_time(table, scene.time); }, "Steps and the length of the run")
-      .required();
-  root.table(
-      "output", [&](Table& table) { declare_output(table, scene.output); }, "Files of the run directory");
-  root.table(
-      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "Checks at the end");
+  root.table("contact", scene.contact, declare_contact, "Contact of cloth and strings");
+  root.table("time", scene.time, declare_time, "Steps and the length of the run", {.required = true});
+  root.table("output", scene.output, declare_output, "Files of the run directory");
+  root.table("verify", scene.verify, declare_verify, "Checks at the end");
   root.table(
       "tuning",
       [&](Table& table) {
         table.table(
             "step",
             [&](Table& step) {
-              step.value("driver", scene::choice_codec(scene.driver, driver_choices),
+              step.value("driver", scene.driver, driver_choices,
                          "Launches of Runge-Kutta steps on a GPU: single kernels, one captured graph per "
                          "step, or many steps per launch where mesh and loads allow it, else a graph");
             },

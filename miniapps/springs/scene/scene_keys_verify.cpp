@@ -6,7 +6,7 @@
 namespace drogue::springs_app {
 namespace {
 
-using scene::Table;
+using scene::between, scene::not_negative, scene::positive, scene::Table;
 
 const scene::Choices<std::string> axis_choices = {{"x", "x"}, {"y", "y"}, {"z", "z"}};
 
@@ -25,7 +25,7 @@ std::string name_of(FinalQuantity quantity) {
 void declare_verify(Table& table, Verify& verify) {
   const auto tolerance = [&table](const std::string& name, std::optional<double>& place,
                                   const std::string& help) {
-    table.value(name, scene::real_codec(place), help).at_least(0.0);
+    table.value(name, place, help, {.range = not_negative});
   };
   tolerance(
       "energy_drift", verify.energy_drift,
@@ -67,62 +67,54 @@ void declare_verify(Table& table, Verify& verify) {
   table.optional_table(
       "frequency", verify.frequency,
       [](Table& t, Frequency& value) {
-        t.value(
-             "mode",
-             [&value] {
-               scene::Codec codec = scene::reals_codec(value.mode, 0, false);
-               codec.type = "array of integers";
-               codec.print = [&value]() -> std::optional<std::string> {
-                 if (value.mode.empty()) return std::nullopt;
-                 std::string text;
-                 for (const double number : value.mode)
-                   text += (text.empty() ? "" : ", ") + scene::toml_text(static_cast<std::int64_t>(number));
-                 return "[" + text + "]";
-               };
-               return codec;
-             }(),
-             "[nodal diameters, circles] of a disk, [number] of the longitudinal mode of a string that is "
-             "fixed at its first end")
-            .range(0, 1000)
-            .default_text("none");
-        t.value("value", scene::real_codec(value.value), "Expected value")
-            .unit("Hz")
-            .above(0.0)
-            .default_text("closed form of the mode");
-        t.value("tolerance", scene::real_codec(value.tolerance), "Largest relative error that passes")
-            .at_least(0.0)
-            .required();
-        t.value("probe", scene::integer_codec(value.probe), "Number of the probe, from 0").range(0, 1e6);
-        t.value("axis", scene::choice_codec(value.axis, axis_choices), "Axis along which it oscillates");
+        t.value("mode",
+                [&value] {
+                  scene::Codec codec = scene::reals_codec(value.mode, 0, false);
+                  codec.type = "array of integers";
+                  codec.print = [&value]() -> std::optional<std::string> {
+                    if (value.mode.empty()) return std::nullopt;
+                    std::string text;
+                    for (const double number : value.mode)
+                      text +=
+                          (text.empty() ? "" : ", ") + scene::toml_text(static_cast<std::int64_t>(number));
+                    return "[" + text + "]";
+                  };
+                  return codec;
+                }(),
+                "[nodal diameters, circles] of a disk, [number] of the longitudinal mode of a string that is "
+                "fixed at its first end",
+                {.range = between(0, 1000), .default_text = "none"});
+        t.value("value", value.value, "Expected value",
+                {.unit = "Hz", .range = positive, .default_text = "closed form of the mode"});
+        t.value("tolerance", value.tolerance, "Largest relative error that passes",
+                {.range = not_negative, .required = true});
+        t.value("probe", value.probe, "Number of the probe, from 0", {.range = between(0, 1e6)});
+        t.value("axis", value.axis, axis_choices, "Axis along which it oscillates");
       },
       "The frequency at which a probe oscillates in rows of history.csv");
   table.optional_table(
       "front_speed", verify.front_speed,
       [](Table& t, FrontSpeed& value) {
-        t.value("value", scene::real_codec(value.value), "Expected value").unit("m/s").above(0.0).required();
-        t.value("tolerance", scene::real_codec(value.tolerance), "Largest relative error that passes")
-            .at_least(0.0)
-            .required();
-        t.value("axis", scene::choice_codec(value.axis, axis_choices),
-                "Axis along which the front displaces");
+        t.value("value", value.value, "Expected value", {.unit = "m/s", .range = positive, .required = true});
+        t.value("tolerance", value.tolerance, "Largest relative error that passes",
+                {.range = not_negative, .required = true});
+        t.value("axis", value.axis, axis_choices, "Axis along which the front displaces");
       },
       "The speed of a front between the first two probes, timed at half of their largest displacements in "
       "rows of history.csv");
   table.tables(
       "values", verify.values,
       [](Table& t, FinalValue& value) {
-        t.value("quantity", scene::choice_codec(value.quantity, quantity_choices),
+        t.value("quantity", value.quantity, quantity_choices,
                 "Displacement (m) or Cauchy's von Mises stress (N/m) of a vertex, the elastic energy (J), or "
                 "the "
-                "growth of the area of all triangles over that at rest")
-            .required();
+                "growth of the area of all triangles over that at rest",
+                {.required = true});
         t.value("at", optional_vector_codec(value.at),
-                "Position at rest, for a quantity of a vertex; the nearest is used")
-            .unit("m");
-        t.value("value", scene::real_codec(value.value), "Expected value, not 0").required();
-        t.value("tolerance", scene::real_codec(value.tolerance), "Largest relative error that passes")
-            .at_least(0.0)
-            .required();
+                "Position at rest, for a quantity of a vertex; the nearest is used", {.unit = "m"});
+        t.value("value", value.value, "Expected value, not 0", {.required = true});
+        t.value("tolerance", value.tolerance, "Largest relative error that passes",
+                {.range = not_negative, .required = true});
       },
       "Values that the final state must have");
   framework::declare_history_checks(table, verify.history);

@@ -38,33 +38,30 @@ struct Fabric {
 };
 
 void declare(Table& root, Fabric& cloth) {
-  root.value("app", fixed_codec("cloth"), "Program").required().decisive();
-  root.table(
-          "mesh",
-          [&](Table& mesh) {
-            mesh.exactly_one_of({"disk", "ring"});
-            const auto disk = [](Table& table, Disk& value) {
-              table.value("radius", real_codec(value.radius), "Radius").unit("m").above(0.0).required();
-            };
-            mesh.optional_table("disk", cloth.disk, disk, "A disk");
-            mesh.optional_table("ring", cloth.ring, disk, "A ring");
-          },
-          "Mesh")
-      .required();
+  root.value("app", fixed_codec("cloth"), "Program", {.required = true, .decisive = true});
+  root.table("mesh",
+             [&](Table& mesh) {
+               mesh.exactly_one_of({"disk", "ring"});
+               const auto disk = [](Table& table, Disk& value) {
+                 table.value("radius", value.radius, "Radius",
+                             {.unit = "m", .range = positive, .required = true});
+               };
+               mesh.optional_table("disk", cloth.disk, disk, "A disk");
+               mesh.optional_table("ring", cloth.ring, disk, "A ring");
+             },
+             "Mesh", {.required = true});
   root.table(
       "material",
       [&](Table& material) {
-        material.value(
-            "shape",
-            choice_codec(cloth.shape, Choices<Shape>{{"disk", Shape::disk}, {"string", Shape::string}}),
-            "Shape");
-        material.value("tension_only", boolean_codec(cloth.tension_only), "No pushing")
-            .when([&] { return cloth.shape == Shape::string; }, "with shape = \"string\"", "shape");
-        material.value("stiffness", real_codec(cloth.stiffness), "Stiffness").unit("N/m").at_least(0.0);
-        material.value("count", integer_codec(cloth.count), "Count").range(1, 10);
-        material.value("seed", integer_codec(cloth.seed), "Seed");
-        material.value("pressure", real_or_expression_codec(cloth.pressure, {"x", "t"}), "Pressure")
-            .unit("Pa");
+        const Choices<Shape> shapes = {{"disk", Shape::disk}, {"string", Shape::string}};
+        material.value("shape", cloth.shape, shapes, "Shape");
+        material.value("tension_only", cloth.tension_only, "No pushing",
+                       {.when = with_choice("shape", cloth.shape, shapes, {Shape::string})});
+        material.value("stiffness", cloth.stiffness, "Stiffness", {.unit = "N/m", .range = not_negative});
+        material.value("count", cloth.count, "Count", {.range = between(1, 10)});
+        material.value("seed", cloth.seed, "Seed");
+        material.value("pressure", real_or_expression_codec(cloth.pressure, {"x", "t"}), "Pressure",
+                       {.unit = "Pa"});
         material.value("interval", interval_codec(cloth.low, cloth.high), "Ends");
         material.former("hardness", "stiffness, in N/m");
       },
@@ -72,8 +69,8 @@ void declare(Table& root, Fabric& cloth) {
   root.tables(
       "pin", cloth.pins,
       [](Table& pin, Pin& value) {
-        pin.value("where", expression_codec(value.where, {"x", "y"}), "Place").required();
-        pin.value("motion", real_or_expression_codec(value.motion, {"t"}), "Motion").unit("m");
+        pin.value("where", expression_codec(value.where, {"x", "y"}), "Place", {.required = true});
+        pin.value("motion", real_or_expression_codec(value.motion, {"t"}), "Motion", {.unit = "m"});
         pin.value("axes", reals_codec(value.axes, 3, false), "Axes");
       },
       "Pins");
@@ -218,6 +215,51 @@ TEST(Schema, DocumentsEveryKey) {
   EXPECT_NE(text.find("Only with shape = \"string\"."), std::string::npos);
   const auto paths = all_paths(root);
   EXPECT_NE(std::find(paths.begin(), paths.end(), "pin[].motion"), paths.end());
+}
+
+TEST(Schema, ConditionsNameTheirKeys) {
+  const Choices<int> kinds = {{"a", 0}, {"b", 1}, {"c", 2}};
+  int kind = 1;
+  bool contact = true;
+  std::optional<double> width;
+  std::string file = "cloth.obj";
+  const Condition of_kind = with_choice("kind", kind, kinds, {2, 1});
+  EXPECT_EQ(of_kind.text, "with kind = \"b\" or \"c\"");
+  EXPECT_EQ(of_kind.decided_by, "kind");
+  EXPECT_TRUE(of_kind.applies());
+  EXPECT_FALSE(with_given("width", width).applies());
+  EXPECT_TRUE(with_given("file", file).applies());
+  const Condition both = with_true("contact", contact) && of_kind;
+  EXPECT_EQ(both.text, "with contact = true and kind = \"b\" or \"c\"");
+  EXPECT_EQ(both.decided_by, "kind");
+  EXPECT_TRUE(both.applies());
+  kind = 0;
+  EXPECT_FALSE(both.applies());
+}
+
+TEST(Place, RefusesAKeyByItsOriginItsPathAndASentence) {
+  Fabric cloth;
+  Table root;
+  declare(root, cloth);
+  read(root, parse_text(head + "[[pin]]\nwhere = \"x\"\nmotion = 1\n", "c.toml"));
+  const auto refusal = [](const auto& refuse) -> std::string {
+    try {
+      refuse();
+    } catch (const Failure& failure) {
+      EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
+      return failure.what();
+    }
+    return "";
+  };
+  const Place pin = Place(root).at("pin", 0);
+  EXPECT_EQ(pin.path("motion"), "pin[0].motion");
+  EXPECT_TRUE(pin.given("motion"));
+  EXPECT_FALSE(pin.given("axes"));
+  EXPECT_EQ(refusal([&] { pin.refuse("motion", " = ", 1.5, " m in ", 2, " steps"); }),
+            "c.toml:6: pin[0].motion = 1.5 m in 2 steps");
+  EXPECT_EQ(refusal([&] { pin.refuse_if(true, "", " is loose"); }), "c.toml:4: pin[0] is loose");
+  EXPECT_EQ(refusal([&] { pin.contradict("axes", "no axes"); }), "c.toml:4: no axes");
+  EXPECT_EQ(refusal([&] { pin.refuse_if(false, "", " is loose"); }), "");
 }
 
 TEST(Nearest, CountsEdits) {
