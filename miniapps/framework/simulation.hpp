@@ -136,9 +136,9 @@ class Simulation {
 /// Settings of a simulation that stand on the command line.
 struct SimulationSettings {
   device::Backend backend = device::Backend::serial;
-  bool baseline = false;  ///< algorithm of [Shi], with its host-device copies
-  bool quiet = false;     ///< no progress line
-  Communicator& communicator = Communicator::self();
+  bool baseline = false;                              ///< algorithm of [Shi], with its host-device copies
+  bool quiet = false;                                 ///< no progress line
+  Communicator& communicator = Communicator::self();  ///< of the ranks that share the grid
 };
 
 /// A scene that was read and checked, with every default filled in.

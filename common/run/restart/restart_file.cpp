@@ -81,7 +81,7 @@ void RestartWriter::array(const std::string& name, std::uint64_t size) {
 }
 
 void RestartWriter::write(const std::string& name, std::uint64_t first, std::span<const double> values) {
-  _state->run_on_root([&] { h5::write(_state->arrays.at(name), first, values); });
+  write(name, one_block(first, values.size()), values);
 }
 
 void RestartWriter::write(const std::string& name, const Blocks& blocks, std::span<const double> values) {
@@ -137,7 +137,7 @@ std::uint64_t RestartReader::size(const std::string& name) const {
 }
 
 void RestartReader::read(const std::string& name, std::uint64_t first, std::span<double> values) const {
-  read(name, {first, values.size(), 1, values.size()}, values);
+  read(name, one_block(first, values.size()), values);
 }
 
 void RestartReader::read(const std::string& name, const Blocks& blocks, std::span<double> values) const {

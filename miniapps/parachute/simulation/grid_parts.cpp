@@ -22,11 +22,10 @@ Lattice GridParts::lattice(flow::StateField field) const {
 run::Blocks GridParts::blocks(flow::StateField field, int rank) const {
   const linear::CellBox part = box(field, rank);
   const std::array<int, 3> n = flow::extents(_parameters, field);  // x is not divided
-  const std::uint64_t plane = product(n[0], n[1]), length = product(n[0], part.cells[1]),
-                      planes = static_cast<std::uint64_t>(part.cells[2]),
-                      first =
-                          product(n[0], part.begin[1]) + plane * static_cast<std::uint64_t>(part.begin[2]);
-  if (length == plane) return {first, plane * planes, 1, plane * planes};
+  const auto plane = product(n[0], n[1]), length = product(n[0], part.cells[1]);
+  const auto first = product(n[0], part.begin[1]) + product(1, part.begin[2]) * plane;
+  const auto planes = product(1, part.cells[2]);
+  if (length == plane) return run::one_block(first, plane * planes);
   return {first, length, planes, plane};
 }
 

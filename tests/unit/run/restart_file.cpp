@@ -60,7 +60,7 @@ TEST(RestartFile, WritesAndReadsBlocks) {
   writer.array("U", 12);
   writer.write("U", odd, second);
   writer.write("U", even, first);
-  EXPECT_NE(failure_of(ExitCode::io_error, [&] { writer.write("U", {4, 2, 3, 4}, first); }), "");
+  EXPECT_NE(failure_of(ExitCode::io_error, [&] { writer.write("U", Blocks{4, 2, 3, 4}, first); }), "");
   writer.commit();
   const RestartReader reader(directory / "restart.h5", scene);
   std::vector<double> whole(12), ascending(12), part(6);
