@@ -38,21 +38,26 @@ Handle file_access(const std::filesystem::path& path) {
   return access;
 }
 
-/// The rows [first, first + count) of `dataset`, flat entry numbers, as a selection of its file space.
-Handle select_rows(const Handle& dataset, std::uint64_t first, std::uint64_t count) {
+/// Whole rows of `dataset`, given by flat entry numbers, as a selection of its file space.
+Handle select_rows(const Handle& dataset, const Blocks& blocks, std::uint64_t entries) {
   std::vector<hsize_t> extent;
   for (const std::uint64_t n : shape(dataset)) extent.push_back(n);
   hsize_t row = 1;
   for (std::size_t i = 1; i < extent.size(); ++i) row *= extent[i];
-  const bool whole = row > 0 && first % row == 0 && count % row == 0;
-  if (!whole || extent.empty() || (first + count) / row > extent[0]) {
+  const bool whole = row > 0 && blocks.first % row == 0 && blocks.length % row == 0 &&
+                     blocks.stride % row == 0 && blocks.count * blocks.length == entries;
+  const hsize_t end = blocks.first + (blocks.count - 1) * blocks.stride + blocks.length;
+  if (!whole || extent.empty() || end / row > extent[0]) {
     throw Failure(ExitCode::io_error, "a piece of a dataset must be whole rows within it");
   }
-  std::vector<hsize_t> start(extent.size(), 0);
-  start[0] = first / row;
-  extent[0] = count / row;
+  std::vector<hsize_t> start(extent.size(), 0), stride(extent.size(), 1), count(extent.size(), 1);
+  start[0] = blocks.first / row;
+  stride[0] = blocks.stride / row;
+  count[0] = blocks.count;
+  extent[0] = blocks.length / row;
   Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "access", dataset.id());
-  if (H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) < 0) {
+  if (H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), stride.data(), count.data(),
+                          extent.data()) < 0) {
     fail("access", dataset.id());
   }
   return space;
@@ -63,11 +68,11 @@ Handle memory_space(const Handle& dataset, std::size_t count) {
   return checked(H5Screate_simple(1, &size, nullptr), H5Sclose, "access", dataset.id());
 }
 
-void write_values(const Handle& dataset, hid_t type, std::uint64_t first, const void* values,
+void write_values(const Handle& dataset, hid_t type, const Blocks& blocks, const void* values,
                   std::size_t count) {
   const Lock lock;
   if (count == 0) return;
-  const Handle selection = select_rows(dataset, first, count);
+  const Handle selection = select_rows(dataset, blocks, count);
   const Handle memory = memory_space(dataset, count);
   if (H5Dwrite(dataset.id(), type, memory.id(), selection.id(), H5P_DEFAULT, values) < 0)
     fail("write", dataset.id());
@@ -227,18 +232,18 @@ std::vector<std::uint64_t> shape(const Handle& dataset) {
   return {extent.begin(), extent.end()};
 }
 
-void write(const Handle& dataset, std::uint64_t first, std::span<const double> values) {
-  write_values(dataset, H5T_NATIVE_DOUBLE, first, values.data(), values.size());
+void write(const Handle& dataset, const Blocks& blocks, std::span<const double> values) {
+  write_values(dataset, H5T_NATIVE_DOUBLE, blocks, values.data(), values.size());
 }
 
-void write(const Handle& dataset, std::uint64_t first, std::span<const std::int64_t> values) {
-  write_values(dataset, H5T_NATIVE_INT64, first, values.data(), values.size());
+void write(const Handle& dataset, const Blocks& blocks, std::span<const std::int64_t> values) {
+  write_values(dataset, H5T_NATIVE_INT64, blocks, values.data(), values.size());
 }
 
-void read(const Handle& dataset, std::uint64_t first, std::span<double> values) {
+void read(const Handle& dataset, const Blocks& blocks, std::span<double> values) {
   const Lock lock;
   if (values.empty()) return;
-  const Handle selection = select_rows(dataset, first, values.size());
+  const Handle selection = select_rows(dataset, blocks, values.size());
   const Handle memory = memory_space(dataset, values.size());
   if (H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), selection.id(), H5P_DEFAULT, values.data()) < 0) {
     fail("read", dataset.id());

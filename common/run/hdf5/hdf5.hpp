@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/run/hdf5/blocks.hpp"
+
 namespace drogue::run::h5 {
 
 /// The little of HDF5 that run directories need. Every call may be made from any thread (the library itself
@@ -80,10 +82,21 @@ std::vector<std::uint64_t> shape(const Handle& dataset);
 /// Place of the numbers of a dataset in its file, bytes.
 std::uint64_t offset(const Handle& dataset);
 
-/// Entries [first, first + values.size()) in row-major order, whole rows of the first dimension.
-void write(const Handle& dataset, std::uint64_t first, std::span<const double> values);
-void write(const Handle& dataset, std::uint64_t first, std::span<const std::int64_t> values);
-void read(const Handle& dataset, std::uint64_t first, std::span<double> values);
+/// Entries of blocks in row-major order, whole rows of the first dimension.
+void write(const Handle& dataset, const Blocks& blocks, std::span<const double> values);
+void write(const Handle& dataset, const Blocks& blocks, std::span<const std::int64_t> values);
+void read(const Handle& dataset, const Blocks& blocks, std::span<double> values);
+
+/// Entries [first, first + values.size()).
+inline void write(const Handle& dataset, std::uint64_t first, std::span<const double> values) {
+  write(dataset, one_block(first, values.size()), values);
+}
+inline void write(const Handle& dataset, std::uint64_t first, std::span<const std::int64_t> values) {
+  write(dataset, one_block(first, values.size()), values);
+}
+inline void read(const Handle& dataset, std::uint64_t first, std::span<double> values) {
+  read(dataset, one_block(first, values.size()), values);
+}
 
 void write_attribute(const Handle& object, const std::string& name, double value);
 void write_attribute(const Handle& object, const std::string& name, std::int64_t value);
