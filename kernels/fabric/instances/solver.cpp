@@ -4,6 +4,7 @@
 
 namespace drogue::fabric {
 
+template struct FabricForces<DROGUE_INSTANCE_SPACE>;
 template class FabricSolver<DROGUE_INSTANCE_SPACE>;
 
 template <class ExecutionSpace>

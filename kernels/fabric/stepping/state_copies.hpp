@@ -27,18 +27,4 @@ struct CopyStateFunctor {
   }
 };
 
-/// Copies the state after an odd number of steps that alternate between two buffers to the Views that the
-/// solver exposes.
-template <class ExecutionSpace>
-struct RestoreAddressesFunctor {
-  StepMonitor<ExecutionSpace> monitor;
-  PointsView<ExecutionSpace> from_x, from_v, x, v;  ///< `from_v` may be `v`
-
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    store_points(x, i, load_points<double>(from_x, i));
-    store_points(v, i, load_points<double>(from_v, i));
-    if (i == 0) monitor.steps(0) = monitor.steps(1);
-  }
-};
-
 }  // namespace drogue::fabric
