@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "kernels/device/backend_list.hpp"
-#include "kernels/fabric/elastic/force.hpp"
 #include "kernels/fabric/elastic/frequency.hpp"
 #include "kernels/fabric/elastic/lanczos.hpp"
 #include "kernels/fabric/elastic/stress_evaluator.hpp"
@@ -19,42 +18,70 @@
 
 namespace drogue::fabric {
 
-/// Elastic forces, loads and prescribed motion of a fabric, and what follows from them at a given state:
-/// frequencies, stress and energies. Integrators read its Views. Functions with results on the host block.
+/// Elastic forces and loads, N, at given positions.
+template <class ExecutionSpace, ConstitutiveModel model>
+struct ForceFunctor {
+  using R = PackedReal<ExecutionSpace>;
+  using Bounds = Kokkos::LaunchBounds<>;
+  FabricViews<ExecutionSpace> fabric;
+  PointsView<ExecutionSpace> x, out;
+
+  KOKKOS_FUNCTION void operator()(const int pack) const {
+    const int i = pack * device::Access<R>::lanes;
+    store_points(out, i, force<model, R>(fabric, x, i));
+  }
+};
+
+/// Elastic forces, loads and prescribed motion of a fabric on an instance of an execution space, and what
+/// follows from them at a given state: frequencies, stress and energies. Integrators read its Views.
+/// Functions with results on the host block and throw as those of `Solver`.
 template <class ExecutionSpace>
 struct FabricForces {
   using Points = PointsView<ExecutionSpace>;
+  using StageTime = stepping::StageTime<ExecutionSpace>;
+  using State = StepState<ExecutionSpace>;
 
-  /// Allocates all Views; blocks. `parameters` must outlive the forces.
-  FabricForces(const ExecutionSpace& space, const Parameters& parameters);
+  /// Allocates all Views; blocks. `p` must outlive the forces.
+  FabricForces(const ExecutionSpace& on, const Parameters& p);
 
   /// Enqueues the evaluation of `fabric.load`, N, at positions x, m, and velocities v, m/s, unless there are
   /// dead loads alone.
-  void evaluate_loads(const ExecutionSpace& space, const Points& x, const Points& v,
-                      const stepping::StageTime<ExecutionSpace>& time, bool with_dashpots) const;
+  void evaluate_loads(const Points& x, const Points& v, const StageTime& time, bool with_dashpots) const {
+    if (has_load_kernel)
+      launch_each(space, "drogue::fabric::loads", vertices, external_functor(x, v, time, with_dashpots));
+  }
 
   /// Enqueues the prescribed motion, if any, of positions x, m, and velocities v, m/s.
-  void apply_dirichlet(const ExecutionSpace& space, const Points& x, const Points& v,
-                       const stepping::StageTime<ExecutionSpace>& time, bool checks_divergence) const;
+  void apply_dirichlet(const Points& x, const Points& v, const StageTime& time,
+                       bool checks_divergence) const {
+    if (!dirichlet) return;
+    launch_each(space, "drogue::fabric::dirichlet", static_cast<int>(dirichlet->vertex.extent(0)),
+                DirichletFunctor<ExecutionSpace>{.prescribed = *dirichlet,
+                                                 .x = x,
+                                                 .v = v,
+                                                 .stage_time = time,
+                                                 .checks_divergence = checks_divergence});
+  }
+
+  /// Takes over E A of the lines of `parameters`, N. Blocks.
+  void update_line_stiffness() {
+    // The slots stay, so that captured graphs remain valid.
+    const SpringAdjacency springs = spring_adjacency(parameters.mesh, parameters.material);
+    device::copy(space, fabric.springs.value,
+                 table_view(space, "drogue::fabric::slot_values", springs.value));
+    space.fence("drogue::fabric::update_line_stiffness");
+  }
 
   /// Elastic forces and all loads, N, at positions x, m, and the time of a state. Evaluated in its `spare_x`.
-  void forces(const ExecutionSpace& space, const StepState<ExecutionSpace>& state, const Points& x,
-              PointsReader<ExecutionSpace>& reader, std::span<Vector> to) const;
+  void forces(const State& state, const Points& x, PointsReader<ExecutionSpace>& reader,
+              std::span<Vector> to) const;
+  [[nodiscard]] double fastest_frequency(const State& state) const;
+  [[nodiscard]] double frequency_at_least(const State& state) const;
+  void stress(const State& state, StressMeasure measure, std::span<Stress> of_triangles);
+  void vertex_stress(const State& state, StressMeasure measure, std::span<Stress> of_vertices);
+  [[nodiscard]] Totals totals(const State& state) const;
 
-  /// Takes over E A of the lines of `parameters`, N.
-  void update_line_stiffness(const ExecutionSpace& space);
-
-  /// As the functions of `Solver`, at a given state.
-  [[nodiscard]] double fastest_frequency(const ExecutionSpace& space,
-                                         const StepState<ExecutionSpace>& state) const;
-  [[nodiscard]] double frequency_at_least(const ExecutionSpace& space,
-                                          const StepState<ExecutionSpace>& state) const;
-  void stress(const ExecutionSpace& space, const StepState<ExecutionSpace>& state, StressMeasure measure,
-              std::span<Stress> of_triangles);
-  void vertex_stress(const ExecutionSpace& space, const StepState<ExecutionSpace>& state,
-                     StressMeasure measure, std::span<Stress> of_vertices);
-  [[nodiscard]] Totals totals(const ExecutionSpace& space, const StepState<ExecutionSpace>& state) const;
-
+  ExecutionSpace space;
   const Parameters& parameters;
   int vertices, padded;                ///< `padded`: in whole slices
   double decay;                        ///< 1/s, upper bound of the rates of damping
@@ -65,13 +92,14 @@ struct FabricForces {
   std::optional<DirichletConditions<ExecutionSpace>> dirichlet;
 
  private:
-  [[nodiscard]] Points points(const std::string& label) const {
-    return make_points<ExecutionSpace>(label, static_cast<std::size_t>(vertices));
+  /// Positions at rest, m, shared with forces or loads if they have them.
+  [[nodiscard]] Points rest_positions() const {
+    if (fabric.rest.extent(0) > 0) return fabric.rest;
+    return external.rest.extent(0) > 0 ? external.rest : make_rest_positions(space, parameters.mesh);
   }
-  [[nodiscard]] Points rest_positions(const ExecutionSpace& space) const;
-  [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(
-      const Points& x, const Points& v, const stepping::StageTime<ExecutionSpace>& time,
-      bool with_dashpots) const {
+  [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
+                                                                 const StageTime& time,
+                                                                 bool with_dashpots) const {
     return {.external = external,
             .dead = dead.total,
             .x = x,
@@ -89,14 +117,14 @@ struct FabricForces {
 /// What the kernels of a step read besides the state.
 template <class ExecutionSpace, class VertexForce>
 struct StepInputs {
-  const ExecutionSpace& space;
   const FabricForces<ExecutionSpace>& forces;
   VertexForceTerm<VertexForce> vertex_force;
 };
 
 template <class ExecutionSpace>
-FabricForces<ExecutionSpace>::FabricForces(const ExecutionSpace& space, const Parameters& p)
-    : parameters(p),
+FabricForces<ExecutionSpace>::FabricForces(const ExecutionSpace& on, const Parameters& p)
+    : space(on),
+      parameters(p),
       vertices(static_cast<int>(p.mesh.rest.size())),
       padded(padded_vertices(vertices)),
       decay(p.integrator == Integrator::rk4 ? p.damping : 0.0),
@@ -114,8 +142,8 @@ FabricForces<ExecutionSpace>::FabricForces(const ExecutionSpace& space, const Pa
     decay += fastest_dashpot_decay(dashpots, p.mass);
   }
   if (has_load_kernel) {
-    external.rest = rest_positions(space);
-    fabric.load = points("drogue::fabric::load");
+    external.rest = rest_positions();
+    fabric.load = make_points<ExecutionSpace>("drogue::fabric::load", p.mass.size());
     make_timed_loads(space, p, external);
   }
   if (!p.follower_pressures.empty()) {
@@ -124,45 +152,13 @@ FabricForces<ExecutionSpace>::FabricForces(const ExecutionSpace& space, const Pa
   }
   if (external.has_pressure() || bending > 0.0)
     _load_stiffness = decltype(_load_stiffness)("drogue::fabric::load_stiffness", p.mass.size());
-  if (!p.motions.empty()) dirichlet = make_dirichlet(space, p.motions, rest_positions(space));
-}
-
-/// Positions at rest, m, shared with forces or loads if they have them.
-template <class ExecutionSpace>
-PointsView<ExecutionSpace> FabricForces<ExecutionSpace>::rest_positions(const ExecutionSpace& space) const {
-  if (fabric.rest.extent(0) > 0) return fabric.rest;
-  if (external.rest.extent(0) > 0) return external.rest;
-  return make_rest_positions(space, parameters.mesh);
+  if (!p.motions.empty()) dirichlet = make_dirichlet(space, p.motions, rest_positions());
 }
 
 template <class ExecutionSpace>
-void FabricForces<ExecutionSpace>::evaluate_loads(const ExecutionSpace& space, const Points& x,
-                                                  const Points& v,
-                                                  const stepping::StageTime<ExecutionSpace>& time,
-                                                  bool with_dashpots) const {
-  if (has_load_kernel)
-    launch_each(space, "drogue::fabric::loads", vertices, external_functor(x, v, time, with_dashpots));
-}
-
-template <class ExecutionSpace>
-void FabricForces<ExecutionSpace>::apply_dirichlet(const ExecutionSpace& space, const Points& x,
-                                                   const Points& v,
-                                                   const stepping::StageTime<ExecutionSpace>& time,
-                                                   bool checks_divergence) const {
-  if (!dirichlet) return;
-  launch_each(space, "drogue::fabric::dirichlet", static_cast<int>(dirichlet->vertex.extent(0)),
-              DirichletFunctor<ExecutionSpace>{.prescribed = *dirichlet,
-                                               .x = x,
-                                               .v = v,
-                                               .stage_time = time,
-                                               .checks_divergence = checks_divergence});
-}
-
-template <class ExecutionSpace>
-void FabricForces<ExecutionSpace>::forces(const ExecutionSpace& space, const StepState<ExecutionSpace>& state,
-                                          const Points& x, PointsReader<ExecutionSpace>& reader,
-                                          std::span<Vector> to) const {
-  evaluate_loads(space, x, state.v, state.at(0.0), false);
+void FabricForces<ExecutionSpace>::forces(const State& state, const Points& x,
+                                          PointsReader<ExecutionSpace>& reader, std::span<Vector> to) const {
+  evaluate_loads(x, state.v, state.at(0.0), false);
   dispatch_model(parameters.material, [&]<ConstitutiveModel model>() {
     launch_packs(space, "drogue::fabric::force", padded,
                  ForceFunctor<ExecutionSpace, model>{fabric, x, state.spare_x});
@@ -171,16 +167,7 @@ void FabricForces<ExecutionSpace>::forces(const ExecutionSpace& space, const Ste
 }
 
 template <class ExecutionSpace>
-void FabricForces<ExecutionSpace>::update_line_stiffness(const ExecutionSpace& space) {
-  // The slots stay, so that captured graphs remain valid.
-  const SpringAdjacency springs = spring_adjacency(parameters.mesh, parameters.material);
-  device::copy(space, fabric.springs.value, table_view(space, "drogue::fabric::slot_values", springs.value));
-  space.fence("drogue::fabric::update_line_stiffness");
-}
-
-template <class ExecutionSpace>
-double FabricForces<ExecutionSpace>::fastest_frequency(const ExecutionSpace& space,
-                                                       const StepState<ExecutionSpace>& state) const {
+double FabricForces<ExecutionSpace>::fastest_frequency(const State& state) const {
   if (_load_stiffness.extent(0) > 0)
     launch_each(space, "drogue::fabric::load_stiffness", vertices,
                 LoadStiffnessFunctor<ExecutionSpace>{external_functor(state.x, state.v, state.at(0.0), false),
@@ -189,8 +176,7 @@ double FabricForces<ExecutionSpace>::fastest_frequency(const ExecutionSpace& spa
 }
 
 template <class ExecutionSpace>
-double FabricForces<ExecutionSpace>::frequency_at_least(const ExecutionSpace& space,
-                                                        const StepState<ExecutionSpace>& state) const {
+double FabricForces<ExecutionSpace>::frequency_at_least(const State& state) const {
   const auto n = static_cast<std::size_t>(vertices);
   const auto inverse_mass = Kokkos::create_mirror_view(fabric.inverse_mass);
   const auto fixed_dofs = Kokkos::create_mirror_view(fabric.fixed_dofs);
@@ -205,30 +191,28 @@ double FabricForces<ExecutionSpace>::frequency_at_least(const ExecutionSpace& sp
   PointsReader<ExecutionSpace> reader;
   std::vector<Vector> now(n);
   reader.read(space, state.x, now);
-  const Points trial = points("drogue::fabric::trial");
+  const Points trial = make_points<ExecutionSpace>("drogue::fabric::trial", n);
   return lanczos_frequency(root, now, displacement,
                            [&](const std::vector<Vector>& positions, std::vector<Vector>& to) {
                              copy_to_points<ExecutionSpace>(space, positions, trial);
-                             forces(space, state, trial, reader, to);
+                             forces(state, trial, reader, to);
                            });
 }
 
 template <class ExecutionSpace>
-void FabricForces<ExecutionSpace>::stress(const ExecutionSpace& space, const StepState<ExecutionSpace>& state,
-                                          StressMeasure measure, std::span<Stress> of_triangles) {
+void FabricForces<ExecutionSpace>::stress(const State& state, StressMeasure measure,
+                                          std::span<Stress> of_triangles) {
   _stress.triangles(space, parameters, fabric.moduli, state.x, measure, of_triangles);
 }
 
 template <class ExecutionSpace>
-void FabricForces<ExecutionSpace>::vertex_stress(const ExecutionSpace& space,
-                                                 const StepState<ExecutionSpace>& state,
-                                                 StressMeasure measure, std::span<Stress> of_vertices) {
+void FabricForces<ExecutionSpace>::vertex_stress(const State& state, StressMeasure measure,
+                                                 std::span<Stress> of_vertices) {
   _stress.vertices(space, parameters, fabric.moduli, state.x, measure, of_vertices);
 }
 
 template <class ExecutionSpace>
-Totals FabricForces<ExecutionSpace>::totals(const ExecutionSpace& space,
-                                            const StepState<ExecutionSpace>& state) const {
+Totals FabricForces<ExecutionSpace>::totals(const State& state) const {
   FabricViews<ExecutionSpace> with_dead_loads = fabric;
   with_dead_loads.load = dead.total;
   Totals totals = _totals.evaluate(space, parameters.material, with_dead_loads, state.x, state.v,

@@ -16,9 +16,9 @@
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/stepping/persistent_driver.hpp"
 #include "kernels/fabric/stepping/rk4.hpp"
-#include "kernels/fabric/stepping/state_copies.hpp"
 #include "kernels/fabric/stepping/symplectic_euler.hpp"
 #include "kernels/fabric/stepping/verlet.hpp"
+#include "kernels/stepping/state_list.hpp"
 #include "kernels/stepping/step_launcher.hpp"
 #include "kernels/stepping/step_loop.hpp"
 
@@ -80,7 +80,51 @@ class FabricSolver : public Solver {
   /// Record of failures for other kernels, which may read `has_failed`. Does not throw.
   [[nodiscard]] const StepMonitor<ExecutionSpace>& monitor() const { return _state.monitor; }
 
-  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override;
+  [[nodiscard]] std::vector<stepping::StateArray> state_arrays() const override {
+    return state_list().arrays();
+  }
+  [[nodiscard]] std::vector<double> download_state() override {
+    synchronize();
+    const StateList list = state_list();
+    const typename StateList::Packed packed("drogue::fabric::packed_state", list.size());
+    launch_each(space(), "drogue::fabric::pack_state", list.most_rows(),
+                stepping::CopyStateFunctor<ExecutionSpace>{list, packed, true});
+    std::vector<double> values(list.size());
+    device::copy_out(space(), values.data(), packed, values.size());
+    space().fence("drogue::fabric::download_state");
+    return values;
+  }
+  void upload_state(std::span<const double> values) override {
+    const StateList list = state_list();
+    const auto is_finite = [](double value) { return std::abs(value) < divergence_limit; };
+    if (values.size() != list.size() || !std::ranges::all_of(values, is_finite))
+      throw std::invalid_argument("fabric solver: all arrays of the state must be given, and be finite");
+    if (_loop.has_captured_steps()) synchronize();
+    if (_contact) _contact->reset();
+    const typename StateList::Packed packed("drogue::fabric::packed_state", list.size());
+    device::copy_in(space(), packed, values.data(), values.size());
+    launch_each(space(), "drogue::fabric::unpack_state", list.most_rows(),
+                stepping::CopyStateFunctor<ExecutionSpace>{list, packed, false});
+    _failure.reset();
+    reset_monitor();
+    enqueue_start();
+  }
+  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override {
+    const auto is_finite = [](const Vector& vector) {
+      return std::abs(vector[0]) + std::abs(vector[1]) + std::abs(vector[2]) < divergence_limit;
+    };
+    if (!std::ranges::all_of(positions, is_finite) || !std::ranges::all_of(velocities, is_finite))
+      throw std::invalid_argument("fabric solver: positions and velocities must be finite");
+    require_vertices(positions.size());
+    require_vertices(velocities.size());
+    if (_loop.has_captured_steps()) synchronize();
+    copy_to_points(space(), positions, _state.x);
+    copy_to_points(space(), velocities, _state.v);
+    if (_contact) _contact->reset();
+    _failure.reset();
+    reset_monitor();
+    enqueue_start();
+  }
   void download(std::span<Vector> positions, std::span<Vector> velocities) override {
     require_vertices(positions.size());
     require_vertices(velocities.size());
@@ -93,54 +137,89 @@ class FabricSolver : public Solver {
     return _failure;
   }
   [[nodiscard]] TimeState time_state() const override { return _state.time; }
-  void set_time_state(const TimeState& time) override;
-  void set_line_stiffness(std::span<const double> of_lines) override;
+  void set_time_state(const TimeState& time) override {
+    if (!(time.dt > 0.0 && std::isfinite(time.dt) && std::isfinite(time.start)))
+      throw std::invalid_argument("fabric solver: dt must be positive, and time finite");
+    if (time.since < 0 || time.step < time.since)
+      throw std::invalid_argument("fabric solver: the step must not precede the first step with its dt");
+    synchronize();
+    _state.time = time;
+    if (_loop.has_captured_steps()) forget_captures();
+    reset_monitor();
+    enqueue_start();
+    if (has_contact_in_steps()) _contact->set_dt(time.dt);
+    _launcher.discard_graphs();
+  }
+  void set_line_stiffness(std::span<const double> of_lines) override {
+    Parameters changed = _parameters;
+    changed.mesh.line_stiffness.assign(of_lines.begin(), of_lines.end());
+    check_parameters(changed);
+    synchronize();
+    _parameters = changed;
+    _forces.update_line_stiffness();
+    if (_contact) _contact->set_line_stiffness(of_lines);
+    _pulls.set_stiffness(space(), of_lines);
+    if (_persistent) make_persistent();
+  }
   void forces(std::span<Vector> of_vertices) override {
     require_vertices(of_vertices.size());
     synchronize();
-    _forces.forces(space(), _state, _state.x, _reader, of_vertices);
+    _forces.forces(_state, _state.x, _reader, of_vertices);
   }
   [[nodiscard]] double fastest_frequency() override {
     synchronize();
-    return _forces.fastest_frequency(space(), _state);
+    return _forces.fastest_frequency(_state);
   }
   [[nodiscard]] double frequency_at_least() override {
     synchronize();
-    return _forces.frequency_at_least(space(), _state);
+    return _forces.frequency_at_least(_state);
   }
   [[nodiscard]] double fastest_decay() const override { return _forces.decay; }
   void stress(StressMeasure measure, std::span<Stress> of_triangles) override {
     synchronize();
-    _forces.stress(space(), _state, measure, of_triangles);
+    _forces.stress(_state, measure, of_triangles);
   }
   void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override {
     require_vertices(of_vertices.size());
     synchronize();
-    _forces.vertex_stress(space(), _state, measure, of_vertices);
+    _forces.vertex_stress(_state, measure, of_vertices);
   }
-  [[nodiscard]] Totals totals() override;
-  void watch_pulls(std::span<const Pull> pulls) override;
+  [[nodiscard]] Totals totals() override {
+    synchronize();
+    Totals totals = _forces.totals(_state);
+    if (!_contact) return totals;
+    std::vector<ContactWork> work(static_cast<std::size_t>(vertices()));
+    contact_work(work);
+    for (const ContactWork& of_vertex : work)
+      totals.contact += of_vertex.normal, totals.friction += of_vertex.friction;
+    return totals;
+  }
+  void watch_pulls(std::span<const Pull> pulls) override {
+    if (_parameters.integrator != Integrator::verlet)
+      throw std::invalid_argument("fabric solver: pulls are watched in steps of the velocity Verlet method");
+    // The contact of an interval moves its last state after the forces on it were compared.
+    if (_contact && !has_contact_in_steps())
+      throw std::invalid_argument("fabric solver: pulls are watched with contact in every step");
+    if (pulls.size() > _parameters.mesh.rest.size())
+      throw std::invalid_argument("fabric solver: there are more pulls than vertices");
+    synchronize();
+    if (_loop.has_captured_steps()) forget_captures();
+    _pulls = PeakPulls<ExecutionSpace>(space(), _parameters.mesh, _parameters.mesh.line_stiffness, pulls);
+    record_pulls();
+    make_checkpoint();
+  }
   [[nodiscard]] std::vector<PeakPull> peak_pulls() override {
     synchronize();
     return _pulls.peaks(space());
-  }
-  void set_peak_pulls(std::span<const PeakPull> peaks) override {
-    _pulls.set_peaks(space(), peaks);
-    enqueue_checkpoint();
   }
   [[nodiscard]] const char* driver() const override { return stepping::driver_name(_launcher.driver()); }
   void contact_work(std::span<ContactWork> of_vertices) override {
     synchronize();
     require_vertices(of_vertices.size());
     std::ranges::fill(of_vertices, ContactWork{});
-    if (_contact) _contact->work(of_vertices);
-  }
-  void set_contact_work(std::span<const ContactWork> of_vertices) override {
-    synchronize();
-    require_vertices(of_vertices.size());
     if (!_contact) return;
-    _contact->set_work(of_vertices);
-    enqueue_checkpoint();
+    device::copy_out(space(), of_vertices.data(), _contact->work(), of_vertices.size());
+    space().fence("drogue::fabric::contact_work");
   }
 
  private:
@@ -153,6 +232,31 @@ class FabricSolver : public Solver {
   void require_vertices(std::size_t count) const {
     if (count != static_cast<std::size_t>(vertices()))
       throw std::invalid_argument("fabric solver: there must be one vector per vertex");
+  }
+
+  // ---- state ----
+
+  using StateList = stepping::StateList<ExecutionSpace>;
+  /// The state, whose positions and velocities alternate between buffers.
+  [[nodiscard]] StateList state_list() const {
+    StateList list;
+    list.add("position", "m", _state.x, vertices());
+    list.add("velocity", "m/s", _state.v, vertices());
+    if (_contact) {
+      list.add("contact_work", "J", _contact->work(), &ContactWork::normal);
+      list.add("friction_work", "J", _contact->work(), &ContactWork::friction);
+      list.add("contact_kick_x", "m/s", _contact->work(), &ContactWork::kick_x);
+      list.add("contact_kick_y", "m/s", _contact->work(), &ContactWork::kick_y);
+      list.add("contact_kick_z", "m/s", _contact->work(), &ContactWork::kick_z);
+    }
+    list.add("peak_pull", "N", _pulls.present(), &PeakPull::force);
+    list.add("peak_pull_time", "s", _pulls.present(), &PeakPull::time);
+    return list;
+  }
+  /// Makes room for a checkpoint of all arrays and takes the first one.
+  void make_checkpoint() {
+    _saved = typename StateList::Packed("drogue::fabric::saved_state", state_list().size());
+    enqueue_checkpoint();
   }
 
   // ---- drivers ----
@@ -181,7 +285,7 @@ class FabricSolver : public Solver {
 
   struct UniformSteps;
   [[nodiscard]] StepInputs<ExecutionSpace, VertexForce> inputs() const {
-    return {space(), _forces, {_vertex_force, _state.time, vertices()}};
+    return {_forces, {_vertex_force, _state.time, vertices()}};
   }
   /// Enqueues steps without the contact between intervals; as `enqueue_steps`.
   bool enqueue_interval(std::int64_t steps) {
@@ -222,8 +326,7 @@ class FabricSolver : public Solver {
   [[nodiscard]] bool has_contact_in_steps() const { return _contact && _parameters.contact.interval == 1; }
   /// Enqueues the comparison of the forces of the present state with their peaks.
   void record_pulls() const {
-    _pulls.record(space(), _state.x,
-                  CompletedStep<ExecutionSpace>{_state.monitor, _state.time, _state.parity});
+    _pulls.record(space(), _state.x, CompletedStep<ExecutionSpace>{_state.at(0.0)});
   }
   void save_checkpoint(std::int64_t launches);
   /// Sets the device's step counter to the host's and clears its failure record. Blocks.
@@ -231,13 +334,7 @@ class FabricSolver : public Solver {
     stepping::reset_monitor(space(), _state.monitor, _state.time.step);
     _state.parity = 0;
   }
-  /// Enqueues prescribed motion at the present time and checkpoints of the state before and after it.
-  void enqueue_start() {
-    enqueue_checkpoint();
-    if (!_forces.dirichlet || _failure) return;
-    _forces.apply_dirichlet(space(), _state.x, _state.v, _state.at(0.0), true);
-    enqueue_checkpoint();
-  }
+  void enqueue_start();
 
   const device::Instance<ExecutionSpace>& _instance;
   Parameters _parameters;
@@ -246,7 +343,7 @@ class FabricSolver : public Solver {
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
   StepState<ExecutionSpace> _state;
-  Points _saved_x, _saved_v;
+  typename StateList::Packed _saved;  ///< the last checkpoint
   stepping::Checkpoint<ExecutionSpace> _checkpoint;
   std::optional<StepFailure> _failure;
   RungeKutta<ExecutionSpace> _runge_kutta;
@@ -270,13 +367,10 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const device::Instance<E
              .spare_x = points("drogue::fabric::next"),
              .spare_v = {},
              .monitor = stepping::make_monitor<ExecutionSpace>(_loop.status_view()),
-             .time = {0, p.dt, 0, 0.0}},
-      _saved_x(points("drogue::fabric::saved_positions")),
-      _saved_v(points("drogue::fabric::saved_velocities")) {
+             .time = {0, p.dt, 0, 0.0}} {
   if (RelaxesVelocity<VertexForce> && p.integrator != Integrator::symplectic_euler)
     throw std::invalid_argument("fabric solver: only the symplectic Euler method relaxes velocities");
   copy_to_points<ExecutionSpace>(space(), p.mesh.rest, _state.x);
-  device::copy(space(), _saved_x, _state.x);
   reset_monitor();
   if (p.contact.is_enabled())
     _contact = make_contact<ExecutionSpace>(
@@ -284,85 +378,9 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const device::Instance<E
   if (p.integrator == Integrator::rk4) _runge_kutta = {_forces, _launcher.driver() == Driver::stages};
   if (p.integrator == Integrator::verlet && _forces.has_dashpots)
     _state.spare_v = points("drogue::fabric::damped_velocities");
+  make_checkpoint();
   make_persistent();
   if (_persistent) _launcher.use_persistent();
-}
-
-// ---- state ----
-
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::upload(std::span<const Vector> positions,
-                                                       std::span<const Vector> velocities) {
-  const auto is_finite = [](const Vector& vector) {
-    return std::abs(vector[0]) + std::abs(vector[1]) + std::abs(vector[2]) < divergence_limit;
-  };
-  if (!std::ranges::all_of(positions, is_finite) || !std::ranges::all_of(velocities, is_finite))
-    throw std::invalid_argument("fabric solver: positions and velocities must be finite");
-  require_vertices(positions.size());
-  require_vertices(velocities.size());
-  if (_loop.has_captured_steps()) synchronize();
-  copy_to_points(space(), positions, _state.x);
-  copy_to_points(space(), velocities, _state.v);
-  _failure.reset();
-  reset_monitor();
-  if (_contact) _contact->reset();
-  enqueue_start();
-}
-
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::set_time_state(const TimeState& time) {
-  if (!(time.dt > 0.0 && std::isfinite(time.dt) && std::isfinite(time.start)))
-    throw std::invalid_argument("fabric solver: dt must be positive, and time finite");
-  if (time.since < 0 || time.step < time.since)
-    throw std::invalid_argument("fabric solver: the step must not precede the first step with its dt");
-  synchronize();
-  _state.time = time;
-  if (_loop.has_captured_steps()) forget_captures();
-  reset_monitor();
-  enqueue_start();
-  if (has_contact_in_steps()) _contact->set_dt(time.dt);
-  _launcher.discard_graphs();
-}
-
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::set_line_stiffness(std::span<const double> of_lines) {
-  Parameters changed = _parameters;
-  changed.mesh.line_stiffness.assign(of_lines.begin(), of_lines.end());
-  check_parameters(changed);
-  synchronize();
-  _parameters = changed;
-  _forces.update_line_stiffness(space());
-  if (_contact) _contact->set_line_stiffness(of_lines);
-  _pulls.set_stiffness(space(), of_lines);
-  if (_persistent) make_persistent();
-}
-
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::watch_pulls(std::span<const Pull> pulls) {
-  if (_parameters.integrator != Integrator::verlet)
-    throw std::invalid_argument("fabric solver: pulls are watched in steps of the velocity Verlet method");
-  // The contact of an interval moves its last state after the forces on it were compared.
-  if (_contact && !has_contact_in_steps())
-    throw std::invalid_argument("fabric solver: pulls are watched with contact in every step");
-  if (pulls.size() > _parameters.mesh.rest.size())
-    throw std::invalid_argument("fabric solver: there are more pulls than vertices");
-  synchronize();
-  if (_loop.has_captured_steps()) forget_captures();
-  _pulls = PeakPulls<ExecutionSpace>(space(), _parameters.mesh, _parameters.mesh.line_stiffness, pulls);
-  record_pulls();
-  enqueue_checkpoint();
-}
-
-template <class ExecutionSpace, class VertexForce>
-Totals FabricSolver<ExecutionSpace, VertexForce>::totals() {
-  synchronize();
-  Totals totals = _forces.totals(space(), _state);
-  if (!_contact) return totals;
-  std::vector<ContactWork> work(static_cast<std::size_t>(vertices()));
-  _contact->work(work);
-  for (const ContactWork& of_vertex : work)
-    totals.contact += of_vertex.normal, totals.friction += of_vertex.friction;
-  return totals;
 }
 
 // ---- steps ----
@@ -420,28 +438,29 @@ void FabricSolver<ExecutionSpace, VertexForce>::integrate(std::int64_t steps) {
 
 // ---- checkpoint and failure ----
 
+/// Enqueues prescribed motion at the present time, and checkpoints of the state before and after it.
+template <class ExecutionSpace, class VertexForce>
+void FabricSolver<ExecutionSpace, VertexForce>::enqueue_start() {
+  enqueue_checkpoint();
+  if (!_forces.dirichlet || _failure) return;
+  _forces.apply_dirichlet(_state.x, _state.v, _state.at(0.0), true);
+  enqueue_checkpoint();
+}
+
 /// Enqueues a checkpoint that publishes `launches`, unless that is negative.
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::save_checkpoint(std::int64_t launches) {
-  SavedState<ExecutionSpace> now{_state.x, _state.v, {}, _pulls.present()},
-      saved{_saved_x, _saved_v, {}, _pulls.saved()};
-  if (_contact) {
-    const CheckpointedWork<ExecutionSpace> work = _contact->checkpointed_work();
-    now.work = work.now, saved.work = work.saved;
-  }
-  _checkpoint.save(space(), "drogue::fabric::checkpoint", _state.monitor, _state.parity, _forces.padded,
-                   CopyStateFunctor<ExecutionSpace>{now, saved}, launches);
+  const StateList list = state_list();
+  _checkpoint.save(space(), "drogue::fabric::checkpoint", _state.monitor, _state.parity, list.most_rows(),
+                   stepping::CopyStateFunctor<ExecutionSpace>{list, _saved, true}, launches);
 }
 
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::synchronize() {
   const auto first = _checkpoint.roll_back_after_failure(space(), _state.monitor, [this] {
-    device::copy(space(), _state.x, _saved_x);
-    device::copy(space(), _state.v, _saved_v);
-    if (_pulls.size() > 0) device::copy(space(), _pulls.present(), _pulls.saved());
-    if (!_contact) return;
-    const CheckpointedWork<ExecutionSpace> work = _contact->checkpointed_work();
-    device::copy(space(), work.now, work.saved);
+    const StateList list = state_list();
+    launch_each(space(), "drogue::fabric::restore_checkpoint", list.most_rows(),
+                stepping::CopyStateFunctor<ExecutionSpace>{list, _saved, false});
   });
   TimeState& time = _state.time;
   if (_loop.has_captured_steps())

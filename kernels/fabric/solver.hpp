@@ -7,6 +7,7 @@
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/results.hpp"
+#include "kernels/stepping/state_array.hpp"
 
 namespace drogue::fabric {
 
@@ -55,6 +56,17 @@ namespace drogue::fabric {
 class Solver {
  public:
   virtual ~Solver() = default;
+
+  /// Arrays of the state, those of pulls that are watched included. From their values and `time_state`, an
+  /// equal solver continues bit for bit. Throws only std::bad_alloc.
+  [[nodiscard]] virtual std::vector<stepping::StateArray> state_arrays() const = 0;
+
+  /// Values of `state_arrays`, one array after another. Blocks. Throws only after a failed kernel.
+  [[nodiscard]] virtual std::vector<double> download_state() = 0;
+
+  /// Restores the state at the present time and forgets a failure. Blocks. Throws std::invalid_argument for
+  /// values that are not finite or exceed 1e100, and another number than that of `download_state`.
+  virtual void upload_state(std::span<const double> values) = 0;
 
   /// Sets positions, m, and velocities, m/s, of all vertices at the present time and forgets a failure.
   /// Blocks. Throws std::invalid_argument for values that are not finite and spans of the wrong length.
@@ -132,20 +144,12 @@ class Solver {
   /// Peaks of the pulls that are watched. Blocks. Throws only after a failed kernel.
   [[nodiscard]] virtual std::vector<PeakPull> peak_pulls() = 0;
 
-  /// Restores the peaks, N and s. Blocks. Throws std::invalid_argument for another number than that of the
-  /// pulls.
-  virtual void set_peak_pulls(std::span<const PeakPull> peaks) = 0;
-
   /// Name of the driver of steps: "persistent", "graph" or "plain". Does not throw.
   [[nodiscard]] virtual const char* driver() const = 0;
 
   /// Work of contact on every vertex since the solver was made, J; zero without contact. Zones that move as
   /// rigid bodies count to first order. Blocks. Throws std::invalid_argument for a span of the wrong length.
   virtual void contact_work(std::span<ContactWork> of_vertices) = 0;
-
-  /// Restores the work of contact, J, from a restart. Blocks. Throws std::invalid_argument for a span of the
-  /// wrong length.
-  virtual void set_contact_work(std::span<const ContactWork> of_vertices) = 0;
 };
 
 /// True if a triangle is not flat to round-off and its longest side, m, lies between 1e-70 and 1e70, so that

@@ -22,7 +22,7 @@ template <class ExecutionSpace, class VertexForce>
 void end_drift(const StepInputs<ExecutionSpace, VertexForce>& in, StepState<ExecutionSpace>& state) {
   std::swap(state.x, state.spare_x);
   state.parity = 1 - state.parity;
-  in.forces.apply_dirichlet(in.space, state.x, state.v, state.at(0.0), true);
+  in.forces.apply_dirichlet(state.x, state.v, state.at(0.0), true);
 }
 
 }  // namespace drogue::fabric

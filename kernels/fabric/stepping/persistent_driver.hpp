@@ -65,7 +65,7 @@ template <bool loads, class ExecutionSpace, class VertexForce>
     PersistentDriver<ExecutionSpace>& driver, const StepInputs<ExecutionSpace, VertexForce>& in,
     const StepState<ExecutionSpace>& state, std::int64_t steps, std::uint64_t stages, bool captured) {
   if (captured) {
-    device::copy_bytes(in.space, device::CopyKind::within, state.monitor.steps.data() + 1,
+    device::copy_bytes(in.forces.space, device::CopyKind::within, state.monitor.steps.data() + 1,
                        state.monitor.steps.data(), sizeof(std::int64_t));
     driver.forget_messages();
   }

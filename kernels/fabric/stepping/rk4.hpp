@@ -206,9 +206,9 @@ class RungeKutta {
                  next = stage == 3 ? state.x : at[stage + 1],
                  v_now = stage == 0 ? state.v : _velocity[stage - 1],
                  v_next = stage == 3 ? state.v : _velocity[stage];
-    in.forces.evaluate_loads(in.space, at[stage], v_now, state.at(fraction_before_stage(stage)),
+    in.forces.evaluate_loads(at[stage], v_now, state.at(fraction_before_stage(stage)),
                              in.forces.has_dashpots);
-    launch_packs(in.space, "drogue::fabric::rk4_stage", in.forces.padded,
+    launch_packs(in.forces.space, "drogue::fabric::rk4_stage", in.forces.padded,
                  RungeKuttaFunctor<ExecutionSpace, model, VertexForce>{
                      .fabric = in.forces.fabric,
                      .x = state.x,
@@ -221,14 +221,14 @@ class RungeKutta {
                      .stage = stage,
                      .vertex_force = in.vertex_force});
     // The last stage has counted the step.
-    in.forces.apply_dirichlet(in.space, next, v_next,
-                              state.at(stage == 3 ? 0.0 : fraction_after_stage(stage)), stage == 3);
+    in.forces.apply_dirichlet(next, v_next, state.at(stage == 3 ? 0.0 : fraction_after_stage(stage)),
+                              stage == 3);
   }
 
   template <ConstitutiveModel model, bool last, class VertexForce>
   void enqueue_half(const char* label, const StepInputs<ExecutionSpace, VertexForce>& in,
                     const StepState<ExecutionSpace>& state) const {
-    launch_packs(in.space, label, in.forces.padded,
+    launch_packs(in.forces.space, label, in.forces.padded,
                  RungeKuttaHalfFunctor<ExecutionSpace, model, last, VertexForce>{
                      .fabric = in.forces.fabric,
                      .x = state.x,

@@ -46,13 +46,13 @@ template <ConstitutiveModel model, class ExecutionSpace, class VertexForce>
 void enqueue_symplectic_euler_step(const StepInputs<ExecutionSpace, VertexForce>& in,
                                    StepState<ExecutionSpace>& state) {
   const FabricForces<ExecutionSpace>& forces = in.forces;
-  forces.evaluate_loads(in.space, state.x, state.v, state.at(0.0), forces.has_dashpots);
+  forces.evaluate_loads(state.x, state.v, state.at(0.0), forces.has_dashpots);
   // The relaxation is implicit: it needs the velocity of pins at the end of the step. Their positions go
   // where the kernel writes those after the drift.
   if constexpr (RelaxesVelocity<VertexForce>)
-    forces.apply_dirichlet(in.space, state.spare_x, state.v, state.at(1.0), false);
+    forces.apply_dirichlet(state.spare_x, state.v, state.at(1.0), false);
   launch_packs(
-      in.space, "drogue::fabric::symplectic_euler", forces.padded,
+      forces.space, "drogue::fabric::symplectic_euler", forces.padded,
       SymplecticEulerFunctor<ExecutionSpace, model, VertexForce>{.fabric = forces.fabric,
                                                                  .x = state.x,
                                                                  .v = state.v,

@@ -26,51 +26,30 @@ struct VerletFunctor {
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * lanes;
     Vector3<R> velocity = load_points<R>(v, i);
-    if constexpr (has_vertex_force<VertexForce>) {
-      with_vertex_force(pack, velocity);
-      return;
-    }
-    const Vector3<R> a = acceleration(fabric, force<model, R>(fabric, x, i), velocity, i),
-                     free = free_axes<R>(fabric, i);
-    const Vector3<R> position = load_points<R>(x, i);
+    const Vector3<R> total_force = force<model, R>(fabric, x, i),
+                     a = acceleration(fabric, total_force, velocity, i), free = free_axes<R>(fabric, i),
+                     position = load_points<R>(x, i);
     const std::int64_t step = monitor.steps(parity);
+    const auto kick = [&] {
+      if constexpr (has_vertex_force<VertexForce>) {
+        // Evaluated for each half, since the first one changes the velocity.
+        const Vector3<R> sum =
+            vertex_force.add_to(total_force, position, velocity, &fabric.inverse_mass(i), i, step, 0.0);
+        velocity = kicked(velocity, acceleration(fabric, sum, velocity, i), free, damping, 0.5 * dt);
+      } else {
+        velocity = kicked(velocity, a, free, damping, 0.5 * dt);
+      }
+    };
     if (ends) {
-      velocity = kicked(velocity, a, free, damping, 0.5 * dt);
+      kick();
       record_divergence(monitor, step, i, position, velocity);
     }
     if (begins) {
-      velocity = kicked(velocity, a, free, damping, 0.5 * dt);
+      kick();
       if (drifts) store_points(next, i, position + dt * velocity);
       if (pack == 0) monitor.steps(1 - parity) = step + 1;
     }
     store_points(v, i, velocity);
-  }
-
-  /// Both half kicks, in m/s, with a VertexForce, which is evaluated for each since the first changes the
-  /// velocity.
-  KOKKOS_FUNCTION void with_vertex_force(int pack, Vector3<R> velocity) const {
-    if constexpr (has_vertex_force<VertexForce>) {
-      const int i = pack * lanes;
-      const Vector3<R> total_force = force<model, R>(fabric, x, i), free = free_axes<R>(fabric, i),
-                       position = load_points<R>(x, i);
-      const std::int64_t step = monitor.steps(parity);
-      const double* const inverse_mass = &fabric.inverse_mass(i);
-      const auto kick = [&] {
-        const Vector3<R> sum =
-            vertex_force.add_to(total_force, position, velocity, inverse_mass, i, step, 0.0);
-        velocity = kicked(velocity, acceleration(fabric, sum, velocity, i), free, damping, 0.5 * dt);
-      };
-      if (ends) {
-        kick();
-        record_divergence(monitor, step, i, position, velocity);
-      }
-      if (begins) {
-        kick();
-        if (drifts) store_points(next, i, position + dt * velocity);
-        if (pack == 0) monitor.steps(1 - parity) = step + 1;
-      }
-      store_points(v, i, velocity);
-    }
   }
 };
 
@@ -98,8 +77,8 @@ template <ConstitutiveModel model, class ExecutionSpace, class VertexForce>
 void enqueue_verlet_kicks(const StepInputs<ExecutionSpace, VertexForce>& in, StepState<ExecutionSpace>& state,
                           bool ends, bool begins) {
   const FabricForces<ExecutionSpace>& forces = in.forces;
-  forces.evaluate_loads(in.space, state.x, state.v, state.at(0.0), false);
-  launch_packs(in.space, "drogue::fabric::verlet", forces.padded,
+  forces.evaluate_loads(state.x, state.v, state.at(0.0), false);
+  launch_packs(in.forces.space, "drogue::fabric::verlet", forces.padded,
                VerletFunctor<ExecutionSpace, model, VertexForce>{.fabric = forces.fabric,
                                                                  .x = state.x,
                                                                  .v = state.v,
@@ -114,7 +93,7 @@ void enqueue_verlet_kicks(const StepInputs<ExecutionSpace, VertexForce>& in, Ste
                                                                  .vertex_force = in.vertex_force});
   if (!begins) return;
   if (forces.has_dashpots) {
-    launch_each(in.space, "drogue::fabric::dashpot_damping", forces.vertices,
+    launch_each(in.forces.space, "drogue::fabric::dashpot_damping", forces.vertices,
                 DashpotDampingFunctor<ExecutionSpace>{.fabric = forces.fabric,
                                                       .dashpots = forces.external.dashpots,
                                                       .x = state.x,

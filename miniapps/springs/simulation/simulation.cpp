@@ -195,16 +195,13 @@ std::int64_t Simulation::steps_to_event(const framework::AdvanceLimits& limits) 
 
 /// Copies the state to the host and back.
 void Simulation::round_trip() {
-  std::vector<Vector> x(_problem.x.size()), v(x.size());
-  std::vector<fabric::ContactWork> work(_scene.contact.is_enabled() ? x.size() : 0);
+  std::vector<double> state;
   {
     const ScopedStopwatch stopwatch(_d2h_s);
-    _solver->download(x, v);
-    if (!work.empty()) _solver->contact_work(work);
+    state = _solver->download_state();
   }
   const ScopedStopwatch stopwatch(_h2d_s);
-  _solver->upload(x, v);
-  if (!work.empty()) _solver->set_contact_work(work);
+  _solver->upload_state(state);
 }
 
 /// Takes steps in batches that adapt to the poll interval. Returns false if the state was lost, or if the

@@ -100,7 +100,11 @@ TEST(FabricPulls, StartWithThePresentStateAndForgetLinesThatAreCut) {
   solver->watch_pulls(made.pulls);
   const double taut = force_of(made.parameters, made.pulls[0], made.positions);
   EXPECT_NEAR(solver->peak_pulls()[0].force, taut, 1e-12 * taut);
-  solver->set_peak_pulls(std::vector<PeakPull>{{1e-3, 0.0}, {5.0, 0.25}, {}});
+  std::vector<double> state = solver->download_state();
+  std::ranges::copy(std::vector{1e-3, 5.0, 0.0, 0.0, 0.25, 0.0},
+                    state.end() - 6);  // three forces, three times
+  solver->upload_state(state);
+  EXPECT_EQ(solver->download_state(), state);
   solver->set_line_stiffness(std::vector<double>(3, 0.0));
   solver->enqueue_steps(50);
   EXPECT_EQ(solver->peak_pulls()[0].force, 1e-3);
@@ -129,7 +133,9 @@ TEST(FabricPulls, RefuseLinesThatDoNotPullTheirVertexAndStepsThatContactChangesL
   const auto solver = create_solver(backend, made.parameters);
   EXPECT_THROW(solver->watch_pulls(std::vector<Pull>{{0, {1}}}), std::invalid_argument);
   EXPECT_THROW(solver->watch_pulls(std::vector<Pull>{{3, {3}}}), std::invalid_argument);
-  EXPECT_THROW(solver->set_peak_pulls(std::vector<PeakPull>(2)), std::invalid_argument);
+  const std::vector<double> without = solver->download_state();
+  solver->watch_pulls(made.pulls);
+  EXPECT_THROW(solver->upload_state(without), std::invalid_argument);
   made.parameters.contact.self = true;
   made.parameters.contact.interval = 2;
   EXPECT_THROW(create_solver(backend, made.parameters)->watch_pulls(made.pulls), std::invalid_argument);
