@@ -49,16 +49,14 @@ struct RecordPullsFunctor {
   }
 };
 
-/// Time of the steps of a fabric solver: counts the steps on the device, and refuses those after a failure.
+/// Time of the steps of a fabric solver, which refuses those after a failure.
 template <class ExecutionSpace>
 struct CompletedStep {
-  stepping::StepMonitor<ExecutionSpace> monitor;
-  TimeState origin;  ///< its step is ignored
-  int parity;        ///< entry of `monitor.steps` that counts the completed steps
+  stepping::StageTime<ExecutionSpace> now;
 
   KOKKOS_FUNCTION bool operator()(double& time) const {
-    time = origin.start + static_cast<double>(monitor.steps(parity) - origin.since) * origin.dt;
-    return !monitor.has_failed();
+    time = now.time();
+    return !now.monitor.has_failed();
   }
 };
 
@@ -96,7 +94,6 @@ class PeakPulls {
               .stiffness = list_view(space, "drogue::fabric::pulling_stiffness", length),
               .length = list_view(space, "drogue::fabric::pulling_length", length),
               .peak = list_view(space, "drogue::fabric::peak_pulls", none)};
-    _saved = list_view(space, "drogue::fabric::saved_peak_pulls", none);
     _pulls = pulls.size();
     set_stiffness(space, stiffness);
   }
@@ -124,8 +121,6 @@ class PeakPulls {
 
   /// Peaks so far, N and s, on the device. Does not throw.
   [[nodiscard]] const ListView<ExecutionSpace, PeakPull>& present() const { return _views.peak; }
-  /// Place of the peaks of a checkpoint, N and s, on the device. Does not throw.
-  [[nodiscard]] const ListView<ExecutionSpace, PeakPull>& saved() const { return _saved; }
 
   /// Peaks so far. Blocks. Throws only after a failed kernel.
   [[nodiscard]] std::vector<PeakPull> peaks(const ExecutionSpace& space) const {
@@ -156,7 +151,6 @@ class PeakPulls {
   }
 
   PullViews<ExecutionSpace> _views;
-  ListView<ExecutionSpace, PeakPull> _saved;
   std::vector<int> _lines;
   std::size_t _pulls = 0;
 };

@@ -7,6 +7,7 @@
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/results.hpp"
+#include "kernels/stepping/state_array.hpp"
 
 namespace drogue::fabric {
 
@@ -46,15 +47,26 @@ namespace drogue::fabric {
 }
 
 /// Cloth and strings on a backend that a program chooses at run time. Needs an initialised runtime. To couple
-/// other kernels on the device, use `FabricSolver`.
+/// other kernels on the device, use `FabricSolver`, which is this class with the functions that they need.
 ///
-/// Call `upload`, then `advance` as often as needed. A step fails if its state is not finite or exceeds
+/// Call `upload`, then `enqueue_steps` as often as needed. A step fails if its state is not finite or exceeds
 /// 1e100, or if contact fails. The solver then returns to its last checkpoint: one of every 256 steps, or the
 /// uploaded state. All functions that read the state then refer to the checkpoint, and `time_state` returns
 /// its step.
 class Solver {
  public:
   virtual ~Solver() = default;
+
+  /// Arrays of the state, those of pulls that are watched included. From their values and `time_state`, an
+  /// equal solver continues bit for bit. Throws only std::bad_alloc.
+  [[nodiscard]] virtual std::vector<stepping::StateArray> state_arrays() const = 0;
+
+  /// Values of `state_arrays`, one array after another. Blocks. Throws only after a failed kernel.
+  [[nodiscard]] virtual std::vector<double> download_state() = 0;
+
+  /// Restores the state at the present time and forgets a failure. Blocks. Throws std::invalid_argument for
+  /// values that are not finite or exceed 1e100, and another number than that of `download_state`.
+  virtual void upload_state(std::span<const double> values) = 0;
 
   /// Sets positions, m, and velocities, m/s, of all vertices at the present time and forgets a failure.
   /// Blocks. Throws std::invalid_argument for values that are not finite and spans of the wrong length.
@@ -64,11 +76,12 @@ class Solver {
   /// length.
   virtual void download(std::span<Vector> positions, std::span<Vector> velocities) = 0;
 
-  /// Enqueues `steps` steps of `time_state().dt`. Asynchronous but for a bound on the steps in flight.
-  /// Returns false once a failure is known; no steps follow until the next `upload`. The distribution of
-  /// steps over calls changes no bit. Throws std::invalid_argument for a negative number of steps, and
-  /// std::runtime_error after a failed kernel.
-  virtual bool advance(std::int64_t steps) = 0;
+  /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
+  /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
+  /// nothing more, once a failure is known on the host; no steps follow until the next `upload`. The
+  /// distribution of steps over calls changes no bit, except with an interval of contact. Throws
+  /// std::invalid_argument for a negative number, and one that ends beyond step 2^53.
+  virtual bool enqueue_steps(std::int64_t steps) = 0;
 
   /// First failed step, if any. Blocks until all steps are done. Throws only after a failed kernel.
   [[nodiscard]] virtual std::optional<StepFailure> failure() = 0;
@@ -118,8 +131,8 @@ class Solver {
   /// on every backend. Blocks. Throws only after a failed kernel.
   [[nodiscard]] virtual Totals totals() = 0;
 
-  /// Sets E A of every line of the mesh, N; 0 cuts a line. Blocks. Throws std::invalid_argument for values
-  /// that are negative or not finite, and spans of the wrong length.
+  /// Sets E A of every line of the mesh, N; 0 cuts a line, which is then no obstacle in contact. Blocks.
+  /// Throws std::invalid_argument for values that are negative or not finite, and spans of the wrong length.
   virtual void set_line_stiffness(std::span<const double> of_lines) = 0;
 
   /// Records the largest forces of lines on vertices, N, from now on, those of the present state included:
@@ -131,20 +144,12 @@ class Solver {
   /// Peaks of the pulls that are watched. Blocks. Throws only after a failed kernel.
   [[nodiscard]] virtual std::vector<PeakPull> peak_pulls() = 0;
 
-  /// Restores the peaks, N and s. Blocks. Throws std::invalid_argument for another number than that of the
-  /// pulls.
-  virtual void set_peak_pulls(std::span<const PeakPull> peaks) = 0;
-
   /// Name of the driver of steps: "persistent", "graph" or "plain". Does not throw.
   [[nodiscard]] virtual const char* driver() const = 0;
 
   /// Work of contact on every vertex since the solver was made, J; zero without contact. Zones that move as
   /// rigid bodies count to first order. Blocks. Throws std::invalid_argument for a span of the wrong length.
   virtual void contact_work(std::span<ContactWork> of_vertices) = 0;
-
-  /// Restores the work of contact, J, from a restart. Blocks. Throws std::invalid_argument for a span of the
-  /// wrong length.
-  virtual void set_contact_work(std::span<const ContactWork> of_vertices) = 0;
 };
 
 /// True if a triangle is not flat to round-off and its longest side, m, lies between 1e-70 and 1e70, so that

@@ -77,12 +77,9 @@ double default_dt(const fabric::Parameters& p, fabric::Solver& solver) {
 
 Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count) {
   solver.set_dt(default_dt(p, solver));
-  return {[&solver, from = start(p), none = std::vector<fabric::ContactWork>(p.mass.size())] {
-            solver.upload(from.x, from.v);
-            solver.set_contact_work(none);
-          },
+  return {[&solver, from = solver.download_state()] { solver.upload_state(from); },
           [&solver, count] {
-            solver.advance(count);
+            solver.enqueue_steps(count);
             static_cast<void>(solver.failure());  // blocks until the steps are done
             return count;
           }};

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/elastic/make_fabric_views.hpp"
-#include "kernels/fabric/stepping/step.hpp"
+#include "kernels/fabric/stepping/rk4.hpp"
 #include "perf/raw/cuda_pair.hpp"
 #include "perf/raw/fabric_step.hpp"
 

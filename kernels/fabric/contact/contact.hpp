@@ -11,12 +11,6 @@
 
 namespace drogue::fabric {
 
-/// Work of contact on every vertex, and its value at the last checkpoint.
-template <class ExecutionSpace>
-struct CheckpointedWork {
-  ListView<ExecutionSpace, ContactWork> now, saved;
-};
-
 /// Contact handling around the steps of a solver with any constitutive model: in every step, or for all steps
 /// of an interval together (`Contact::interval`). Asynchronous unless stated.
 template <class ExecutionSpace>
@@ -45,8 +39,8 @@ class ContactHandler {
   /// Discards neighbour lists and recorded failures after a change of the positions. Blocks.
   virtual void reset() = 0;
 
-  /// Work on every vertex, J, which the checkpoints of the solver include. Does not throw.
-  [[nodiscard]] virtual CheckpointedWork<ExecutionSpace> checkpointed_work() const = 0;
+  /// Work on every vertex so far, J, a part of the state. Does not throw.
+  [[nodiscard]] virtual const ListView<ExecutionSpace, ContactWork>& work() const = 0;
 
   /// Lines without stiffness, E A in N of every line of the mesh, become no obstacles; the others become
   /// obstacles. Blocks.
@@ -54,10 +48,6 @@ class ContactHandler {
 
   /// Reason of the failure of step `step`. Blocks.
   [[nodiscard]] virtual FailureReason reason(std::int64_t step) const = 0;
-
-  /// Work on every vertex so far, J. Both block.
-  virtual void work(std::span<ContactWork> of_vertices) const = 0;
-  virtual void set_work(std::span<const ContactWork> of_vertices) = 0;
 };
 
 /// Inputs of contact, owned by the solver.

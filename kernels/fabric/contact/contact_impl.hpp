@@ -44,13 +44,9 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
     graphs(x, v).end.launch();
   }
   void reset() override;
-  [[nodiscard]] CheckpointedWork<ExecutionSpace> checkpointed_work() const override {
-    return {_work, _saved_work};
-  }
+  [[nodiscard]] const ListView<ExecutionSpace, ContactWork>& work() const override { return _work; }
   void set_line_stiffness(std::span<const double> of_lines) override;
   [[nodiscard]] FailureReason reason(std::int64_t step) const override;
-  void work(std::span<ContactWork> of_vertices) const override;
-  void set_work(std::span<const ContactWork> of_vertices) override;
   /// Data of the kernels.
   [[nodiscard]] const ContactViews<ExecutionSpace>& views() const { return _views; }
 
@@ -90,8 +86,7 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   std::vector<std::shared_ptr<void>> _owned;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> _inverse_mass;
   Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> _fixed_dofs;
-  ListView<ExecutionSpace, ContactWork> _work, _saved_work;
-  typename ListView<ExecutionSpace, ContactWork>::HostMirror _work_on_host;
+  ListView<ExecutionSpace, ContactWork> _work;
   double _dt;  ///< s, as last set
   ContactViews<ExecutionSpace> _views;
   std::vector<int> _edge_of_line;  ///< `edges_of_lines`
@@ -197,8 +192,6 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   allocate(t.stuck, "stuck", n), allocate(t.motion, "zone_motion", n);
   allocate(t.progress, "contact_progress", 1);
   _work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::contact_work", n);
-  _saved_work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::saved_contact_work", n);
-  _work_on_host = Kokkos::create_mirror_view(_work);
   t.work = _work;
   if (!p.mesh.line_stiffness.empty()) set_line_stiffness(p.mesh.line_stiffness);
   reset();
@@ -327,22 +320,6 @@ FailureReason ContactImpl<ExecutionSpace>::reason(std::int64_t step) const {
   const std::uint64_t recorded = progress(0).reason;
   return static_cast<std::int64_t>(recorded >> 4U) == step ? static_cast<FailureReason>(recorded & 15U)
                                                            : FailureReason::not_finite;
-}
-
-template <class ExecutionSpace>
-void ContactImpl<ExecutionSpace>::work(std::span<ContactWork> of_vertices) const {
-  const auto& mirror = _work_on_host;
-  device::copy(_instance.space(), mirror, _work);
-  _instance.space().fence("drogue::fabric::contact_work");
-  std::copy_n(mirror.data(), of_vertices.size(), of_vertices.begin());
-}
-
-template <class ExecutionSpace>
-void ContactImpl<ExecutionSpace>::set_work(std::span<const ContactWork> of_vertices) {
-  const auto& mirror = _work_on_host;
-  std::copy(of_vertices.begin(), of_vertices.end(), mirror.data());
-  device::copy(_instance.space(), _work, mirror);
-  _instance.space().fence("drogue::fabric::contact_work");
 }
 
 template <class ExecutionSpace>

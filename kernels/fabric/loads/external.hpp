@@ -170,23 +170,4 @@ struct LoadStiffnessFunctor {
   }
 };
 
-/// Dashpots in velocity Verlet's method: they act for a whole dt on the velocities in the middle of a step,
-/// and the drift follows. Stable if dt times the fastest decay is at most 1.
-template <class ExecutionSpace>
-struct DashpotDampingFunctor {
-  FabricViews<ExecutionSpace> fabric;
-  SlicedEllViews<ExecutionSpace, 1> dashpots;
-  PointsView<ExecutionSpace> x, v, damped_v, next;
-  double dt;
-
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    const Vector3<double> gained = (dt * fabric.inverse_mass(i)) * dashpot_force(dashpots, x, v, i),
-                          free = free_axes<double>(fabric, i);
-    const Vector3<double> velocity =
-        load_points<double>(v, i) + Vector3<double>{free.x * gained.x, free.y * gained.y, free.z * gained.z};
-    store_points(damped_v, i, velocity);
-    store_points(next, i, load_points<double>(x, i) + dt * velocity);
-  }
-};
-
 }  // namespace drogue::fabric

@@ -15,27 +15,36 @@ struct PersistentDriver {
   PatchViews<ExecutionSpace> patches;
   bool pairs;               ///< runs PersistentPairsFunctor, else PersistentRingsFunctor
   std::uint64_t epoch = 0;  ///< of the last stage launched
+
+  /// Clears the messages of replays, which the next launch must not take for its own. Asynchronous.
+  void forget_messages() {
+    grid.clear_messages();
+    epoch = 0;
+  }
 };
 
-/// Persistent driver for the mesh and the integrator of `p`, which is not Verlet's, or none if the mesh does
-/// not fit the device. `has_loads`: timed
-/// loads or pressures are evaluated in every stage; `has_pressure`: some of them are pressures. Blocks.
+/// Persistent driver for the mesh and the integrator of `forces.parameters`, which is not Verlet's, or none
+/// if the mesh does not fit the device or a step needs what the driver does not support. Blocks.
 template <class ExecutionSpace>
 [[nodiscard]] std::optional<PersistentDriver<ExecutionSpace>> make_persistent_driver(
-    const device::Instance<ExecutionSpace>& instance, const Parameters& p, bool has_loads,
-    bool has_pressure) {
+    const device::Instance<ExecutionSpace>& instance, const FabricForces<ExecutionSpace>& forces) {
   using Grid = device::PersistentKernel<ExecutionSpace>;
-  const int teams = Grid::most_teams(instance), vertices = static_cast<int>(p.mesh.rest.size());
+  const Parameters& p = forces.parameters;
+  // The stencil of bending exceeds the halo; dashpots need the velocities of neighbours.
+  if (p.material.bending_stiffness > 0.0 || forces.has_dashpots || forces.dirichlet ||
+      (p.contact.is_enabled() && p.contact.interval == 1))
+    return std::nullopt;
+  const int teams = Grid::most_teams(instance), vertices = forces.vertices;
   if (teams == 0) return std::nullopt;
   const auto share = [&](int parts) { return (vertices + parts - 1) / parts; };
   const int count = std::min(teams, share(p.patch > 0 ? p.patch : slice));
   if (share(count) > max_ring_threads) return std::nullopt;
-  const bool rings = has_triangles(p.material.model) || has_pressure;
+  const bool rings = has_triangles(p.material.model) || forces.external.has_pressure();
   const Patches patches =
       make_patches(p.mesh.rest, ring_adjacency(rings ? p.mesh : Mesh{.rest = p.mesh.rest}),
                    spring_adjacency(p.mesh, p.material), count);
   const PatchViews<ExecutionSpace> views = patch_views(instance.space(), patches);
-  const bool pairs = patches.team <= max_pair_vertices && !has_loads;
+  const bool pairs = patches.team <= max_pair_vertices && !forces.has_load_kernel;
   const bool euler = p.integrator == Integrator::symplectic_euler;
   if (euler && !pairs) return std::nullopt;
   constexpr ConstitutiveModel any{Model::edge};  // all models need the same memory
@@ -49,76 +58,60 @@ template <class ExecutionSpace>
       {instance, count, threads, scratch, static_cast<std::size_t>(patches.messages)}, views, pairs};
 }
 
-/// State and forces of a launch of the persistent driver.
-template <class ExecutionSpace, class VertexForce>
-struct PersistentInputs {
-  FabricViews<ExecutionSpace> fabric;  ///< `load` holds the dead loads alone
-  PointsView<ExecutionSpace> x, v;
-  StepMonitor<ExecutionSpace> monitor;
-  stepping::TimeState time;  ///< before the launch
-  VertexForceTerm<VertexForce> vertex_force;
-  External<ExecutionSpace> external;
-  bool has_loads;  ///< `external` holds timed loads or pressures
-};
-
 /// Steps of a launch of `steps` steps of `stages` stages each. `captured`: the launch may be replayed, so
 /// that it reads its step count on the device and clears the messages. Asynchronous.
 template <bool loads, class ExecutionSpace, class VertexForce>
 [[nodiscard]] PersistentSteps<ExecutionSpace, VertexForce, loads> prepare_persistent_steps(
-    const ExecutionSpace& space, PersistentDriver<ExecutionSpace>& driver,
-    const PersistentInputs<ExecutionSpace, VertexForce>& in, std::int64_t steps, std::uint64_t stages,
-    bool captured) {
+    PersistentDriver<ExecutionSpace>& driver, const StepInputs<ExecutionSpace, VertexForce>& in,
+    const StepState<ExecutionSpace>& state, std::int64_t steps, std::uint64_t stages, bool captured) {
   if (captured) {
-    device::copy_bytes(space, device::CopyKind::within, in.monitor.steps.data() + 1, in.monitor.steps.data(),
-                       sizeof(std::int64_t));
-    driver.grid.clear_messages();
-    driver.epoch = 0;
+    device::copy_bytes(in.forces.space, device::CopyKind::within, state.monitor.steps.data() + 1,
+                       state.monitor.steps.data(), sizeof(std::int64_t));
+    driver.forget_messages();
   }
   const std::uint64_t epoch = driver.epoch;
   driver.epoch += stages * static_cast<std::uint64_t>(steps);
+  FabricViews<ExecutionSpace> fabric = in.forces.fabric;
+  fabric.load = in.forces.dead.total;
   PersistentLoads<ExecutionSpace, loads> load;
-  if constexpr (loads) load = {in.external, in.time};
+  if constexpr (loads) load = {in.forces.external, state.time};
   return {.patches = driver.patches,
-          .fabric = in.fabric,
-          .x = in.x,
-          .v = in.v,
-          .monitor = in.monitor,
-          .dt = in.time.dt,
-          .previous_steps = captured ? -1 : in.time.step,
+          .fabric = fabric,
+          .x = state.x,
+          .v = state.v,
+          .monitor = state.monitor,
+          .dt = state.time.dt,
+          .previous_steps = captured ? -1 : state.time.step,
           .steps = steps,
           .epoch = epoch,
           .vertex_force = in.vertex_force,
           .load = load};
 }
 
-/// Enqueues `steps` Runge-Kutta steps as one launch; `captured` as above. Asynchronous.
+/// Enqueues `steps` steps as one launch, of the symplectic Euler method for a VertexForce that relaxes
+/// velocities and else of the Runge-Kutta method; `captured` as above. Checkpoints end launches, so that none
+/// has more than `checkpoint_interval` steps, which take a few milliseconds. Asynchronous.
 template <ConstitutiveModel model, class ExecutionSpace, class VertexForce>
-void launch_persistent_steps(const ExecutionSpace& space, PersistentDriver<ExecutionSpace>& driver,
-                             const PersistentInputs<ExecutionSpace, VertexForce>& in, std::int64_t steps,
-                             bool captured) {
-  const auto prepared = [&]<bool loads>() {
-    return prepare_persistent_steps<loads>(space, driver, in, steps, 4, captured);
+void launch_persistent_steps(PersistentDriver<ExecutionSpace>& driver,
+                             const StepInputs<ExecutionSpace, VertexForce>& in,
+                             const StepState<ExecutionSpace>& state, std::int64_t steps, bool captured) {
+  const auto prepared = [&]<bool loads>(std::uint64_t stages) {
+    return prepare_persistent_steps<loads>(driver, in, state, steps, stages, captured);
   };
-  if (in.has_loads)
+  if constexpr (RelaxesVelocity<VertexForce>)
+    driver.grid.template launch<max_pair_threads, 1>(
+        PersistentEulerFunctor<ExecutionSpace, model, VertexForce>{{prepared.template operator()<false>(1)},
+                                                                   in.forces.parameters.damping});
+  else if (in.forces.has_load_kernel)
     driver.grid.template launch<max_ring_threads, 1>(
         PersistentRingsFunctor<ExecutionSpace, model, VertexForce, true>{
-            prepared.template operator()<true>()});
+            prepared.template operator()<true>(4)});
   else if (driver.pairs)
     driver.grid.template launch<max_pair_threads, 1>(
-        PersistentPairsFunctor<ExecutionSpace, model, VertexForce>{prepared.template operator()<false>()});
+        PersistentPairsFunctor<ExecutionSpace, model, VertexForce>{prepared.template operator()<false>(4)});
   else
     driver.grid.template launch<max_ring_threads, 1>(
-        PersistentRingsFunctor<ExecutionSpace, model, VertexForce>{prepared.template operator()<false>()});
-}
-
-/// Enqueues `steps` steps of the symplectic Euler method with the given damping, 1/s, as one launch;
-/// `captured` as above. Asynchronous.
-template <ConstitutiveModel model, class ExecutionSpace, class VertexForce>
-void launch_persistent_euler(const ExecutionSpace& space, PersistentDriver<ExecutionSpace>& driver,
-                             const PersistentInputs<ExecutionSpace, VertexForce>& in, double damping,
-                             std::int64_t steps, bool captured) {
-  driver.grid.template launch<max_pair_threads, 1>(PersistentEulerFunctor<ExecutionSpace, model, VertexForce>{
-      {prepare_persistent_steps<false>(space, driver, in, steps, 1, captured)}, damping});
+        PersistentRingsFunctor<ExecutionSpace, model, VertexForce>{prepared.template operator()<false>(4)});
 }
 
 }  // namespace drogue::fabric

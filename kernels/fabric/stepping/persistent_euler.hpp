@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/fabric/stepping/kick.hpp"
 #include "kernels/fabric/stepping/persistent_pairs.hpp"
 
 namespace drogue::fabric {

@@ -4,7 +4,7 @@
 #include "kernels/fabric/loads/external.hpp"
 #include "kernels/fabric/results.hpp"
 #include "kernels/fabric/stepping/patches.hpp"
-#include "kernels/fabric/stepping/step.hpp"
+#include "kernels/fabric/stepping/rk4.hpp"
 #include "kernels/fabric/stepping/team_sliced_ell.hpp"
 
 namespace drogue::fabric {

@@ -11,7 +11,6 @@
 namespace drogue::springs_app {
 namespace {
 
-using fabric::ContactWork;
 using fabric::Vector;
 
 std::vector<double> masses_of(const SpringsScene& scene, Problem& problem) {
@@ -160,12 +159,20 @@ std::vector<Vector> Problem::to_scene(std::span<const Vector> values) const {
   return returned(values, order);
 }
 
-std::vector<ContactWork> Problem::to_solver(std::span<const ContactWork> values) const {
-  return permuted(values, order);
+std::vector<double> Problem::to_solver(std::span<const double> values) const {
+  std::vector<double> result(values.size());
+  const std::size_t columns = values.size() / order.size();
+  for (std::size_t k = 0; k < values.size(); ++k)
+    result[k] = values[columns * static_cast<std::size_t>(order[k / columns]) + k % columns];
+  return result;
 }
 
-std::vector<ContactWork> Problem::to_scene(std::span<const ContactWork> values) const {
-  return returned(values, order);
+std::vector<double> Problem::to_scene(std::span<const double> values) const {
+  std::vector<double> result(values.size());
+  const std::size_t columns = values.size() / order.size();
+  for (std::size_t k = 0; k < values.size(); ++k)
+    result[columns * static_cast<std::size_t>(order[k / columns]) + k % columns] = values[k];
+  return result;
 }
 
 std::vector<fabric::Stress> Problem::to_scene(std::span<const fabric::Stress> values) const {

@@ -19,8 +19,9 @@ struct Problem {
   /// Permutes from the scene's numbering to the solver's, and back.
   [[nodiscard]] std::vector<fabric::Vector> to_solver(std::span<const fabric::Vector> values) const;
   [[nodiscard]] std::vector<fabric::Vector> to_scene(std::span<const fabric::Vector> values) const;
-  [[nodiscard]] std::vector<fabric::ContactWork> to_solver(std::span<const fabric::ContactWork> values) const;
-  [[nodiscard]] std::vector<fabric::ContactWork> to_scene(std::span<const fabric::ContactWork> values) const;
+  /// Rows of any equal number of values.
+  [[nodiscard]] std::vector<double> to_solver(std::span<const double> values) const;
+  [[nodiscard]] std::vector<double> to_scene(std::span<const double> values) const;
   [[nodiscard]] std::vector<fabric::Stress> to_scene(std::span<const fabric::Stress> values) const;
 };
 

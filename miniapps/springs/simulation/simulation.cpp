@@ -195,16 +195,13 @@ std::int64_t Simulation::steps_to_event(const framework::AdvanceLimits& limits) 
 
 /// Copies the state to the host and back.
 void Simulation::round_trip() {
-  std::vector<Vector> x(_problem.x.size()), v(x.size());
-  std::vector<fabric::ContactWork> work(_scene.contact.is_enabled() ? x.size() : 0);
+  std::vector<double> state;
   {
     const ScopedStopwatch stopwatch(_d2h_s);
-    _solver->download(x, v);
-    if (!work.empty()) _solver->contact_work(work);
+    state = _solver->download_state();
   }
   const ScopedStopwatch stopwatch(_h2d_s);
-  _solver->upload(x, v);
-  if (!work.empty()) _solver->set_contact_work(work);
+  _solver->upload_state(state);
 }
 
 /// Takes steps in batches that adapt to the poll interval. Returns false if the state was lost, or if the
@@ -213,7 +210,7 @@ bool Simulation::take_steps(std::int64_t steps, const framework::Poll& poll) {
   while (steps > 0) {
     const std::int64_t count = std::min(steps, _settings.baseline ? 1 : _batch);
     const Stopwatch stopwatch;
-    const bool advanced = _solver->advance(count);
+    const bool advanced = _solver->enqueue_steps(count);
     _failure = _solver->failure();
     const double seconds = stopwatch.seconds();
     _compute_s += seconds;
@@ -260,7 +257,7 @@ bool Simulation::plan_next_interval() {
 void Simulation::return_to_last_good(std::int64_t lost) {
   round_trip();  // an upload clears the failure
   // The start itself may be lost.
-  _solver->advance(std::max<std::int64_t>(0, lost - 1 - _solver->time_state().step));
+  _solver->enqueue_steps(std::max<std::int64_t>(0, lost - 1 - _solver->time_state().step));
   _solver->failure();  // waits
 }
 

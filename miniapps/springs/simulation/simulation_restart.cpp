@@ -1,12 +1,11 @@
+#include <algorithm>
+#include <iterator>
 #include <span>
 
 #include "miniapps/springs/simulation/simulation.hpp"
-#include "miniapps/springs/vectors.hpp"
 
 namespace drogue::springs_app {
 namespace {
-
-using fabric::Vector;
 
 /// Step lengths that a scene requests; they may change between a run and its continuation.
 struct RequestedSteps {
@@ -39,14 +38,6 @@ void visit(State& state, const Number& number, const Integer& integer) {
   number("asked_safety", state.requested.safety);
 }
 
-/// Contact work and displacement kicks of every vertex. The work has the names of its columns in history.csv.
-constexpr std::pair<const char*, double fabric::ContactWork::*> work_parts[] = {
-    {"contact_work", &fabric::ContactWork::normal},
-    {"friction_work", &fabric::ContactWork::friction},
-    {"contact_kick_x", &fabric::ContactWork::kick_x},
-    {"contact_kick_y", &fabric::ContactWork::kick_y},
-    {"contact_kick_z", &fabric::ContactWork::kick_z}};
-
 RequestedSteps requested_steps(const SpringsScene& scene) {
   return {scene.time.dt.value_or(0.0), scene.time.safety};
 }
@@ -63,21 +54,12 @@ void Simulation::write_restart(run::RestartWriter& writer) {
   visit(
       plan, [&](const std::string& name, double value) { writer.number(name, value); },
       [&](const std::string& name, std::int64_t value) { writer.integer(name, value); });
-  std::vector<Vector> x(_problem.x.size()), v(x.size());
-  _solver->download(x, v);
-  for (const auto& [name, vectors] : {std::pair{"position", &x}, std::pair{"velocity", &v}}) {
-    writer.array(name, 3 * vectors->size());
-    writer.write(name, 0, numbers(_problem.to_scene(*vectors)));
-  }
-  if (!_scene.contact.is_enabled()) return;
-  std::vector<fabric::ContactWork> work(x.size());
-  _solver->contact_work(work);
-  work = _problem.to_scene(std::span<const fabric::ContactWork>(work));
-  for (const auto& [name, part] : work_parts) {
-    std::vector<double> values;
-    for (const fabric::ContactWork& each : work) values.push_back(each.*part);
-    writer.array(name, values.size());
-    writer.write(name, 0, values);
+  const std::vector<double> state = _solver->download_state();
+  std::span<const double> left = state;
+  for (const stepping::StateArray& array : _solver->state_arrays()) {
+    writer.array(array.name, array.size());
+    writer.write(array.name, 0, _problem.to_scene(left.first(array.size())));
+    left = left.subspan(array.size());
   }
 }
 
@@ -86,20 +68,14 @@ void Simulation::restore(const run::RestartReader& reader) {
   visit(
       plan, [&](const std::string& name, double& value) { value = reader.number(name); },
       [&](const std::string& name, std::int64_t& value) { value = reader.integer(name); });
-  std::vector<Vector> x(_scene.mesh.rest.size()), v(x.size());
-  reader.read("position", 0, numbers(x));
-  reader.read("velocity", 0, numbers(v));
-  _solver->set_time_state(plan.clock);
-  _solver->upload(_problem.to_solver(x), _problem.to_solver(v));
-  if (_scene.contact.is_enabled()) {
-    std::vector<fabric::ContactWork> work(x.size());
-    for (const auto& [name, part] : work_parts) {
-      std::vector<double> values(work.size());
-      reader.read(name, 0, values);
-      for (std::size_t i = 0; i < values.size(); ++i) work[i].*part = values[i];
-    }
-    _solver->set_contact_work(_problem.to_solver(std::span<const fabric::ContactWork>(work)));
+  std::vector<double> state;
+  for (const stepping::StateArray& array : _solver->state_arrays()) {
+    std::vector<double> values(array.size());
+    reader.read(array.name, 0, values);
+    std::ranges::copy(_problem.to_solver(std::span<const double>(values)), std::back_inserter(state));
   }
+  _solver->set_time_state(plan.clock);
+  _solver->upload_state(state);
   _stop_step = plan.stop_step;
   _stop_time = plan.stop_time;
   _dt_min = plan.dt_min;

@@ -4,7 +4,7 @@
 
 namespace drogue::perf::ladder {
 
-/// Rung 5. The solver of the library (kernels/fabric/stepping/step.hpp): rings of neighbours share the edges
+/// Rung 5. The solver of the library (kernels/fabric/stepping/rk4.hpp): rings of neighbours share the edges
 /// of their triangles, in sliced ELLPACK rows. It also tests the state for divergence.
 ///
 /// Prediction: one number less per triangle, a third of the edges less to compute, and packs on a host.

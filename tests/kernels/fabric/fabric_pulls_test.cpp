@@ -72,13 +72,14 @@ TEST(FabricPulls, PeaksAreThoseOfAllStepsHoweverTheyAreTaken) {
       std::vector<PeakPull> expected(made.pulls.size());
       std::vector<Vector> x(made.positions.size()), v(x.size());
       for (int step = 1; step <= 400; ++step) {
-        observed->advance(1);
+        observed->enqueue_steps(1);
         observed->download(x, v);
         for (std::size_t k = 0; k < expected.size(); ++k)
           if (const double force = force_of(p, made.pulls[k], x); force > expected[k].force)
             expected[k] = {force, observed->time_state().time()};
       }
-      for (std::int64_t done = 0; done < 400; done += batch) solver->advance(std::min(batch, 400 - done));
+      for (std::int64_t done = 0; done < 400; done += batch)
+        solver->enqueue_steps(std::min(batch, 400 - done));
       const std::vector<PeakPull> peaks = solver->peak_pulls();
       ASSERT_EQ(peaks.size(), 3U);
       for (std::size_t k = 0; k < 2; ++k) {
@@ -99,9 +100,13 @@ TEST(FabricPulls, StartWithThePresentStateAndForgetLinesThatAreCut) {
   solver->watch_pulls(made.pulls);
   const double taut = force_of(made.parameters, made.pulls[0], made.positions);
   EXPECT_NEAR(solver->peak_pulls()[0].force, taut, 1e-12 * taut);
-  solver->set_peak_pulls(std::vector<PeakPull>{{1e-3, 0.0}, {5.0, 0.25}, {}});
+  std::vector<double> state = solver->download_state();
+  std::ranges::copy(std::vector{1e-3, 5.0, 0.0, 0.0, 0.25, 0.0},
+                    state.end() - 6);  // three forces, three times
+  solver->upload_state(state);
+  EXPECT_EQ(solver->download_state(), state);
   solver->set_line_stiffness(std::vector<double>(3, 0.0));
-  solver->advance(50);
+  solver->enqueue_steps(50);
   EXPECT_EQ(solver->peak_pulls()[0].force, 1e-3);
   EXPECT_EQ(solver->peak_pulls()[1].force, 5.0);
   EXPECT_EQ(solver->peak_pulls()[1].time, 0.25);
@@ -115,7 +120,7 @@ TEST(FabricPulls, ForgetStepsThatAreRolledBack) {
   solver->upload(made.positions, made.velocities);
   solver->watch_pulls(made.pulls);
   const double taut = force_of(made.parameters, made.pulls[0], made.positions);
-  solver->advance(200);
+  solver->enqueue_steps(200);
   ASSERT_TRUE(solver->failure().has_value());
   std::vector<Vector> x(made.positions.size()), v(x.size());
   solver->download(x, v);
@@ -128,7 +133,9 @@ TEST(FabricPulls, RefuseLinesThatDoNotPullTheirVertexAndStepsThatContactChangesL
   const auto solver = create_solver(backend, made.parameters);
   EXPECT_THROW(solver->watch_pulls(std::vector<Pull>{{0, {1}}}), std::invalid_argument);
   EXPECT_THROW(solver->watch_pulls(std::vector<Pull>{{3, {3}}}), std::invalid_argument);
-  EXPECT_THROW(solver->set_peak_pulls(std::vector<PeakPull>(2)), std::invalid_argument);
+  const std::vector<double> without = solver->download_state();
+  solver->watch_pulls(made.pulls);
+  EXPECT_THROW(solver->upload_state(without), std::invalid_argument);
   made.parameters.contact.self = true;
   made.parameters.contact.interval = 2;
   EXPECT_THROW(create_solver(backend, made.parameters)->watch_pulls(made.pulls), std::invalid_argument);

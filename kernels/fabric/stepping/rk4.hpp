@@ -1,8 +1,6 @@
 #pragma once
 
-#include "kernels/fabric/launch.hpp"
-#include "kernels/fabric/stepping/divergence.hpp"
-#include "kernels/fabric/vertex_force.hpp"
+#include "kernels/fabric/fabric_forces.hpp"
 
 namespace drogue::fabric {
 
@@ -164,123 +162,89 @@ struct RungeKuttaHalfFunctor {
   }
 };
 
-/// Velocity after an acceleration a, m/s^2, during `kick`, s; unchanged along pinned axes. `damping`, 1/s, is
-/// evaluated at the middle of the kick, so that no rate makes it unstable.
-template <class R>
-KOKKOS_INLINE_FUNCTION Vector3<R> kicked(const Vector3<R>& now, const Vector3<R>& a, const Vector3<R>& free,
-                                         double damping, double kick) {
-  const double half = 0.5 * damping * kick;
-  const double retained = (1.0 - half) / (1.0 + half), gained = kick / (1.0 + half);
-  const auto along = [&](R velocity, R acceleration, R is_free) {
-    return device::select(is_free > R(0.0), retained * velocity, velocity) + gained * acceleration;
-  };
-  return {along(now.x, a.x, free.x), along(now.y, a.y, free.y), along(now.z, a.z, free.z)};
-}
-
-/// Velocity Verlet (Swope et al. 1982) with one elastic force per step: half a kick that ends the step
-/// before, half a kick that begins the next, and its drift. The sequence of operations does not depend on how
-/// steps are distributed over launches.
-template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
-struct VerletFunctor {
-  using R = PackedReal<ExecutionSpace>;
+/// Steps of the classical Runge-Kutta method (Kutta 1901) for x' = v, v' = a(x, v, t), and their buffers:
+///     x2 = x + dt/2 v,     v2 = v + dt/2 a(x, v, t)
+///     x3 = x + dt/2 v2,    v3 = v + dt/2 a(x2, v2, t + dt/2)
+///     x4 = x + dt v3,      v4 = v + dt a(x3, v3, t + dt/2)
+///     x += dt/6 (v + 2 v2 + 2 v3 + v4),   v by the same sum of the accelerations (`end_velocity`)
+template <class ExecutionSpace>
+class RungeKutta {
+ public:
   using Points = PointsView<ExecutionSpace>;
-  using Bounds = Kokkos::LaunchBounds<128, 6>;
-  static constexpr int lanes = device::Access<R>::lanes;
 
-  FabricViews<ExecutionSpace> fabric;  ///< its damping is zero
-  Points x, v, next;                   ///< `next` receives the positions
-  StepMonitor<ExecutionSpace> monitor;
-  double damping, dt;
-  int parity;         ///< entry of `monitor.steps` that counts the completed steps
-  bool ends, begins;  ///< performs the half kick that ends, or begins, a step
-  bool drifts;        ///< false if another kernel performs the drift
-  VertexForceTerm<VertexForce> vertex_force;
+  /// Without buffers, for solvers with another integrator. Does not throw.
+  RungeKutta() = default;
 
-  KOKKOS_FUNCTION void operator()(const int pack) const {
-    const int i = pack * lanes;
-    Vector3<R> velocity = load_points<R>(v, i);
-    if constexpr (has_vertex_force<VertexForce>) {
-      with_vertex_force(pack, velocity);
-      return;
-    }
-    const Vector3<R> a = acceleration(fabric, force<model, R>(fabric, x, i), velocity, i),
-                     free = free_axes<R>(fabric, i);
-    const Vector3<R> position = load_points<R>(x, i);
-    const std::int64_t step = monitor.steps(parity);
-    if (ends) {
-      velocity = kicked(velocity, a, free, damping, 0.5 * dt);
-      record_divergence(monitor, step, i, position, velocity);
-    }
-    if (begins) {
-      velocity = kicked(velocity, a, free, damping, 0.5 * dt);
-      if (drifts) store_points(next, i, position + dt * velocity);
-      if (pack == 0) monitor.steps(1 - parity) = step + 1;
-    }
-    store_points(v, i, velocity);
+  /// Allocates the buffers. Every stage is a kernel on request and where other kernels need its state, and on
+  /// a host, whose registers do not hold two stages at once; else a kernel takes two.
+  RungeKutta(const FabricForces<ExecutionSpace>& forces, bool by_stages)
+      : _by_stages(device::is_host<ExecutionSpace> || forces.has_load_kernel || forces.dirichlet ||
+                   by_stages) {
+    const auto n = static_cast<std::size_t>(forces.vertices);
+    _fourth = make_points<ExecutionSpace>("drogue::fabric::stage_positions", n);
+    for (int stage = 0; stage < (_by_stages ? 3 : 2); ++stage)
+      _velocity[stage] = make_points<ExecutionSpace>("drogue::fabric::stage_velocities", n);
   }
 
-  /// Both half kicks, in m/s, with a VertexForce, which is evaluated for each since the first changes the
-  /// velocity.
-  KOKKOS_FUNCTION void with_vertex_force(int pack, Vector3<R> velocity) const {
-    if constexpr (has_vertex_force<VertexForce>) {
-      const int i = pack * lanes;
-      const Vector3<R> total_force = force<model, R>(fabric, x, i), free = free_axes<R>(fabric, i),
-                       position = load_points<R>(x, i);
-      const std::int64_t step = monitor.steps(parity);
-      const double* const inverse_mass = &fabric.inverse_mass(i);
-      const auto kick = [&] {
-        const Vector3<R> sum =
-            vertex_force.add_to(total_force, position, velocity, inverse_mass, i, step, 0.0);
-        velocity = kicked(velocity, acceleration(fabric, sum, velocity, i), free, damping, 0.5 * dt);
-      };
-      if (ends) {
-        kick();
-        record_divergence(monitor, step, i, position, velocity);
+  /// Enqueues a step.
+  template <ConstitutiveModel model, class VertexForce>
+  void enqueue_step(const StepInputs<ExecutionSpace, VertexForce>& in,
+                    const StepState<ExecutionSpace>& state) const {
+    if constexpr (!device::is_host<ExecutionSpace>)
+      if (!_by_stages) {
+        enqueue_half<model, false>("drogue::fabric::rk4_begin", in, state);
+        return enqueue_half<model, true>("drogue::fabric::rk4_end", in, state);
       }
-      if (begins) {
-        kick();
-        if (drifts) store_points(next, i, position + dt * velocity);
-        if (pack == 0) monitor.steps(1 - parity) = step + 1;
-      }
-      store_points(v, i, velocity);
-    }
+    for (int stage = 0; stage < 4; ++stage) enqueue_stage<model>(stage, in, state);
   }
-};
 
-/// One step of the symplectic Euler method: a kick of dt, the relaxation of the velocity by the VertexForce,
-/// if it has one, and the drift.
-template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
-struct SymplecticEulerFunctor {
-  using R = PackedReal<ExecutionSpace>;
-  using Points = PointsView<ExecutionSpace>;
-  using Bounds = Kokkos::LaunchBounds<128, 4>;  // for the registers of relaxation after tension-only forces
-  static constexpr int lanes = device::Access<R>::lanes;
-
-  FabricViews<ExecutionSpace> fabric;  ///< its damping is zero
-  Points x, v, next;                   ///< `next` receives the positions
-  StepMonitor<ExecutionSpace> monitor;
-  double damping, dt;
-  int parity;  ///< entry of `monitor.steps` that counts the completed steps
-  VertexForceTerm<VertexForce> vertex_force;
-
-  KOKKOS_FUNCTION void operator()(const int pack) const {
-    const int i = pack * lanes;
-    Vector3<R> total_force = force<model, R>(fabric, x, i);
-    const Vector3<R> position = load_points<R>(x, i), before = load_points<R>(v, i),
-                     free = free_axes<R>(fabric, i);
-    const std::int64_t step = monitor.steps(parity);
-    const double* const inverse_mass = &fabric.inverse_mass(i);
-    if constexpr (has_vertex_force<VertexForce>)
-      total_force = vertex_force.add_to(total_force, position, before, inverse_mass, i, step, 0.0);
-    Vector3<R> velocity = kicked(before, acceleration(fabric, total_force, before, i), free, damping, dt);
-    if constexpr (has_vertex_force<VertexForce>)
-      velocity = vertex_force.relaxed(position, velocity, free, inverse_mass, i, step);
-    const Vector3<R> end = position + dt * velocity;
-    store_points(next, i, end);
-    store_points(v, i, velocity);
-    record_divergence(monitor, step + 1, i, end, velocity);
-    if (pack == 0) monitor.steps(1 - parity) = step + 1;
+ private:
+  template <ConstitutiveModel model, class VertexForce>
+  void enqueue_stage(int stage, const StepInputs<ExecutionSpace, VertexForce>& in,
+                     const StepState<ExecutionSpace>& state) const {
+    const Points at[] = {state.x, state.spare_x, _fourth, state.spare_x},
+                 next = stage == 3 ? state.x : at[stage + 1],
+                 v_now = stage == 0 ? state.v : _velocity[stage - 1],
+                 v_next = stage == 3 ? state.v : _velocity[stage];
+    in.forces.evaluate_loads(at[stage], v_now, state.at(fraction_before_stage(stage)),
+                             in.forces.has_dashpots);
+    launch_packs(in.forces.space, "drogue::fabric::rk4_stage", in.forces.padded,
+                 RungeKuttaFunctor<ExecutionSpace, model, VertexForce>{
+                     .fabric = in.forces.fabric,
+                     .x = state.x,
+                     .v = state.v,
+                     .at = at[stage],
+                     .next = next,
+                     .velocity = {_velocity[0], _velocity[1], _velocity[2]},
+                     .monitor = state.monitor,
+                     .dt = state.time.dt,
+                     .stage = stage,
+                     .vertex_force = in.vertex_force});
+    // The last stage has counted the step.
+    in.forces.apply_dirichlet(next, v_next, state.at(stage == 3 ? 0.0 : fraction_after_stage(stage)),
+                              stage == 3);
   }
+
+  template <ConstitutiveModel model, bool last, class VertexForce>
+  void enqueue_half(const char* label, const StepInputs<ExecutionSpace, VertexForce>& in,
+                    const StepState<ExecutionSpace>& state) const {
+    launch_packs(in.forces.space, label, in.forces.padded,
+                 RungeKuttaHalfFunctor<ExecutionSpace, model, last, VertexForce>{
+                     .fabric = in.forces.fabric,
+                     .x = state.x,
+                     .v = state.v,
+                     .third = state.spare_x,
+                     .fourth = _fourth,
+                     .velocity = {_velocity[0], _velocity[1]},
+                     .monitor = state.monitor,
+                     .dt = state.time.dt,
+                     .vertex_force = in.vertex_force});
+  }
+
+  bool _by_stages = true;
+  /// Positions of a stage; velocities of the stages after the first, of the last one only with a kernel per
+  /// stage.
+  Points _fourth, _velocity[3];
 };
 
 }  // namespace drogue::fabric
