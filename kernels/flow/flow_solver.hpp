@@ -52,8 +52,10 @@ inline std::array<Boundary, 6> sides_of(const Parameters& parameters, const line
 ///
 /// On a group of several ranks each holds a box of the cells (`decompose`). All functions are then
 /// collective, every step waits for the host, and arrays are those of the rank (`part_of`).
+///
+/// Final functions are documented in `Solver`.
 template <class ExecutionSpace>
-class FlowSolver {
+class FlowSolver : public Solver {
  public:
   using Values = List<ExecutionSpace>;
 
@@ -123,24 +125,23 @@ class FlowSolver {
   /// `advance` ends. Does not throw.
   [[nodiscard]] const ControlView<ExecutionSpace>& control() const { return _control; }
 
-  /// The functions below are documented in `Solver`.
-  void upload(StateField field, std::span<const double> values);
-  void download(StateField field, std::span<double> values);
-  void start();
-  void restore(const Progress& progress);
-  Stop advance(double target, std::int64_t pause_step, const Poll& poll);
-  [[nodiscard]] Progress progress() { return read_control().now; }
-  [[nodiscard]] StepFailure failure();
-  [[nodiscard]] Totals totals();
-  [[nodiscard]] Extremes extremes() const { return _extremes ? _extremes->read(space()) : Extremes{}; }
-  void set_extremes(const Extremes& extremes) const {
+  void upload(StateField field, std::span<const double> values) final;
+  void download(StateField field, std::span<double> values) final;
+  void start() final;
+  void restore(const Progress& progress) final;
+  Stop advance(double target, std::int64_t pause_step, const Poll& poll) final;
+  [[nodiscard]] Progress progress() final { return read_control().now; }
+  [[nodiscard]] StepFailure failure() final;
+  [[nodiscard]] Totals totals() final;
+  [[nodiscard]] Extremes extremes() final { return _extremes ? _extremes->read(space()) : Extremes{}; }
+  void set_extremes(const Extremes& extremes) final {
     if (!_extremes) throw std::invalid_argument("flow solver: no extremes are watched");
     _extremes->write(space(), extremes);
   }
-  void sample(CellField field, std::span<double> values);
-  [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
-  [[nodiscard]] const char* pressure_solver() const { return _pressure_equation->name(); }
-  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const {
+  void sample(CellField field, std::span<double> values) final;
+  [[nodiscard]] const char* driver() const final { return stepping::driver_name(_launcher.driver()); }
+  [[nodiscard]] const char* pressure_solver() const final { return _pressure_equation->name(); }
+  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const final {
     return _pressure_equation->last_solve();
   }
 
@@ -175,20 +176,13 @@ class FlowSolver {
   void enqueue_extremes(const ExecutionSpace& space) const {
     if (!_extremes) return;
     finish_ghosts(space, _velocity);
-    _extremes->enqueue(space, _velocity, _control, [&](const EnergyView<ExecutionSpace>& whole) {
-      if (_halo) _halo->combine(space, whole);
-    });
+    _extremes->enqueue(space, _velocity, _control, _halo);
   }
   void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                      const Values& result, double fraction, double time_fraction) const;
   [[nodiscard]] ProjectionSetup<ExecutionSpace> projection_setup(double fraction) const;
   void enqueue_pressure(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
   void enqueue_projection(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
-  /// Where the pressures of other ranks arrive; leaves null pointers on one rank.
-  void copy_pressure_below(const double* (&pressure_below)[3]) const {
-    if (!_halo) return;
-    for (std::size_t axis = 0; axis < 3; ++axis) pressure_below[axis] = _halo->pressure_below(axis);
-  }
   /// Solution of the pressure equation: the pressure, or its increment.
   [[nodiscard]] const Values& unknown() const {
     return _diffusion ? _pressure_increment : _divergence_or_pressure;
@@ -199,7 +193,7 @@ class FlowSolver {
   Parameters _parameters;
   linear::PencilRanks _ranks;
   MacGrid _grid;
-  mutable std::optional<Halo<ExecutionSpace>> _halo;  ///< only on several ranks
+  mutable Halo<ExecutionSpace> _halo;
   BoundaryTables<ExecutionSpace> _boundary;
   bool _checks_inflow;  ///< inflows change in time, and the pressure equation has no solution with a net one
   StepConstants _constants{};
@@ -235,6 +229,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
       _parameters(parameters),
       _ranks((check_parameters(parameters), ranks_of(parameters, group.size(), group.rank()))),
       _grid(make_grid(parameters, _ranks)),
+      _halo(group, _ranks, parameters, _grid),
       _boundary(instance.space(), _grid, sides_of(parameters, _ranks)),
       _checks_inflow(pressure_problem(parameters).is_singular() && inflow_changes(parameters.boundary)),
       _loop(instance),
@@ -242,7 +237,6 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
       _launcher(instance, parameters.pressure_solver == PressureSolver::hypre_pfmg || group.size() > 1
                               ? Driver::plain
                               : parameters.driver) {
-  if (group.size() > 1) _halo.emplace(group, _ranks, parameters, _grid);
   const auto field = [&](const std::string& label) {
     // Packs may load beyond the last cell.
     return Values(label, static_cast<std::size_t>(3 * _grid.component + 64));
@@ -257,7 +251,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
   if (is_implicit) {
     _pressure_increment = Values("drogue::flow::pressure_increment", cells);
-    _diffusion.emplace(space(), parameters, group, _ranks);
+    _diffusion.emplace(space(), parameters, _halo.group(), _ranks);
   }
   _totals_sum.emplace(_grid, _predicted);
   if (parameters.watches_extremes) _extremes.emplace(_grid, parameters.density);
@@ -268,7 +262,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
     _eddy_acceleration = field("drogue::flow::eddy_acceleration");
   }
   _control = ControlView<ExecutionSpace>("drogue::flow::control");
-  _pressure_equation.emplace(space(), parameters, _halo ? group : linear::RankGroup(), _ranks, !is_implicit);
+  _pressure_equation.emplace(space(), parameters, _halo.group(), _ranks, !is_implicit);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = parameters.high[axis] - parameters.low[axis];
     _acceleration[axis] =
@@ -414,7 +408,7 @@ Totals FlowSolver<ExecutionSpace>::totals() {
   _totals_sum->enqueue(space(), _velocity);
   const Control control = read_control();  // waits
   PartTotals part = _totals_sum->result(_boundary.conditions().kind);
-  if (_halo) _halo->combine(part);
+  _halo.combine(part);
   Totals totals = make_totals(part, _parameters, _grid);
   totals.step = control.now.step;
   totals.time = control.now.time;
@@ -446,7 +440,7 @@ void FlowSolver<ExecutionSpace>::start() {
   enqueue_projection(space(), projection);
   finish_ghosts(space(), _velocity);
   enqueue_eddy_viscosity(space(), _velocity);
-  if (_halo) _halo->agree(space(), _control, _checks_inflow);
+  _halo.agree(space(), _control, _checks_inflow);
   Kokkos::deep_copy(space(), _pressure, 0.0);  // the first step has no pressure of a previous one
   control = read_control();
   control.trial.dt = 0.0;
@@ -553,8 +547,8 @@ struct FlowSolver<ExecutionSpace>::Steps {
 
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
-  const Stop stop = _halo ? advance_collectively({target, pause_step}, poll)
-                          : _loop.advance({target, pause_step}, Steps{*this}, poll);
+  const Stop stop = _halo.is_alone() ? _loop.advance({target, pause_step}, Steps{*this}, poll)
+                                     : advance_collectively({target, pause_step}, poll);
   if (stop == Stop::failed && _boundary.changes()) {
     _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
     space().fence("drogue::flow::advance: sides before the failed step");
@@ -689,7 +683,7 @@ void FlowSolver<ExecutionSpace>::forget_long_step() {
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance_collectively(const stepping::AdvanceRequest& request,
                                                       const Poll& poll) {
-  const auto goes_on = [&] { return _halo->group().all(!poll || poll(_loop.status())); };
+  const auto goes_on = [&] { return _halo.group().all(!poll || poll(_loop.status())); };
   if (!goes_on()) return Stop::interrupted;
   Steps steps{*this};
   steps.begin(request, -1);
@@ -710,16 +704,14 @@ Stop FlowSolver<ExecutionSpace>::advance_collectively(const stepping::AdvanceReq
 /// Enqueues the fill of the ghost cells of a velocity field; on several ranks it only begins.
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::begin_ghosts(const ExecutionSpace& space, const Values& velocity) const {
-  if (_halo)
-    _halo->begin_velocity(space, velocity);
-  else
+  if (!_halo.begin_velocity(space, velocity))
     launch_ghosts(space, _grid, _boundary.conditions(), velocity, _control);
 }
 
 /// Completes what `begin_ghosts` began for the same field.
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::finish_ghosts(const ExecutionSpace& space, const Values& velocity) const {
-  if (_halo && _halo->finish_velocity(space, velocity))
+  if (_halo.finish_velocity(space, velocity))
     launch_ghosts(space, _grid, _boundary.conditions(), velocity, _control);
 }
 
@@ -727,8 +719,10 @@ void FlowSolver<ExecutionSpace>::finish_ghosts(const ExecutionSpace& space, cons
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_net_inflow(const ExecutionSpace& space) const {
   if (_checks_inflow)
-    launch_net_inflow(space,
-                      NetInflowFunctor<ExecutionSpace>{_grid, _boundary.conditions(), _control, !_halo});
+    launch_net_inflow(space, NetInflowFunctor<ExecutionSpace>{.grid = _grid,
+                                                              .boundary = _boundary.conditions(),
+                                                              .control = _control,
+                                                              .checks = _halo.is_alone()});
 }
 
 /// Momentum stage. On several ranks, cells that need no other rank come first, while the messages are under
@@ -736,9 +730,8 @@ void FlowSolver<ExecutionSpace>::enqueue_net_inflow(const ExecutionSpace& space)
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_momentum(const ExecutionSpace& space,
                                                   const MomentumSetup<ExecutionSpace>& setup) const {
-  if (!_halo) return dispatch_momentum(space, setup, _parameters.advection);
   MomentumSetup<ExecutionSpace> part = setup;
-  const std::vector<MacGrid> parts = _halo->parts();
+  const std::vector<MacGrid>& parts = _halo.parts();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     // The cells inside need the ghost cells at the sides of the domain.
     if (i == 0 && parts.size() > 1)
@@ -791,7 +784,7 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
     enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
   }
   enqueue_eddy_viscosity(space, _velocity);
-  if (_halo) _halo->agree(space, _control, _checks_inflow);
+  _halo.agree(space, _control, _checks_inflow);
   Kokkos::parallel_for("drogue::flow::finish_step", one_thread(space),
                        FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
   enqueue_extremes(space);
@@ -842,16 +835,15 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
   if (setup.stage.data() != _velocity.data()) enqueue_eddy_viscosity(space, setup.stage);
   enqueue_rates(space, setup, time_fraction);
   if (_diffusion) {
-    DiffusionSetup<ExecutionSpace> diffusion{.grid = _grid,
-                                             .boundary = _boundary.conditions(),
-                                             .velocity = _velocity,
-                                             .predicted = _predicted,
-                                             .pressure = _pressure,
-                                             .control = _control,
-                                             .nu = kinematic_viscosity(),
-                                             .pressure_below = {}};
-    if (_halo) _halo->exchange_pressure(space, _pressure);
-    copy_pressure_below(diffusion.pressure_below);
+    const DiffusionSetup<ExecutionSpace> diffusion{.grid = _grid,
+                                                   .boundary = _boundary.conditions(),
+                                                   .velocity = _velocity,
+                                                   .predicted = _predicted,
+                                                   .pressure = _pressure,
+                                                   .control = _control,
+                                                   .nu = kinematic_viscosity(),
+                                                   .pressure_below = _halo.pressure_below()};
+    _halo.exchange_pressure(space, _pressure);
     _diffusion->enqueue(space, diffusion, _divergence_or_pressure, _pressure_increment);
   }
   ProjectionSetup<ExecutionSpace> projection = projection_setup(fraction);
@@ -866,29 +858,27 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
 /// Projection of the predicted velocity, without a result.
 template <class ExecutionSpace>
 ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(double fraction) const {
-  ProjectionSetup<ExecutionSpace> setup{.grid = _grid,
-                                        .boundary = _boundary.conditions(),
-                                        .predicted = _predicted,
-                                        .velocity = Values(),
-                                        .divergence = _divergence_or_pressure,
-                                        .pressure = unknown(),
-                                        .total_pressure = Values(),
-                                        .is_increment = _diffusion.has_value(),
-                                        .control = _control,
-                                        .nu = kinematic_viscosity(),
-                                        .step_fraction = fraction,
-                                        .ends_step = false,
-                                        .rows = tile_rows(_parameters.block),
-                                        .pressure_below = {}};
-  copy_pressure_below(setup.pressure_below);
-  return setup;
+  return {.grid = _grid,
+          .boundary = _boundary.conditions(),
+          .predicted = _predicted,
+          .velocity = Values(),
+          .divergence = _divergence_or_pressure,
+          .pressure = unknown(),
+          .total_pressure = Values(),
+          .is_increment = _diffusion.has_value(),
+          .control = _control,
+          .nu = kinematic_viscosity(),
+          .step_fraction = fraction,
+          .ends_step = false,
+          .rows = tile_rows(_parameters.block),
+          .pressure_below = _halo.pressure_below()};
 }
 
 /// Solves the pressure equation for `unknown`.
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_pressure(const ExecutionSpace& space,
                                                   const ProjectionSetup<ExecutionSpace>& setup) const {
-  if (_halo) _halo->exchange_high_faces(space, _predicted);
+  _halo.exchange_high_faces(space, _predicted);
   launch_divergence(space, setup);
   if (!_pressure_equation->enqueue_solve(_divergence_or_pressure, unknown()))
     device::launch_each(space, "drogue::flow::pressure_failure", 1,
@@ -899,11 +889,9 @@ template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
                                                     const ProjectionSetup<ExecutionSpace>& setup) const {
   enqueue_pressure(space, setup);
-  if (_halo) {
-    // No rank may overwrite the state if another one has failed.
-    _halo->agree(space, _control, _checks_inflow);
-    _halo->exchange_pressure(space, unknown());
-  }
+  // No rank may overwrite the state if another one has failed.
+  _halo.agree(space, _control, _checks_inflow);
+  _halo.exchange_pressure(space, unknown());
   launch_correction(space, setup);
   begin_ghosts(space, setup.velocity);
 }

@@ -47,7 +47,7 @@ struct DiffusionSetup {
   ControlView<ExecutionSpace> control;
   double nu;  ///< kinematic viscosity, m^2/s
   /// As in `ProjectionSetup`, of the pressure.
-  const double* pressure_below[3];
+  Kokkos::Array<const double*, 3> pressure_below;
 
   /// True on a rank at a side of the domain. Does not throw.
   [[nodiscard]] KOKKOS_FUNCTION bool is_side(int side) const {

@@ -43,8 +43,8 @@ struct BoxCopyFunctor {
   }
 };
 
-/// Exchange of parts of an array with other ranks. Buffers are in host memory that the kernels access
-/// directly; MPI without support of devices suffices.
+/// Exchange of parts of an array with other ranks; without messages, its functions do nothing. Buffers are in
+/// host memory that the kernels access directly; MPI without support of devices suffices.
 template <class ExecutionSpace>
 class Exchange {
  public:
@@ -63,9 +63,11 @@ class Exchange {
     return _received.back().buffer.data();
   }
 
-  /// Begins to send and receive all messages, from `array`. Blocks until the kernels before are complete.
+  /// Begins to send and receive all messages, from `array`; false without messages. Blocks until the kernels
+  /// before are complete.
   [[nodiscard]] linear::Transfers begin(const ExecutionSpace& space, const linear::RankGroup& group,
                                         double* array) const {
+    if (_sent.empty() && _received.empty()) return {};
     std::vector<linear::Message> messages;
     for (const Port& port : _sent) {
       copy(space, port, array, true);
@@ -88,6 +90,7 @@ class Exchange {
 
   /// Blocks until the messages are complete, but not for the kernels that fill `array` from them.
   void finish(const ExecutionSpace& space, linear::Transfers& transfers, double* array) const {
+    if (!transfers) return;
     transfers.wait();
     for (const Port& port : _received)
       if (port.box.size() > 0) copy(space, port, array, false);

@@ -16,26 +16,31 @@
 namespace drogue::flow {
 
 /// Everything that a solver on one of several ranks needs from the others. Functions are collective, except
-/// those that only return values, and block until their messages are complete, except `begin_velocity`.
+/// those that only return values, and block until their messages are complete, except `begin_velocity`. That
+/// of a process alone does nothing, at no cost: it neither allocates nor launches nor fences.
 template <class ExecutionSpace>
 class Halo {
  public:
   /// `grid`: cells of this rank. Throws std::runtime_error if memory runs out.
   Halo(const linear::RankGroup& group, const linear::PencilRanks& ranks, const Parameters& parameters,
        const MacGrid& grid)
-      : _group(group), _ranks(ranks), _grid(grid) {
+      : _group(group.size() > 1 ? group : linear::RankGroup()), _ranks(ranks), _grid(grid) {
     for (std::size_t side = 0; side < 6; ++side) _borders[side] = borders_rank(parameters, ranks, side);
     for (const int y : {-1, 0, 1})
       for (const int z : {-1, 0, 1}) add_direction({0, y, z});
     for (const std::size_t axis : {1U, 2U}) add_axis(axis);
+    _parts = divided();
   }
 
   [[nodiscard]] const linear::RankGroup& group() const { return _group; }
+  /// True without other ranks.
+  [[nodiscard]] bool is_alone() const { return _group.size() == 1; }
 
-  /// Begins the exchange of the ghost cells of a velocity field towards other ranks. Blocks until the kernels
-  /// before are complete.
-  void begin_velocity(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
+  /// Begins the exchange of the ghost cells of a velocity field towards other ranks, and returns whether
+  /// there are any. Blocks until the kernels before are complete.
+  bool begin_velocity(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
     _transfers = _velocity.begin(space, _group, velocity.data());
+    return static_cast<bool>(_transfers);
   }
 
   /// Fills the ghost cells of the velocity field of the last `begin_velocity`, if that exchange is under way,
@@ -47,22 +52,8 @@ class Halo {
   }
 
   /// Parts of the cells: first those whose momentum needs no ghost cells towards other ranks, then the
-  /// others. All cells in one part if these are too few to be divided.
-  [[nodiscard]] std::vector<MacGrid> parts() const {
-    std::vector<MacGrid> parts;
-    MacGrid rest = _grid;
-    for (int side = 5; side >= 2; --side) {
-      if (!_borders[static_cast<std::size_t>(side)]) continue;
-      const int axis = side / 2, n = rest.n[axis];
-      if (n < ghost_width + 2) return {_grid};
-      const bool high = side % 2 == 1;
-      parts.push_back(rest);
-      cut(parts.back(), axis, high ? n - ghost_width : 0, ghost_width);
-      cut(rest, axis, high ? 0 : ghost_width, n - ghost_width);
-    }
-    parts.insert(parts.begin(), rest);
-    return parts;
-  }
+  /// others. All cells in one part if these are too few to be divided, or no other rank needs any.
+  [[nodiscard]] const std::vector<MacGrid>& parts() const { return _parts; }
 
   /// Fills the normal components on the high faces that belong to other ranks.
   void exchange_high_faces(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) const {
@@ -74,13 +65,14 @@ class Halo {
     _pressure.run(space, _group, pressure.data());
   }
 
-  /// Pressure in the layer of cells below the low side along an axis, in the order of the cells of the side;
-  /// null where there is no other rank.
-  [[nodiscard]] const double* pressure_below(std::size_t axis) const { return _below[axis]; }
+  /// Pressure in the layer of cells below the low side along each axis, in the order of the cells of the
+  /// side; null where there is no other rank.
+  [[nodiscard]] const Kokkos::Array<const double*, 3>& pressure_below() const { return _below; }
 
   /// Gives all ranks the least failed cell, the largest `StepMaxima`, and the failures of a pressure solver
   /// and a side. `checks_inflow`: whether to fail for the net inflow of all ranks.
   void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view, bool checks_inflow) const {
+    if (is_alone()) return;
     Control control;
     device::copy_out(space, &control, view, 1);
     space.fence("drogue::flow::halo: read control");
@@ -109,6 +101,7 @@ class Halo {
 
   /// Gives all ranks the energies of all, in the order of the ranks. Blocks.
   void combine(const ExecutionSpace& space, const EnergyView<ExecutionSpace>& whole) const {
+    if (is_alone()) return;
     std::array<double, 2> mine{};
     device::copy_out(space, mine.data(), whole, 2);
     space.fence("drogue::flow::halo: read energies");
@@ -125,6 +118,7 @@ class Halo {
   /// Combines the contributions of all ranks to the totals, in the order of the ranks, and adds those to the
   /// flow through each side.
   void combine(PartTotals& part) const {
+    if (is_alone()) return;
     constexpr std::size_t count = total_count;
     std::array<double, count + 6> mine;
     std::copy_n(part.sum, count, mine.begin());
@@ -138,6 +132,23 @@ class Halo {
   }
 
  private:
+  /// The grid as `parts`.
+  [[nodiscard]] std::vector<MacGrid> divided() const {
+    std::vector<MacGrid> parts;
+    MacGrid rest = _grid;
+    for (int side = 5; side >= 2; --side) {
+      if (!_borders[static_cast<std::size_t>(side)]) continue;
+      const int axis = side / 2, n = rest.n[axis];
+      if (n < ghost_width + 2) return {_grid};
+      const bool high = side % 2 == 1;
+      parts.push_back(rest);
+      cut(parts.back(), axis, high ? n - ghost_width : 0, ghost_width);
+      cut(rest, axis, high ? 0 : ghost_width, n - ghost_width);
+    }
+    parts.insert(parts.begin(), rest);
+    return parts;
+  }
+
   /// Restricts a grid to cells `begin` to `begin + count - 1` along an axis.
   static void cut(MacGrid& grid, int axis, int begin, int count) {
     grid.first += begin * grid.stride[axis];
@@ -220,9 +231,10 @@ class Halo {
   linear::PencilRanks _ranks;
   MacGrid _grid;
   std::array<bool, 6> _borders{};  ///< sides towards other ranks
+  std::vector<MacGrid> _parts;
   Exchange<ExecutionSpace> _velocity, _faces, _pressure;
   linear::Transfers _transfers;  ///< of the velocity
-  std::array<const double*, 3> _below{};
+  Kokkos::Array<const double*, 3> _below{};
 };
 
 }  // namespace drogue::flow

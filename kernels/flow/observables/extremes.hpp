@@ -116,10 +116,10 @@ class StepExtremes {
         _extremes("drogue::flow::extremes") {}
 
   /// Enqueues the comparison of the state with a velocity, m/s, with the extremes, unless its step has taken
-  /// part. `combine` replaces the values of a rank by those of all. Throws only after a failed launch.
-  template <class Combine>
+  /// part. `ranks`: the `Halo`, which combines the energies of all ranks. Throws only after a failed launch.
+  template <class Ranks>
   void enqueue(const ExecutionSpace& space, const List<ExecutionSpace>& velocity,
-               const ControlView<ExecutionSpace>& control, const Combine& combine) const {
+               const ControlView<ExecutionSpace>& control, const Ranks& ranks) const {
     using Rows = RowEnergyFunctor<ExecutionSpace>;
     device::launch_each(space, "drogue::flow::row_energies", parts() / Rows::width,
                         Rows{_grid, velocity, _parts});
@@ -130,7 +130,7 @@ class StepExtremes {
                           CombineEnergiesFunctor<ExecutionSpace>{from, to, count, sums});
       count = sums;
     }
-    combine(from);
+    ranks.combine(space, from);
     device::launch_each(space, "drogue::flow::extremes", 1,
                         AddStepFunctor<ExecutionSpace>{control, from, _cell_mass, _extremes});
   }

@@ -29,7 +29,7 @@ struct ProjectionSetup {
   int rows;              ///< of the tile of a team on a device
   /// Pressure of the layer of cells below the low side along each axis, m^2/s^2; null unless another rank
   /// holds it.
-  const double* pressure_below[3];
+  Kokkos::Array<const double*, 3> pressure_below;
 
   /// True if the face on a side is an unknown of the projection.
   [[nodiscard]] KOKKOS_FUNCTION bool is_outflow(int side) const {
