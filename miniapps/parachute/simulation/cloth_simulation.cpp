@@ -112,7 +112,7 @@ std::int64_t ClothSimulation::steps_to_event(const framework::AdvanceLimits& lim
 /// Takes steps and adapts the length of the next batch. Returns false if the state was lost.
 bool ClothSimulation::take_steps(std::int64_t steps) {
   const Stopwatch stopwatch;
-  _solver->advance(steps);
+  _solver->enqueue_steps(steps);
   _failure = _solver->failure();
   const double seconds = stopwatch.seconds();
   if (seconds < 0.5 * longest_batch_s && steps == _batch) _batch *= 2;
@@ -258,14 +258,14 @@ void ClothSimulation::write_restart(run::RestartWriter& writer) {
   visit(
       clock, _block, [&](const std::string& name, double value) { writer.number(name, value); },
       [&](const std::string& name, std::int64_t value) { writer.integer(name, value); });
-  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-  _solver->download(positions, velocities);
-  for (const auto& [name, vectors] :
-       {std::pair{"position", &positions}, std::pair{"velocity", &velocities}}) {
-    writer.array(name, 3 * vectors->size());
-    writer.write(name, 0, {vectors->front().data(), 3 * vectors->size()});
+  _peaks.write_watch(writer);
+  const std::vector<double> state = _solver->download_state();
+  std::span<const double> left = state;
+  for (const stepping::StateArray& array : _solver->state_arrays()) {
+    writer.array(array.name, array.size());
+    writer.write(array.name, 0, left.first(array.size()));
+    left = left.subspan(array.size());
   }
-  _peaks.write(writer, *_solver);
 }
 
 void ClothSimulation::restore(const run::RestartReader& reader) {
@@ -274,13 +274,16 @@ void ClothSimulation::restore(const run::RestartReader& reader) {
   visit(
       clock, _block, [&](const std::string& name, double& value) { value = reader.number(name); },
       [&](const std::string& name, std::int64_t& value) { value = reader.integer(name); });
-  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-  reader.read("position", 0, {positions.front().data(), 3 * positions.size()});
-  reader.read("velocity", 0, {velocities.front().data(), 3 * velocities.size()});
-  _solver->set_time_state(clock);
-  _solver->upload(positions, velocities);
+  _peaks.require_watch(reader);
   _peaks.watch(*_solver, _sheets);
-  _peaks.read(reader, *_solver);
+  std::vector<double> state;
+  for (const stepping::StateArray& array : _solver->state_arrays()) {
+    std::vector<double> values(array.size());
+    reader.read(array.name, 0, values);
+    state.insert(state.end(), values.begin(), values.end());
+  }
+  _solver->set_time_state(clock);
+  _solver->upload_state(state);
   if (_cuts.restart_at(now().time)) _solver->set_line_stiffness(_cuts.stiffness());
   allocate_buffers();
 }

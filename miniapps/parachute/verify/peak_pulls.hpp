@@ -29,6 +29,12 @@ class PeakPulls {
   /// One per canopy, of all steps up to the last update. Does not throw.
   [[nodiscard]] const std::vector<fabric::PeakPull>& values() const { return _peaks; }
 
+  /// Writes whether the solver records them. Throws `Failure` (io_error).
+  void write_watch(run::RestartWriter& writer) const;
+
+  /// Throws `Failure` (io_error) if the file lacks those that the scene verifies.
+  void require_watch(const run::RestartReader& reader) const;
+
   /// Writes those of the solver. Throws `Failure` (io_error).
   template <class Solver>
   void write(run::RestartWriter& writer, Solver& solver) {
