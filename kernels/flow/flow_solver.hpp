@@ -11,40 +11,19 @@
 #include <vector>
 
 #include "kernels/device/copy.hpp"
-#include "kernels/flow/advection/momentum.hpp"
-#include "kernels/flow/boundary/faces.hpp"
-#include "kernels/flow/boundary/ghosts.hpp"
-#include "kernels/flow/boundary/side_motion.hpp"
-#include "kernels/flow/diffusion/implicit_diffusion.hpp"
-#include "kernels/flow/halo/halo.hpp"
 #include "kernels/flow/observables/extremes.hpp"
 #include "kernels/flow/observables/sample.hpp"
 #include "kernels/flow/observables/totals.hpp"
-#include "kernels/flow/projection/net_inflow.hpp"
-#include "kernels/flow/projection/pressure_equation.hpp"
-#include "kernels/flow/projection/projection.hpp"
 #include "kernels/flow/shift_frame.hpp"
 #include "kernels/flow/solver.hpp"
-#include "kernels/flow/step_constants.hpp"
-#include "kernels/flow/step_control.hpp"
-#include "kernels/flow/turbulence/eddy_viscosity.hpp"
+#include "kernels/flow/step.hpp"
 #include "kernels/stepping/step_launcher.hpp"
 
 namespace drogue::flow {
 
-/// Sides of the cells of a rank: those of the domain, or towards other ranks. Values as in
-/// `Parameters::boundary`, SI units. Does not throw.
-inline std::array<Boundary, 6> sides_of(const Parameters& parameters, const linear::PencilRanks& ranks) {
-  std::array<Boundary, 6> sides = parameters.boundary;
-  for (std::size_t side = 0; side < 6; ++side)
-    if (borders_rank(parameters, ranks, side)) sides[side] = {BoundaryKind::neighbour, {}, {}};
-  return sides;
-}
-
 /// Incompressible flow on a staggered grid, on the caller's instance of an execution space, for coupling to
-/// other kernels. Second order in space and time. The projection is exact to round-off (Chorin 1968; Kim and
-/// Moin 1985 for the staggered grid), so that with explicit diffusion a pressure increment would give the
-/// same velocity; Crank-Nicolson diffusion needs one.
+/// other kernels: the life of a run around `Step`, which holds method and arrays. Second order in space and
+/// time.
 ///
 /// Functions block unless stated otherwise. All work is enqueued on the instance given to the constructor,
 /// which must outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is
@@ -66,13 +45,13 @@ class FlowSolver : public Solver {
              const linear::RankGroup& group = {});
 
   /// Grid of the arrays. Does not throw.
-  [[nodiscard]] const MacGrid& grid() const { return _grid; }
+  [[nodiscard]] const MacGrid& grid() const { return _step.grid; }
   /// Velocity with ghost cells, m/s; valid after the kernels enqueued so far. Does not throw.
-  [[nodiscard]] const Values& velocity() const { return _velocity; }
+  [[nodiscard]] const Values& velocity() const { return _step.fields.velocity; }
   /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless
   /// `Parameters::external_force`. On sides it acts only on outflows. Other kernels may write it between
   /// steps; it keeps its values. Does not throw.
-  [[nodiscard]] const Values& force() const { return _force; }
+  [[nodiscard]] const Values& force() const { return _step.fields.force; }
 
   // For a coupling that enqueues other kernels between steps. Asynchronous on one rank, without a bound on
   // the steps in flight; collective and blocking on several.
@@ -99,7 +78,7 @@ class FlowSolver : public Solver {
   void set_frame(const std::array<double, 3>& velocity);
   /// Throws std::invalid_argument if the grid cannot move along the marked axes: along axes of one cell,
   /// towards walls or slip sides, and with sides whose velocity is an expression.
-  void check_frame(const std::array<bool, 3>& axes) const { flow::check_frame(_parameters, axes); }
+  void check_frame(const std::array<bool, 3>& axes) const { flow::check_frame(_step.parameters, axes); }
   /// Largest dt, s, of that many equal steps that the CFL condition, `Parameters::max_dt` and prescribed
   /// motion admit at this progress; infinite without a bound, NaN without a finite velocity. Does not throw.
   [[nodiscard]] double largest_dt(const Progress& now, double steps = 1.0) const;
@@ -123,7 +102,7 @@ class FlowSolver : public Solver {
   [[nodiscard]] Status status() const { return _loop.status(); }
   /// Control block. Other kernels may set `trial.stop` to `Stop::failed`: the next step is not taken, and
   /// `advance` ends. Does not throw.
-  [[nodiscard]] const ControlView<ExecutionSpace>& control() const { return _control; }
+  [[nodiscard]] const ControlView<ExecutionSpace>& control() const { return _step.control; }
 
   void upload(StateField field, std::span<const double> values) final;
   void download(StateField field, std::span<double> values) final;
@@ -140,84 +119,32 @@ class FlowSolver : public Solver {
   }
   void sample(CellField field, std::span<double> values) final;
   [[nodiscard]] const char* driver() const final { return stepping::driver_name(_launcher.driver()); }
-  [[nodiscard]] const char* pressure_solver() const final { return _pressure_equation->name(); }
+  [[nodiscard]] const char* pressure_solver() const final { return _step.pressure_equation->name(); }
   [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const final {
-    return _pressure_equation->last_solve();
+    return _step.pressure_equation->last_solve();
   }
 
  private:
   struct Steps;
 
-  [[nodiscard]] static auto one_thread(const ExecutionSpace& space) {
-    return Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1);
-  }
   [[nodiscard]] const ExecutionSpace& space() const { return _instance->space(); }
   [[nodiscard]] Control read_control() const;
   void write_control(Control control);
   void begin_trial(Control control, double dt);
   void add_rates(double weight);
-  void use_motion();
+  void fill_ghosts();
   [[nodiscard]] double longest_first_dt() const;
-  void set_guess() const;
   [[nodiscard]] stepping::MotionBound motion_bound(const Progress& now, double dt, double steps) const;
   Control solve_present_pressure(double nu, double fraction = 1e-4);
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
-  void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
-  void finish_ghosts(const ExecutionSpace& space, const Values& velocity) const;
-  void enqueue_net_inflow(const ExecutionSpace& space) const;
-  void enqueue_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) const;
-  void enqueue_eddy_viscosity(const ExecutionSpace& space, const Values& velocity) const;
-  void enqueue_rates(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
-                     double time_fraction) const;
-  [[nodiscard]] MomentumSetup<ExecutionSpace> momentum_setup(double nu) const;
-  void enqueue_step(const ExecutionSpace& space) const;
-  /// Compares the state with the extremes of the steps so far, if they are watched.
-  void enqueue_extremes(const ExecutionSpace& space) const {
-    if (!_extremes) return;
-    finish_ghosts(space, _velocity);
-    _extremes->enqueue(space, _velocity, _control, _halo);
-  }
-  void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
-                     const Values& result, double fraction, double time_fraction) const;
-  [[nodiscard]] ProjectionSetup<ExecutionSpace> projection_setup(double fraction) const;
-  void enqueue_pressure(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
-  void enqueue_projection(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
-  /// Solution of the pressure equation: the pressure, or its increment.
-  [[nodiscard]] const Values& unknown() const {
-    return _diffusion ? _pressure_increment : _divergence_or_pressure;
-  }
-  [[nodiscard]] double kinematic_viscosity() const { return _parameters.viscosity / _parameters.density; }
+  void enqueue_extremes(const ExecutionSpace& space);
 
   const device::Instance<ExecutionSpace>* _instance;
-  Parameters _parameters;
-  linear::PencilRanks _ranks;
-  MacGrid _grid;
-  mutable Halo<ExecutionSpace> _halo;
-  BoundaryTables<ExecutionSpace> _boundary;
-  bool _checks_inflow;  ///< inflows change in time, and the pressure equation has no solution with a net one
-  StepConstants _constants{};
-  std::vector<stepping::MotionInterval> _motion;
-  Kokkos::View<stepping::MotionInterval*, typename ExecutionSpace::memory_space> _motion_on_device;
-  std::array<double, 3> _acceleration{};    ///< m/s^2
+  Step<ExecutionSpace> _step;
   std::array<double, 3> _frame_velocity{};  ///< m/s
-  EddyModel _eddy_model{};
-  EddyCells _eddy_cells{};
-  Values _velocity, _predicted, _force;
-  Values _rate_or_stage;  ///< AB2: rate of the step before, m/s^2; RK3: velocity of a stage, m/s
-  /// Right-hand side of the pressure equation, 1/s^2; with explicit diffusion also its solution, m^2/s^2, so
-  /// that the pressure changes with the velocity, in the correction.
-  Values _divergence_or_pressure;
-  Values _pressure;
-  Values _pressure_increment;                  ///< empty with explicit diffusion, which needs no increments
-  Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
-  std::optional<TotalsSum<ExecutionSpace>> _totals_sum;
+  TotalsSum<ExecutionSpace> _totals_sum;
   std::optional<StepExtremes<ExecutionSpace>> _extremes;  ///< if they are watched
-  ControlView<ExecutionSpace> _control;
-  mutable std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
-  mutable std::optional<PressureEquation<ExecutionSpace>> _pressure_equation;
-  /// False if the last solve was not that of the last step.
-  mutable bool _last_solution_is_pressure = false;
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
 };
@@ -226,69 +153,20 @@ template <class ExecutionSpace>
 FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& instance,
                                        const Parameters& parameters, const linear::RankGroup& group)
     : _instance(&instance),
-      _parameters(parameters),
-      _ranks((check_parameters(parameters), ranks_of(parameters, group.size(), group.rank()))),
-      _grid(make_grid(parameters, _ranks)),
-      _halo(group, _ranks, parameters, _grid),
-      _boundary(instance.space(), _grid, sides_of(parameters, _ranks)),
-      _checks_inflow(pressure_problem(parameters).is_singular() && inflow_changes(parameters.boundary)),
+      _step(instance.space(), parameters, group),
+      _totals_sum(_step.grid, _step.fields.predicted),
       _loop(instance),
       // Messages and an iterative solver wait for the host in every step, which a graph cannot hold.
       _launcher(instance, parameters.pressure_solver == PressureSolver::hypre_pfmg || group.size() > 1
                               ? Driver::plain
                               : parameters.driver) {
-  const auto field = [&](const std::string& label) {
-    // Packs may load beyond the last cell.
-    return Values(label, static_cast<std::size_t>(3 * _grid.component + 64));
-  };
-  const auto cells = static_cast<std::size_t>(_grid.cells());
-  _velocity = field("drogue::flow::velocity");
-  _predicted = field("drogue::flow::predicted_velocity");
-  _rate_or_stage = field("drogue::flow::rate");
-  if (parameters.external_force) _force = field("drogue::flow::force");
-  _divergence_or_pressure = Values("drogue::flow::divergence", cells);
-  _pressure = Values("drogue::flow::pressure", cells);
-  const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
-  if (is_implicit) {
-    _pressure_increment = Values("drogue::flow::pressure_increment", cells);
-    _diffusion.emplace(space(), parameters, _halo.group(), _ranks);
-  }
-  _totals_sum.emplace(_grid, _predicted);
-  if (parameters.watches_extremes) _extremes.emplace(_grid, parameters.density);
-  if (parameters.turbulence != Turbulence::none) {
-    _eddy_model = make_eddy_model(parameters, _grid);
-    _eddy_cells = make_eddy_cells(_grid, _boundary.conditions().kind);
-    _eddy_viscosity = Values("drogue::flow::eddy_viscosity", _eddy_cells.size());
-    _eddy_acceleration = field("drogue::flow::eddy_acceleration");
-  }
-  _control = ControlView<ExecutionSpace>("drogue::flow::control");
-  _pressure_equation.emplace(space(), parameters, _halo.group(), _ranks, !is_implicit);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double length = parameters.high[axis] - parameters.low[axis];
-    _acceleration[axis] =
-        (parameters.body_force[axis] + parameters.pressure_drop[axis] / length) / parameters.density;
-  }
-  _constants = step_constants(parameters, _grid);
-  use_motion();
-  space().fence("drogue::flow::solver: allocated");
-}
-
-/// Gives the choice of dt the prescribed motion of all ranks.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::use_motion() {
-  _motion = side_motion(_parameters);
-  _constants.motions = static_cast<int>(_motion.size());
-  if (_motion.empty()) return;
-  _motion_on_device = decltype(_motion_on_device)(
-      Kokkos::view_alloc(space(), Kokkos::WithoutInitializing, "drogue::flow::motion"), _motion.size());
-  device::copy_in(space(), _motion_on_device, _motion.data(), _motion.size());
-  _constants.motion = _motion_on_device.data();
+  if (parameters.watches_extremes) _extremes.emplace(_step.grid, parameters.density);
 }
 
 template <class ExecutionSpace>
 Control FlowSolver<ExecutionSpace>::read_control() const {
   Control control;
-  device::copy_out(space(), &control, _control, 1);
+  device::copy_out(space(), &control, _step.control, 1);
   space().fence("drogue::flow::solver: read control");
   return control;
 }
@@ -296,7 +174,7 @@ Control FlowSolver<ExecutionSpace>::read_control() const {
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::write_control(Control control) {
   control.trial.launches = _loop.launches();
-  device::copy_in(space(), _control, &control, 1);
+  device::copy_in(space(), _step.control, &control, 1);
   space().fence("drogue::flow::solver: write control");
 }
 
@@ -307,18 +185,19 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
                                                                 bool to_field) const {
   const int index = static_cast<int>(field);
   const bool is_rate = index >= static_cast<int>(StateField::rate_x);
-  if (is_rate && _parameters.time_scheme != TimeScheme::ab2)
+  if (is_rate && _step.parameters.time_scheme != TimeScheme::ab2)
     throw std::invalid_argument("flow solver: only the scheme AB2 has rates of the previous step");
-  const std::array<int, 3> shape = part_of(_parameters, _ranks, field).cells;
+  const std::array<int, 3> shape = part_of(_step.parameters, _step.ranks, field).cells;
   if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) *
                   static_cast<std::size_t>(shape[2]))
     throw std::invalid_argument("flow solver: an array of the state has the wrong length");
   const auto axis = static_cast<std::size_t>(index % 3);
-  const bool has_low_side = extents(_parameters, field) != _parameters.cells && _ranks.place[axis] == 0;
-  return {.grid = _grid,
-          .field = is_rate ? _rate_or_stage : _velocity,
-          .contiguous = _predicted,
-          .first = (index % 3) * _grid.component,
+  const bool has_low_side =
+      extents(_step.parameters, field) != _step.parameters.cells && _step.ranks.place[axis] == 0;
+  return {.grid = _step.grid,
+          .field = is_rate ? _step.fields.rate : _step.fields.velocity,
+          .contiguous = _step.fields.predicted,
+          .first = (index % 3) * _step.grid.component,
           .extent = {shape[0], shape[1], shape[2]},
           .to_field = to_field,
           .bounded_axis = is_rate && has_low_side ? index % 3 : -1};
@@ -327,12 +206,12 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::upload(StateField field, std::span<const double> values) {
   if (field == StateField::pressure) {
-    if (values.size() != _pressure.extent(0))
+    if (values.size() != _step.fields.pressure.extent(0))
       throw std::invalid_argument("flow solver: an array of the state has the wrong length");
-    device::copy_in(space(), _pressure, values.data(), values.size());
+    device::copy_in(space(), _step.fields.pressure, values.data(), values.size());
   } else {
     const auto pack = packing(field, values.size(), true);
-    device::copy_in(space(), _predicted, values.data(), values.size());
+    device::copy_in(space(), _step.fields.predicted, values.data(), values.size());
     launch_cells(space(), "drogue::flow::upload", pack.extent, pack);
   }
   space().fence("drogue::flow::upload");
@@ -341,63 +220,56 @@ void FlowSolver<ExecutionSpace>::upload(StateField field, std::span<const double
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::download(StateField field, std::span<double> values) {
   if (field == StateField::pressure) {
-    if (values.size() != _pressure.extent(0))
+    if (values.size() != _step.fields.pressure.extent(0))
       throw std::invalid_argument("flow solver: an array of the state has the wrong length");
-    device::copy_out(space(), values.data(), _pressure, values.size());
+    device::copy_out(space(), values.data(), _step.fields.pressure, values.size());
   } else {
     const auto pack = packing(field, values.size(), false);
     launch_cells(space(), "drogue::flow::download", pack.extent, pack);
-    device::copy_out(space(), values.data(), _predicted, values.size());
+    device::copy_out(space(), values.data(), _step.fields.predicted, values.size());
   }
   space().fence("drogue::flow::download");
 }
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> values) {
-  if (values.size() != static_cast<std::size_t>(_grid.cells()) * static_cast<std::size_t>(components(field)))
+  if (values.size() !=
+      static_cast<std::size_t>(_step.grid.cells()) * static_cast<std::size_t>(components(field)))
     throw std::invalid_argument("flow solver: a field has the wrong length");
-  if (field == CellField::pressure) solve_present_pressure(kinematic_viscosity());
-  launch_cells(space(), "drogue::flow::sample", _grid.n,
-               SampleFunctor<ExecutionSpace>{.grid = _grid,
-                                             .velocity = _velocity,
-                                             .pressure = unknown(),
-                                             .samples = _predicted,
-                                             .density = _parameters.density,
+  if (field == CellField::pressure) solve_present_pressure(_step.kinematic_viscosity());
+  launch_cells(space(), "drogue::flow::sample", _step.grid.n,
+               SampleFunctor<ExecutionSpace>{.grid = _step.grid,
+                                             .velocity = _step.fields.velocity,
+                                             .pressure = _step.fields.solution,
+                                             .samples = _step.fields.predicted,
+                                             .density = _step.parameters.density,
                                              .field = field});
-  device::copy_out(space(), values.data(), _predicted, values.size());
+  device::copy_out(space(), values.data(), _step.fields.predicted, values.size());
   space().fence("drogue::flow::sample");
 }
 
-/// Lets an iterative solver begin with the pressure of the last step, so that a restart continues bit for
-/// bit; with zero if its unknown is an increment.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::set_guess() const {
-  if (_diffusion)
-    _pressure_equation->set_guess(Values());
-  else if (!_last_solution_is_pressure)
-    _pressure_equation->set_guess(_pressure);
-}
-
-/// Solves for the pressure of the present velocity in `unknown`: that which keeps the velocity of an explicit
-/// step free of divergence, in the limit of a short step, with the kinematic viscosity `nu`, m^2/s. Leaves
-/// the state as it is. Accelerations of sides are differences over a `fraction` of dt, by whose inverse the
-/// round-off of the divergence grows. Returns the control block of the solve, with its failures.
+/// Solves for the pressure of the present velocity in `Fields::solution`: that which keeps the velocity of an
+/// explicit step free of divergence, in the limit of a short step, with the kinematic viscosity `nu`, m^2/s.
+/// Leaves the state as it is. Accelerations of sides are differences over a `fraction` of dt, by whose
+/// inverse the round-off of the divergence grows. Returns the control block of the solve, with its failures.
 template <class ExecutionSpace>
 Control FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fraction) {
   const Control kept = read_control();
-  const stepping::MotionBound bound =
-      motion_bound(kept.now, std::min(admissible_dt(kept.now, _constants), _constants.implicit_dt), 1.0);
+  const stepping::MotionBound bound = motion_bound(
+      kept.now, std::min(admissible_dt(kept.now, _step.constants), _step.constants.implicit_dt), 1.0);
   double dt = std::min(bound.dt, bound.jump - kept.now.time);
   // Without a bound, only a force acts, of which the pressure is a multiple.
-  if (!(dt > 0.0) || !std::isfinite(dt)) dt = _parameters.horizon > 0.0 ? _parameters.horizon : 1.0;
+  if (!(dt > 0.0) || !std::isfinite(dt)) dt = _step.parameters.horizon > 0.0 ? _step.parameters.horizon : 1.0;
   begin_trial(kept, fraction * dt);
-  MomentumSetup<ExecutionSpace> setup = momentum_setup(nu);
-  setup.weights = {0.0, 1.0, false};
-  enqueue_rates(space(), setup, 1.0);
-  set_guess();
-  enqueue_pressure(space(), projection_setup(1.0));
-  _last_solution_is_pressure = false;
-  if (_boundary.changes()) _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
+  MomentumSetup<ExecutionSpace> setup =
+      _step.momentum_setup(_step.fields.velocity, {.state = 0.0, .rate = 1.0});
+  setup.nu = nu;
+  _step.predict_explicitly(space(), setup, 1.0);
+  _step.set_guess();
+  _step.solve_pressure(space(), _step.projection_setup(Values(), 1.0));
+  _step.last_solution_is_pressure = false;
+  if (_step.boundary.changes())
+    _step.boundary.enqueue_evaluation(space(), _step.control, _step.constants, {0.0, true});
   const Control solved = read_control();
   write_control(kept);
   return solved;
@@ -405,11 +277,11 @@ Control FlowSolver<ExecutionSpace>::solve_present_pressure(double nu, double fra
 
 template <class ExecutionSpace>
 Totals FlowSolver<ExecutionSpace>::totals() {
-  _totals_sum->enqueue(space(), _velocity);
+  _totals_sum.enqueue(space(), _step.fields.velocity);
   const Control control = read_control();  // waits
-  PartTotals part = _totals_sum->result(_boundary.conditions().kind);
-  _halo.combine(part);
-  Totals totals = make_totals(part, _parameters, _grid);
+  PartTotals part = _totals_sum.result(_step.boundary.conditions().kind);
+  _step.halo.combine(part);
+  Totals totals = make_totals(part, _step.parameters, _step.grid);
   totals.step = control.now.step;
   totals.time = control.now.time;
   totals.dt = control.trial.dt;
@@ -424,40 +296,37 @@ void FlowSolver<ExecutionSpace>::start() {
   control.trial.stop = Stop::running;
   control.first_failure = no_failure;
   write_control(control);
-  _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
-  enqueue_net_inflow(space());
+  _step.boundary.enqueue_evaluation(space(), _step.control, _step.constants, {0.0, true});
+  _step.enqueue_net_inflow(space());
   for (int axis = 0; axis < 3; ++axis)
-    if (_grid.n[axis] == 1 && _boundary.conditions().kind[2 * axis] == BoundaryKind::slip)
-      Kokkos::deep_copy(
-          space(),
-          Values(_velocity.data() + axis * _grid.component, static_cast<std::size_t>(_grid.component)), 0.0);
-  begin_ghosts(space(), _velocity);
-  finish_ghosts(space(), _velocity);
-  device::copy(space(), _predicted, _velocity);
-  ProjectionSetup<ExecutionSpace> projection = projection_setup(1.0);
-  projection.velocity = _velocity;
-  projection.ends_step = true;
-  enqueue_projection(space(), projection);
-  finish_ghosts(space(), _velocity);
-  enqueue_eddy_viscosity(space(), _velocity);
-  _halo.agree(space(), _control, _checks_inflow);
-  Kokkos::deep_copy(space(), _pressure, 0.0);  // the first step has no pressure of a previous one
+    if (_step.grid.n[axis] == 1 && _step.boundary.conditions().kind[2 * axis] == BoundaryKind::slip)
+      Kokkos::deep_copy(space(),
+                        Values(_step.fields.velocity.data() + axis * _step.grid.component,
+                               static_cast<std::size_t>(_step.grid.component)),
+                        0.0);
+  fill_ghosts();
+  device::copy(space(), _step.fields.predicted, _step.fields.velocity);
+  _step.project(space(), _step.fields.velocity, 1.0);
+  _step.finish_ghosts(space(), _step.fields.velocity);
+  _step.evaluate_eddy_viscosity(space(), _step.fields.velocity);
+  _step.halo.agree(space(), _step.control, _step.checks_inflow);
+  Kokkos::deep_copy(space(), _step.fields.pressure, 0.0);  // the first step has no pressure of a previous one
   control = read_control();
   control.trial.dt = 0.0;
   control.now.velocity_rate_bits = control.next_rate_bits;
   // No first step is admissible after a failure.
   const auto no_rate_bits = Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
-  control.now.rate_bits = control.has_failed() ? no_rate_bits : limiting_rate_bits(control, _constants);
+  control.now.rate_bits = control.has_failed() ? no_rate_bits : limiting_rate_bits(control, _step.constants);
   if (const double longest = longest_first_dt(); std::isfinite(longest)) control.now.longest_dt = longest;
   control.forget_step();
   control.trial.stop = Stop::pause;
   write_control(control);
-  if (_diffusion && !control.has_failed()) {
+  if (_step.diffusion && !control.has_failed()) {
     // The first step of implicit diffusion begins with a pressure, too. That of viscosity decays with the
     // thinnest layers, within a long step.
     const Control solved = solve_present_pressure(
-        _constants.fixed_dt > _constants.implicit_dt ? 0.0 : kinematic_viscosity(), 5e-3);
-    device::copy(space(), _pressure, unknown());
+        _step.constants.fixed_dt > _step.constants.implicit_dt ? 0.0 : _step.kinematic_viscosity(), 5e-3);
+    device::copy(space(), _step.fields.pressure, _step.fields.solution);
     if (solved.pressure_failed != 0) {
       control.pressure_failed = 1;
       control.pressure_residual = solved.pressure_residual;
@@ -465,11 +334,25 @@ void FlowSolver<ExecutionSpace>::start() {
       write_control(control);
     }
   }
-  _last_solution_is_pressure = false;
+  _step.last_solution_is_pressure = false;
   _loop.status_view()().step = 0;
-  if (!_extremes) return;
-  set_extremes({});
+  if (_extremes) set_extremes({});
   enqueue_extremes(space());
+}
+
+/// Fills the ghost cells of the velocity.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::fill_ghosts() {
+  _step.begin_ghosts(space(), _step.fields.velocity);
+  _step.finish_ghosts(space(), _step.fields.velocity);
+}
+
+/// Compares the state with the extremes of the steps so far, if they are watched.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_extremes(const ExecutionSpace& space) {
+  if (!_extremes) return;
+  _step.finish_ghosts(space, _step.fields.velocity);
+  _extremes->enqueue(space, _step.fields.velocity, _step.control, _step.halo);
 }
 
 /// Bound of the first dt, s, where the velocity of the start sets none: by what sides of constant velocity
@@ -478,9 +361,10 @@ template <class ExecutionSpace>
 double FlowSolver<ExecutionSpace>::longest_first_dt() const {
   double acceleration = 0.0;  // in cells, 1/s^2
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (_grid.n[axis] > 1) acceleration += std::abs(_acceleration[axis]) * _grid.inverse_h[axis];
-  return std::min({_constants.cfl / rate_of_constant_sides(_parameters),
-                   std::sqrt(_constants.cfl / acceleration), first_implicit_dt(_constants)});
+    if (_step.grid.n[axis] > 1)
+      acceleration += std::abs(_step.acceleration[axis]) * _step.grid.inverse_h[axis];
+  return std::min({_step.constants.cfl / rate_of_constant_sides(_step.parameters),
+                   std::sqrt(_step.constants.cfl / acceleration), first_implicit_dt(_step.constants)});
 }
 
 template <class ExecutionSpace>
@@ -490,13 +374,12 @@ void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
   control.first_failure = no_failure;
   control.trial.stop = Stop::running;
   write_control(control);
-  _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
-  begin_ghosts(space(), _velocity);
-  finish_ghosts(space(), _velocity);
-  enqueue_eddy_viscosity(space(), _velocity);
+  _step.boundary.enqueue_evaluation(space(), _step.control, _step.constants, {0.0, true});
+  fill_ghosts();
+  _step.evaluate_eddy_viscosity(space(), _step.fields.velocity);
   control.trial.stop = Stop::pause;
   write_control(control);
-  _last_solution_is_pressure = false;
+  _step.last_solution_is_pressure = false;
   _loop.status_view()().step = progress.step;
 }
 
@@ -532,25 +415,29 @@ struct FlowSolver<ExecutionSpace>::Steps {
   FlowSolver& solver;
 
   void begin(const stepping::AdvanceRequest& request, std::int64_t output_step) {
-    Kokkos::parallel_for("drogue::flow::begin_advance", one_thread(solver.space()),
-                         BeginAdvanceFunctor<ExecutionSpace>{.control = solver._control,
+    Kokkos::parallel_for("drogue::flow::begin_advance",
+                         Kokkos::RangePolicy<ExecutionSpace>(solver.space(), 0, 1),
+                         BeginAdvanceFunctor<ExecutionSpace>{.control = solver._step.control,
                                                              .status = solver._loop.status_view(),
-                                                             .constants = solver._constants,
+                                                             .constants = solver._step.constants,
                                                              .request = request,
                                                              .output_step = output_step});
   }
   [[nodiscard]] bool holds_many_steps(int /*variant*/) const { return false; }
   void enqueue(int variant, std::int64_t /*max_steps*/) {
-    solver._launcher.launch(variant, [this](const ExecutionSpace& on) { solver.enqueue_step(on); });
+    solver._launcher.launch(variant, [this](const ExecutionSpace& on) {
+      solver._step.enqueue(on, solver._loop.status_view());
+      solver.enqueue_extremes(on);
+    });
   }
 };
 
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
-  const Stop stop = _halo.is_alone() ? _loop.advance({target, pause_step}, Steps{*this}, poll)
-                                     : advance_collectively({target, pause_step}, poll);
-  if (stop == Stop::failed && _boundary.changes()) {
-    _boundary.enqueue_evaluation(space(), _control, _constants, {0.0, true});
+  const Stop stop = _step.halo.is_alone() ? _loop.advance({target, pause_step}, Steps{*this}, poll)
+                                          : advance_collectively({target, pause_step}, poll);
+  if (stop == Stop::failed && _step.boundary.changes()) {
+    _step.boundary.enqueue_evaluation(space(), _step.control, _step.constants, {0.0, true});
     space().fence("drogue::flow::advance: sides before the failed step");
   }
   return stop;
@@ -570,27 +457,27 @@ void FlowSolver<ExecutionSpace>::enqueue_step() {
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_end() {
-  finish_ghosts(space(), _velocity);
+  _step.finish_ghosts(space(), _step.fields.velocity);
 }
 
 template <class ExecutionSpace>
 stepping::MotionBound FlowSolver<ExecutionSpace>::motion_bound(const Progress& now, double dt,
                                                                double steps) const {
-  StepConstants constants = _constants;
-  constants.motion = _motion.data();  // those of the host
+  StepConstants constants = _step.constants;
+  constants.motion = _step.motion.data();  // those of the host
   return resolved_motion(now, dt, steps, constants);
 }
 
 template <class ExecutionSpace>
 double FlowSolver<ExecutionSpace>::largest_dt(const Progress& now, double steps) const {
-  StepConstants constants = _constants;
+  StepConstants constants = _step.constants;
   constants.fixed_dt = 0.0;
   return motion_bound(now, admissible_dt(now, constants), steps).dt;
 }
 
 template <class ExecutionSpace>
 double FlowSolver<ExecutionSpace>::next_jump(double time) const {
-  for (const stepping::MotionInterval& interval : _motion)
+  for (const stepping::MotionInterval& interval : _step.motion)
     if (interval.begins_with != 0 && interval.begin - time > stepping::jump_width * interval.begin)
       return interval.begin;
   return std::numeric_limits<double>::infinity();
@@ -598,8 +485,8 @@ double FlowSolver<ExecutionSpace>::next_jump(double time) const {
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::set_fixed_dt(double dt) {
-  if (dt == _constants.fixed_dt) return;
-  _constants.fixed_dt = dt;
+  if (dt == _step.constants.fixed_dt) return;
+  _step.constants.fixed_dt = dt;
   _launcher.discard_graphs();  // they hold the constants
 }
 
@@ -608,13 +495,12 @@ void FlowSolver<ExecutionSpace>::set_frame(const std::array<double, 3>& velocity
   check_frame({velocity[0] != 0.0, velocity[1] != 0.0, velocity[2] != 0.0});
   _frame_velocity = velocity;
   for (std::size_t side = 0; side < 6; ++side) {
-    std::array<double, 3> relative = _parameters.boundary[side].velocity;
+    std::array<double, 3> relative = _step.parameters.boundary[side].velocity;
     for (std::size_t c = 0; c < 3; ++c) relative[c] -= velocity[c];
-    _boundary.set_velocity(side, relative);
+    _step.boundary.set_velocity(side, relative);
   }
   _launcher.discard_graphs();  // they hold the conditions
-  begin_ghosts(space(), _velocity);
-  finish_ghosts(space(), _velocity);
+  fill_ghosts();
   space().fence("drogue::flow::set_frame");
 }
 
@@ -624,19 +510,19 @@ void FlowSolver<ExecutionSpace>::change_frame(const std::array<double, 3>& veloc
   double shift[3], rate = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
     shift[c] = velocity[c] - _frame_velocity[c];
-    rate += std::abs(shift[c]) * _grid.inverse_h[c];
+    rate += std::abs(shift[c]) * _step.grid.inverse_h[c];
   }
   Control control = read_control();
   const double dt = control.now.last_dt;
   // The rates of the previous step change as those of the present velocity do.
-  const bool has_rates = _parameters.time_scheme == TimeScheme::ab2 && dt > 0.0;
+  const bool has_rates = _step.parameters.time_scheme == TimeScheme::ab2 && dt > 0.0;
   if (has_rates) {
     begin_trial(control, dt);
     add_rates(-1.0 / dt);
   }
-  device::launch_each(
-      space(), "drogue::flow::shift_velocity", static_cast<int>(_grid.component),
-      ShiftVelocityFunctor<ExecutionSpace>{_velocity, _grid.component, {shift[0], shift[1], shift[2]}});
+  device::launch_each(space(), "drogue::flow::shift_velocity", static_cast<int>(_step.grid.component),
+                      ShiftVelocityFunctor<ExecutionSpace>{
+                          _step.fields.velocity, _step.grid.component, {shift[0], shift[1], shift[2]}});
   set_frame(velocity);
   if (has_rates) add_rates(1.0 / dt);
   // An upper bound until the next step.
@@ -659,16 +545,16 @@ void FlowSolver<ExecutionSpace>::begin_trial(Control control, double dt) {
 /// forces of other kernels, to the rates of the previous step.
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::add_rates(double weight) {
-  MomentumSetup<ExecutionSpace> setup = momentum_setup(_diffusion ? 0.0 : kinematic_viscosity());
-  setup.weights = {0.0, 1.0, false};
+  MomentumSetup<ExecutionSpace> setup =
+      _step.momentum_setup(_step.fields.velocity, {.state = 0.0, .rate = 1.0});
   setup.force = Values();
-  enqueue_rates(space(), setup, 1.0);
-  launch_cells(space(), "drogue::flow::add_rates", _grid.n,
-               AddRatesFunctor<ExecutionSpace>{.grid = _grid,
-                                               .boundary = _boundary.conditions(),
-                                               .velocity = _velocity,
-                                               .predicted = _predicted,
-                                               .rate = _rate_or_stage,
+  _step.predict_explicitly(space(), setup, 1.0);
+  launch_cells(space(), "drogue::flow::add_rates", _step.grid.n,
+               AddRatesFunctor<ExecutionSpace>{.grid = _step.grid,
+                                               .boundary = _step.boundary.conditions(),
+                                               .velocity = _step.fields.velocity,
+                                               .predicted = _step.fields.predicted,
+                                               .rate = _step.fields.rate,
                                                .weight = weight});
 }
 
@@ -683,7 +569,7 @@ void FlowSolver<ExecutionSpace>::forget_long_step() {
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance_collectively(const stepping::AdvanceRequest& request,
                                                       const Poll& poll) {
-  const auto goes_on = [&] { return _halo.group().all(!poll || poll(_loop.status())); };
+  const auto goes_on = [&] { return _step.halo.group().all(!poll || poll(_loop.status())); };
   if (!goes_on()) return Stop::interrupted;
   Steps steps{*this};
   steps.begin(request, -1);
@@ -696,204 +582,9 @@ Stop FlowSolver<ExecutionSpace>::advance_collectively(const stepping::AdvanceReq
     space().fence("drogue::flow::advance_collectively: stepped");
     interrupted = _loop.status().stop == Stop::running && !goes_on();
   }
-  finish_ghosts(space(), _velocity);
+  _step.finish_ghosts(space(), _step.fields.velocity);
   space().fence("drogue::flow::advance_collectively: stopped");
   return interrupted ? Stop::interrupted : _loop.status().stop;
-}
-
-/// Enqueues the fill of the ghost cells of a velocity field; on several ranks it only begins.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::begin_ghosts(const ExecutionSpace& space, const Values& velocity) const {
-  if (!_halo.begin_velocity(space, velocity))
-    launch_ghosts(space, _grid, _boundary.conditions(), velocity, _control);
-}
-
-/// Completes what `begin_ghosts` began for the same field.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::finish_ghosts(const ExecutionSpace& space, const Values& velocity) const {
-  if (_halo.finish_velocity(space, velocity))
-    launch_ghosts(space, _grid, _boundary.conditions(), velocity, _control);
-}
-
-/// Net inflow of the present values of the sides, if it may change and must be zero.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_net_inflow(const ExecutionSpace& space) const {
-  if (_checks_inflow)
-    launch_net_inflow(space, NetInflowFunctor<ExecutionSpace>{.grid = _grid,
-                                                              .boundary = _boundary.conditions(),
-                                                              .control = _control,
-                                                              .checks = _halo.is_alone()});
-}
-
-/// Momentum stage. On several ranks, cells that need no other rank come first, while the messages are under
-/// way.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_momentum(const ExecutionSpace& space,
-                                                  const MomentumSetup<ExecutionSpace>& setup) const {
-  MomentumSetup<ExecutionSpace> part = setup;
-  const std::vector<MacGrid>& parts = _halo.parts();
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    // The cells inside need the ghost cells at the sides of the domain.
-    if (i == 0 && parts.size() > 1)
-      launch_ghosts(space, _grid, _boundary.conditions(), setup.stage, _control);
-    if (i == 1 || parts.size() == 1) finish_ghosts(space, setup.stage);
-    part.grid = parts[i];
-    dispatch_momentum(space, part, _parameters.advection);
-  }
-}
-
-/// Momentum stage of the state, without weights. `nu`: kinematic viscosity, m^2/s.
-template <class ExecutionSpace>
-MomentumSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::momentum_setup(double nu) const {
-  // m^2/s^2: above zero, so that a uniform velocity is kept, and below the square of any difference that
-  // round-off leaves of a velocity above 1e-19 m/s, so that results do not depend on the unit of velocity.
-  // Its fourth power, a product of the weights, is a number.
-  constexpr double smoothness_floor = 1e-72;
-  return {.grid = _grid,
-          .state = _velocity,
-          .stage = _velocity,
-          .out = _predicted,
-          .old_rate = _rate_or_stage,
-          .force = _force,
-          .eddy = _eddy_acceleration,
-          .control = _control,
-          .nu = nu,
-          .acceleration = {_acceleration[0], _acceleration[1], _acceleration[2]},
-          .specific_volume = 1.0 / _parameters.density,
-          .epsilon = smoothness_floor,
-          .rows = tile_rows(_parameters.block),
-          .weights = {}};
-}
-
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const {
-  MomentumSetup<ExecutionSpace> setup = momentum_setup(_diffusion ? 0.0 : kinematic_viscosity());
-  set_guess();
-  _last_solution_is_pressure = true;
-  if (_parameters.time_scheme == TimeScheme::ab2) {
-    setup.weights = {0.0, 1.0, true};
-    enqueue_stage(space, setup, _velocity, 1.0, 1.0);
-  } else {
-    // Shu and Osher 1988, eq. (2.18). The first two stages are projected into the array of rates.
-    setup.weights = {0.0, 1.0, false};
-    enqueue_stage(space, setup, _rate_or_stage, 1.0, 1.0);
-    setup.stage = _rate_or_stage;
-    setup.weights = {0.75, 0.25, false};
-    enqueue_stage(space, setup, _rate_or_stage, 0.25, 0.5);
-    setup.weights = {1.0 / 3.0, 2.0 / 3.0, false};
-    enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
-  }
-  enqueue_eddy_viscosity(space, _velocity);
-  _halo.agree(space, _control, _checks_inflow);
-  Kokkos::parallel_for("drogue::flow::finish_step", one_thread(space),
-                       FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
-  enqueue_extremes(space);
-}
-
-/// Eddy viscosity of a velocity field, if there is a model. That of the state is evaluated at the end of a
-/// step, because it limits the next dt.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_eddy_viscosity(const ExecutionSpace& space,
-                                                        const Values& velocity) const {
-  if (_parameters.turbulence == Turbulence::none) return;
-  finish_ghosts(space, velocity);
-  launch_cells(space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
-               EddyViscosityFunctor<ExecutionSpace>{.grid = _grid,
-                                                    .model = _eddy_model,
-                                                    .velocity = velocity,
-                                                    .cells = _eddy_cells,
-                                                    .viscosity = _eddy_viscosity,
-                                                    .control = _control});
-}
-
-/// Predicted velocity of a momentum stage. `time_fraction`: of dt at which it has the values of the sides.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_rates(const ExecutionSpace& space,
-                                               const MomentumSetup<ExecutionSpace>& setup,
-                                               double time_fraction) const {
-  if (_parameters.turbulence != Turbulence::none)
-    launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
-                 EddyStressFunctor<ExecutionSpace>{.grid = _grid,
-                                                   .velocity = setup.stage,
-                                                   .cells = _eddy_cells,
-                                                   .viscosity = _eddy_viscosity,
-                                                   .acceleration = _eddy_acceleration,
-                                                   .control = _control});
-  enqueue_momentum(space, setup);
-  if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, _constants, {time_fraction, false});
-  enqueue_net_inflow(space);
-  launch_boundary_faces(space, setup, _boundary.conditions(), _parameters.advection);
-}
-
-/// Momentum stage and projection. `fraction`: of dt that the pressure of the stage acts; `time_fraction`: of
-/// dt at which the result of the stage approximates the velocity.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
-                                               const MomentumSetup<ExecutionSpace>& setup,
-                                               const Values& result, double fraction,
-                                               double time_fraction) const {
-  if (setup.stage.data() != _velocity.data()) enqueue_eddy_viscosity(space, setup.stage);
-  enqueue_rates(space, setup, time_fraction);
-  if (_diffusion) {
-    const DiffusionSetup<ExecutionSpace> diffusion{.grid = _grid,
-                                                   .boundary = _boundary.conditions(),
-                                                   .velocity = _velocity,
-                                                   .predicted = _predicted,
-                                                   .pressure = _pressure,
-                                                   .control = _control,
-                                                   .nu = kinematic_viscosity(),
-                                                   .pressure_below = _halo.pressure_below()};
-    _halo.exchange_pressure(space, _pressure);
-    _diffusion->enqueue(space, diffusion, _divergence_or_pressure, _pressure_increment);
-  }
-  ProjectionSetup<ExecutionSpace> projection = projection_setup(fraction);
-  projection.velocity = result;
-  if (result.data() == _velocity.data()) {
-    projection.ends_step = true;
-    projection.total_pressure = _pressure;
-  }
-  enqueue_projection(space, projection);
-}
-
-/// Projection of the predicted velocity, without a result.
-template <class ExecutionSpace>
-ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(double fraction) const {
-  return {.grid = _grid,
-          .boundary = _boundary.conditions(),
-          .predicted = _predicted,
-          .velocity = Values(),
-          .divergence = _divergence_or_pressure,
-          .pressure = unknown(),
-          .total_pressure = Values(),
-          .is_increment = _diffusion.has_value(),
-          .control = _control,
-          .nu = kinematic_viscosity(),
-          .step_fraction = fraction,
-          .ends_step = false,
-          .rows = tile_rows(_parameters.block),
-          .pressure_below = _halo.pressure_below()};
-}
-
-/// Solves the pressure equation for `unknown`.
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_pressure(const ExecutionSpace& space,
-                                                  const ProjectionSetup<ExecutionSpace>& setup) const {
-  _halo.exchange_high_faces(space, _predicted);
-  launch_divergence(space, setup);
-  if (!_pressure_equation->enqueue_solve(_divergence_or_pressure, unknown()))
-    device::launch_each(space, "drogue::flow::pressure_failure", 1,
-                        PressureFailureFunctor<ExecutionSpace>{_control, last_pressure_solve()->residual});
-}
-
-template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
-                                                    const ProjectionSetup<ExecutionSpace>& setup) const {
-  enqueue_pressure(space, setup);
-  // No rank may overwrite the state if another one has failed.
-  _halo.agree(space, _control, _checks_inflow);
-  _halo.exchange_pressure(space, unknown());
-  launch_correction(space, setup);
-  begin_ghosts(space, setup.velocity);
 }
 
 // One translation unit per backend compiles the solver.

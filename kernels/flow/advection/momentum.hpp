@@ -8,7 +8,8 @@ namespace drogue::flow {
 /// previous step (Adams-Bashforth), or is not read. With U equal to S and no rates, W is S bit for bit.
 struct StageWeights {
   double state, rate;
-  bool adams_bashforth;  ///< replaces `rate` by 1 + r/2 and adds -r/2 A, r = dt / last dt; stores L(S) in A
+  bool adams_bashforth =
+      false;  ///< replaces `rate` by 1 + r/2 and adds -r/2 A, r = dt / last dt; stores L(S) in A
 };
 
 /// Data of a momentum stage.
