@@ -211,19 +211,19 @@ std::string choice_type(const Choices<T>& choices) {
   return name_type(names_of(choices));
 }
 
-/// One of several names, each standing for a value. `Place` is T or std::optional<T>.
-template <class T, class Place>
-Codec choice_codec(Place& value, const Choices<T>& choices) {
+/// One of several names, each standing for a value. `Variable` is T or std::optional<T>.
+template <class T, class Variable>
+Codec choice_codec(Variable& value, const Choices<T>& choices) {
   return make_codec(
       choice_type(choices), value,
-      [choices](const Node& node, const Limits&, Place& place) {
+      [choices](const Node& node, const Limits&, Variable& place) {
         std::string chosen;
         std::string fault = read_name(node, names_of(choices), chosen);
         for (const auto& [name, meaning] : choices)
           if (fault.empty() && name == chosen) place = meaning;
         return fault;
       },
-      [choices](const Place& place) -> std::optional<std::string> {
+      [choices](const Variable& place) -> std::optional<std::string> {
         for (const auto& [name, meaning] : choices)
           if (place == meaning) return toml_string(name);
         return std::nullopt;

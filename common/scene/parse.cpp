@@ -31,13 +31,13 @@ struct BrokenAssertion {};
 namespace drogue::scene {
 namespace {
 
-/// Origin of a TOML node: a line of a file, or a fixed text for a `--set`.
-class Place {
+/// Origins of TOML nodes: lines of a file, or a fixed text for a `--set`.
+class Origins {
  public:
-  static Place in_file(std::string name) { return Place(std::move(name), true); }
-  static Place of_set(const std::string& assignment) {
+  static Origins in_file(std::string name) { return Origins(std::move(name), true); }
+  static Origins of_set(const std::string& assignment) {
     constexpr std::size_t longest = 120;
-    return Place("--set " + shortened(assignment, longest), false);
+    return Origins("--set " + shortened(assignment, longest), false);
   }
 
   [[nodiscard]] std::string at(const toml::source_position& position) const {
@@ -46,15 +46,15 @@ class Place {
   }
 
  private:
-  Place(std::string name, bool has_lines) : _name(std::move(name)), _has_lines(has_lines) {}
+  Origins(std::string name, bool has_lines) : _name(std::move(name)), _has_lines(has_lines) {}
 
   std::string _name;
   bool _has_lines;
 };
 
-Node convert(const toml::node& source, const Place& place);
+Node convert(const toml::node& source, const Origins& place);
 
-Node::Table convert_table(const toml::table& source, const Place& place) {
+Node::Table convert_table(const toml::table& source, const Origins& place) {
   Node::Table table;
   for (const auto& [key, value] : source) {
     table.push_back({std::string(key.str()), place.at(key.source().begin), convert(value, place)});
@@ -69,7 +69,7 @@ Node::Table convert_table(const toml::table& source, const Place& place) {
   return sorted;
 }
 
-Node convert(const toml::node& source, const Place& place) {
+Node convert(const toml::node& source, const Origins& place) {
   Node node;
   node.origin = place.at(source.source().begin);
   if (const auto* table = source.as_table()) {
@@ -128,7 +128,7 @@ std::uint32_t line_of_broken_assertion(std::string_view text) {
   return line;
 }
 
-Node parse(std::string_view text, const Place& place) {
+Node parse(std::string_view text, const Origins& place) {
   try {
     return convert(toml::parse(text), place);
   } catch (const toml::parse_error& error) {
@@ -174,7 +174,7 @@ std::vector<std::string> split_path(const std::string& path, const std::string& 
 }
 
 /// Parses a TOML value or a bare word: a shell removes the quotes of --set mesh.kind="disk".
-Node parse_value(const std::string& text, const Place& place) {
+Node parse_value(const std::string& text, const Origins& place) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string::npos || text.find('\n') != std::string::npos) {
     throw Failure(ExitCode::invalid_scene, place.at({}) + ": the value is missing or holds a line break");
@@ -222,7 +222,9 @@ Node& step_into(Node& node, const std::string& part, const std::string& place, c
 
 }  // namespace
 
-Node parse_text(std::string_view text, const std::string& name) { return parse(text, Place::in_file(name)); }
+Node parse_text(std::string_view text, const std::string& name) {
+  return parse(text, Origins::in_file(name));
+}
 
 Node parse_file(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -246,7 +248,7 @@ Node parse_file(const std::filesystem::path& file) {
 }
 
 void apply_set(Node& document, const std::string& assignment) {
-  const Place place = Place::of_set(assignment);
+  const Origins place = Origins::of_set(assignment);
   const auto equals = assignment.find('=');
   if (equals == std::string::npos) {
     throw Failure(ExitCode::invalid_scene, place.at({}) + ": expected key.path=value");

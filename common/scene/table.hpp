@@ -31,8 +31,8 @@ struct Condition {
 Condition operator&&(const Condition& first, const Condition& second);
 
 /// Condition that the key `name` has one of several values: `with kind = "disk" or "sphere"`.
-template <class T, class Place>
-Condition with_choice(const std::string& name, const Place& place, const Choices<T>& choices,
+template <class T, class Variable>
+Condition with_choice(const std::string& name, const Variable& place, const Choices<T>& choices,
                       const std::vector<std::type_identity_t<T>>& values) {
   std::string names;
   for (const auto& [text, value] : choices)
@@ -110,8 +110,8 @@ class Table {
     return value(name, codec_of(place), std::move(help), std::move(rules));
   }
   /// One of several names.
-  template <class T, class Place>
-  Key& value(const std::string& name, Place& place, const Choices<T>& choices, std::string help,
+  template <class T, class Variable>
+  Key& value(const std::string& name, Variable& place, const Choices<T>& choices, std::string help,
              KeyRules rules = {}) {
     return value(name, choice_codec(place, choices), std::move(help), std::move(rules));
   }

@@ -5,13 +5,13 @@ namespace {
 
 using scene::between, scene::Choices, scene::not_negative, scene::positive, scene::Table, scene::with_choice;
 
-const Choices<BodyKind> body_choices = {{"plate", BodyKind::plate},   {"disk", BodyKind::disk},
-                                        {"sphere", BodyKind::sphere}, {"cylinder", BodyKind::cylinder},
-                                        {"cup", BodyKind::cup},       {"file", BodyKind::file}};
-const Choices<PorosityLaw> law_choices = {{"none", PorosityLaw::none},
-                                          {"forchheimer", PorosityLaw::forchheimer},
-                                          {"ergun", PorosityLaw::ergun},
-                                          {"kim-peskin", PorosityLaw::kim_peskin}};
+using enum BodyKind;
+using enum PorosityLaw;
+
+const Choices<BodyKind> body_choices = {{"plate", plate},       {"disk", disk}, {"sphere", sphere},
+                                        {"cylinder", cylinder}, {"cup", cup},   {"file", file}};
+const Choices<PorosityLaw> law_choices = {
+    {"none", none}, {"forchheimer", forchheimer}, {"ergun", ergun}, {"kim-peskin", kim_peskin}};
 const Choices<bool> opening_choices = {{"low", false}, {"high", true}};
 const Choices<bool> end_choices = {{"open", false}, {"closed", true}};
 
@@ -33,7 +33,6 @@ void declare_motion(Table& table, std::array<std::string, 3>& motion) {
 }  // namespace
 
 void declare_porosity(Table& table, Porosity& porosity) {
-  using enum PorosityLaw;
   const auto with_law = [&porosity](PorosityLaw law) {
     return with_choice("law", porosity.law, law_choices, {law});
   };
@@ -59,7 +58,6 @@ void declare_porosity(Table& table, Porosity& porosity) {
 }
 
 void declare_body(Table& table, Body& body) {
-  using enum BodyKind;
   const auto with_kind = [&body](const std::vector<BodyKind>& kinds) {
     return with_choice("kind", body.kind, body_choices, kinds);
   };

@@ -1,9 +1,8 @@
 #include <algorithm>
-#include <array>
-#include <limits>
 
 #include "kernels/reference/fabric/intersections.hpp"
 #include "miniapps/parachute/bodies/body_motion.hpp"
+#include "miniapps/parachute/bodies/box.hpp"
 #include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
 
@@ -15,69 +14,38 @@ using mesh::Vector;
 /// Part of the edges by which a body is displaced: surfaces that only touch then part.
 constexpr double displacement = 1e-3;
 
-struct Extent {
-  Vector low, high;
-};
-
-template <class Points>
-Extent extent_of(const Points& points) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Extent box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  for (const Vector& x : points)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      box.low[axis] = std::min(box.low[axis], x[axis]), box.high[axis] = std::max(box.high[axis], x[axis]);
-  return box;
-}
-
-bool overlap(const Extent& a, const Extent& b) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return false;
-  return true;
-}
-
 /// Surface of a body at a time.
 struct Surface {
   std::vector<Vector> positions;
   std::vector<std::array<int, 3>> triangles;
-  Extent box;
+  Box box;
 
-  [[nodiscard]] Surface displaced(const Vector& by) const {
+  [[nodiscard]] Surface moved(const Vector& by) const {
     Surface surface = *this;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (Vector& x : surface.positions) x[axis] += by[axis];
-      surface.box.low[axis] += by[axis], surface.box.high[axis] += by[axis];
-    }
+    for (Vector& x : surface.positions) x = displaced(x, by);
+    surface.box = displaced(box, by);
     return surface;
   }
 
   /// Appends the triangles that reach into a box to the parts of a pair.
-  void append_within(const Extent& common, std::vector<Vector>& points,
-                     std::vector<std::array<int, 3>>& faces) const {
+  void append(const Box& region, std::vector<Vector>& points, std::vector<std::array<int, 3>>& faces) const {
     const int first = static_cast<int>(points.size());
     points.insert(points.end(), positions.begin(), positions.end());
-    for (const auto& corners : triangles) {
-      std::array<Vector, 3> corner{};
-      for (std::size_t k = 0; k < 3; ++k) corner[k] = positions[static_cast<std::size_t>(corners[k])];
-      if (overlap(extent_of(corner), common))
-        faces.push_back({first + corners[0], first + corners[1], first + corners[2]});
-    }
+    for (const auto& corners : triangles) append_within(region, corners, positions, first, faces);
   }
 };
 
 /// True if two surfaces have a common point, with the second one displaced by `by`, m.
 bool meet(const Surface& a, const Surface& b, const Vector& by) {
-  const Surface moved = b.displaced(by);
-  if (!overlap(a.box, moved.box)) return false;
-  Extent common{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    common.low[axis] = std::max(a.box.low[axis], moved.box.low[axis]),
-    common.high[axis] = std::min(a.box.high[axis], moved.box.high[axis]);
+  const Surface moved = b.moved(by);
+  if (distance(a.box, moved.box) > 0.0) return false;
+  const Box region = common(a.box, moved.box);
   std::vector<Vector> points;
   std::vector<std::array<int, 3>> faces;
-  a.append_within(common, points, faces);
+  a.append(region, points, faces);
   const std::size_t of_a = faces.size();
   const int begin_b = static_cast<int>(points.size());
-  moved.append_within(common, points, faces);
+  moved.append(region, points, faces);
   if (of_a == 0 || of_a == faces.size()) return false;
   const auto are_of_both = [&](const reference::Intersection& found) {
     return (found.segment[0] < begin_b) != (found.triangle < of_a);
@@ -97,7 +65,7 @@ bool cross(const Surface& a, const Surface& b, double by) {
 }
 
 Surface surface_at(const mesh::Mesh& mesh, const BodyMotion& motion, double time) {
-  return Surface{mesh.rest, mesh.triangles, extent_of(mesh.rest)}.displaced(motion.at(time));
+  return Surface{mesh.rest, mesh.triangles, box_around(mesh.rest)}.moved(motion.at(time));
 }
 
 }  // namespace

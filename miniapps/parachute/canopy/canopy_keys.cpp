@@ -6,17 +6,20 @@ namespace {
 using scene::between, scene::Choices, scene::Condition, scene::not_negative, scene::positive, scene::Table,
     scene::with_choice;
 
-const Choices<CanopyKind> canopy_choices = {{"flat-circular", CanopyKind::flat_circular},
-                                            {"extended-skirt", CanopyKind::extended_skirt},
-                                            {"guide-surface", CanopyKind::guide_surface},
-                                            {"sheet", CanopyKind::sheet},
-                                            {"drum", CanopyKind::drum}};
+using enum CanopyKind;
+using enum CanopyShape;
+
+const Choices<CanopyKind> canopy_choices = {{"flat-circular", flat_circular},
+                                            {"extended-skirt", extended_skirt},
+                                            {"guide-surface", guide_surface},
+                                            {"sheet", sheet},
+                                            {"drum", drum}};
 const Choices<Fabric> cloth_choices = {{"mil-c-7020-1", Fabric::mil_c_7020_1}, {"custom", Fabric::custom}};
-const Choices<CanopyShape> shape_choices = {{"flat", CanopyShape::flat},
-                                            {"partly-closed", CanopyShape::partly_closed},
-                                            {"angled-15", CanopyShape::angled_15},
-                                            {"angled-60", CanopyShape::angled_60},
-                                            {"angled-75", CanopyShape::angled_75}};
+const Choices<CanopyShape> shape_choices = {{"flat", flat},
+                                            {"partly-closed", partly_closed},
+                                            {"angled-15", angled_15},
+                                            {"angled-60", angled_60},
+                                            {"angled-75", angled_75}};
 
 /// Stiffness of a spring without compression. `of_what`: the middle of the sentence on it.
 void declare_stiffness(Table& table, double& stiffness, const std::string& of_what) {
@@ -57,11 +60,10 @@ void declare_place(Table& table, Canopy& canopy) {
               "Shape at the start: the flat cloth, a pleated cone, or the flat cloth with its axis 15, 60 or "
               "75 degrees from z");
   table.value("closure", canopy.closure, "Radius of the skirt over that of the flat cloth",
-              {.range = positive.at_most(1.0), .when = with_shape({CanopyShape::partly_closed})});
-  table.value("angle", canopy.angle, "Angle of the axis from z",
-              {.unit = "degrees",
-               .range = between(-180.0, 180.0),
-               .when = with_shape({CanopyShape::flat, CanopyShape::partly_closed})});
+              {.range = positive.at_most(1.0), .when = with_shape({partly_closed})});
+  table.value(
+      "angle", canopy.angle, "Angle of the axis from z",
+      {.unit = "degrees", .range = between(-180.0, 180.0), .when = with_shape({flat, partly_closed})});
   table.value("azimuth", canopy.azimuth, "Direction towards which the axis leans, from x towards y",
               {.unit = "degrees", .range = between(-360.0, 360.0)});
   table.value("centre", canopy.centre, "Centre of the skirt at the start",
@@ -142,7 +144,6 @@ void declare_reinforcement(Table& table, Reinforcement& bands) {
 }  // namespace
 
 void declare_canopy(Table& table, Canopy& canopy, const Condition& fluid) {
-  using enum CanopyKind;
   const auto with_kind = [&canopy](const std::vector<CanopyKind>& kinds) {
     return with_choice("kind", canopy.kind, canopy_choices, kinds);
   };

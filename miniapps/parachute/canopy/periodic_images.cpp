@@ -5,17 +5,12 @@
 #include <limits>
 
 #include "kernels/reference/fabric/intersections.hpp"
+#include "miniapps/parachute/bodies/box.hpp"
 
 namespace drogue::parachute_app {
 namespace {
 
 using fabric::Vector;
-
-/// Low and high end along each axis, m.
-using Box = std::array<std::array<double, 2>, 3>;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Box nothing = {{{infinity, -infinity}, {infinity, -infinity}, {infinity, -infinity}}};
 
 /// Displacement to an image, from which rounding parts what ends at the sides.
 Vector beyond(Vector period) {
@@ -23,38 +18,10 @@ Vector beyond(Vector period) {
   return period;
 }
 
-Vector displaced(const Vector& x, const Vector& by) { return {x[0] + by[0], x[1] + by[1], x[2] + by[2]}; }
-
-void extend(Box& box, const Vector& x) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    box[axis] = {std::min(box[axis][0], x[axis]), std::max(box[axis][1], x[axis])};
-}
-
-Box displaced(Box box, const Vector& by) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (double& x : box[axis]) x += by[axis];
-  return box;
-}
-
-/// Distance of boxes, m, along the axis where it is largest; negative if they overlap.
-double distance(const Box& a, const Box& b) {
-  double result = -infinity;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    result = std::max({result, a[axis][0] - b[axis][1], b[axis][0] - a[axis][1]});
-  return result;
-}
-
-/// Intersection of two boxes; inverted if they have none.
-Box common(Box a, const Box& b) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    a[axis] = {std::max(a[axis][0], b[axis][0]), std::min(a[axis][1], b[axis][1])};
-  return a;
-}
-
 /// Boxes around the vertices of every part, and around its lines to common payloads.
 std::vector<Box> boxes_of(std::span<const Vector> positions, std::span<const std::array<int, 2>> lines,
                           const SheetParts& parts) {
-  std::vector<Box> boxes(parts.ends.size(), nothing);
+  std::vector<Box> boxes(parts.ends.size(), empty_box);
   std::size_t vertex = 0;
   for (std::size_t part = 0; part < boxes.size(); ++part)
     for (; vertex < parts.ends[part]; ++vertex) extend(boxes[part], positions[vertex]);
@@ -64,18 +31,11 @@ std::vector<Box> boxes_of(std::span<const Vector> positions, std::span<const std
 
 /// Appends the elements of a part that reach into a box, with numbers of vertices from `first` on.
 template <std::size_t n>
-void append_near(std::span<const std::array<int, n>> elements, std::span<const Vector> positions,
+void append_part(std::span<const std::array<int, n>> elements, std::span<const Vector> positions,
                  const SheetParts& parts, std::size_t part, const Box& box, int first,
                  std::vector<std::array<int, n>>& result) {
-  for (std::array<int, n> element : elements) {
-    if (parts.of(element[0]) != part) continue;
-    Box around = nothing;
-    for (int& i : element) {
-      extend(around, positions[static_cast<std::size_t>(i)]);
-      i += first;
-    }
-    if (distance(around, box) <= 0.0) result.push_back(element);
-  }
+  for (const std::array<int, n>& element : elements)
+    if (parts.of(element[0]) == part) append_within(box, element, positions, first, result);
 }
 
 }  // namespace
@@ -150,10 +110,10 @@ std::vector<ImageIntersection> image_intersections(std::span<const Vector> posit
         const Box region = common(boxes[a], image);
         std::vector<std::array<int, 3>> triangles;
         std::vector<std::array<int, 2>> lines;
-        append_near(elements.triangles, positions, parts, a, region, 0, triangles);
-        append_near(elements.lines, positions, parts, a, region, 0, lines);
-        append_near(elements.triangles, images, parts, b, region, n, triangles);
-        append_near(elements.lines, images, parts, b, region, n, lines);
+        append_part(elements.triangles, positions, parts, a, region, 0, triangles);
+        append_part(elements.lines, positions, parts, a, region, 0, lines);
+        append_part(elements.triangles, images, parts, b, region, n, triangles);
+        append_part(elements.lines, images, parts, b, region, n, lines);
         for (const auto& [segment, number] : reference::intersections(both, triangles, lines))
           if (const int one = segment[0], other = triangles[number][0]; (one < n) != (other < n))
             found.push_back({one % n, other % n});
@@ -165,7 +125,7 @@ std::vector<ImageIntersection> image_intersections(std::span<const Vector> posit
 double distance_from_images(std::span<const Vector> positions, std::span<const std::array<int, 2>> lines,
                             std::span<const Vector> periods, const SheetParts& parts) {
   const std::vector<Box> boxes = boxes_of(positions, lines, parts);
-  double least = infinity;
+  double least = std::numeric_limits<double>::infinity();
   for (const Vector& period : periods)
     for (std::size_t a = 0; a < boxes.size(); ++a)
       for (std::size_t b = 0; b < boxes.size(); ++b)
