@@ -71,10 +71,6 @@ void RestartWriter::integer(const std::string& name, std::int64_t value) {
   _state->run_on_root([&] { h5::write_attribute(_state->file, name, value); });
 }
 
-void RestartWriter::text(const std::string& name, const std::string& value) {
-  _state->run_on_root([&] { h5::write_attribute(_state->file, name, value); });
-}
-
 void RestartWriter::array(const std::string& name, std::uint64_t size) {
   _state->run_on_root(
       [&] { _state->arrays[name] = h5::create_dataset(_state->file, name, H5T_NATIVE_DOUBLE, {size}); });
@@ -126,14 +122,6 @@ double RestartReader::number(const std::string& name) const {
 
 std::int64_t RestartReader::integer(const std::string& name) const {
   return _state->read([&] { return h5::read_integer(_state->file, name); });
-}
-
-std::string RestartReader::text(const std::string& name) const {
-  return _state->read([&] { return h5::read_text(_state->file, name); });
-}
-
-std::uint64_t RestartReader::size(const std::string& name) const {
-  return _state->read([&] { return h5::shape(h5::open_dataset(_state->file, name)).at(0); });
 }
 
 void RestartReader::read(const std::string& name, std::uint64_t first, std::span<double> values) const {

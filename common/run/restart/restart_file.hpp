@@ -23,7 +23,7 @@ void require_not_after(const std::filesystem::path& file, double time, const cha
 /// Describes how the scene with a fingerprint differs from the present one; empty if that is not known.
 using DescribeDifference = std::function<std::string(const std::string& fingerprint)>;
 
-/// Writes a restart file: named numbers, texts and arrays of doubles. A former file stays whole until
+/// Writes a restart file: named numbers and arrays of doubles. A former file stays whole until
 /// commit().
 ///
 /// `scene` is the fingerprint of everything that must agree between the writing and the reading run. All
@@ -42,7 +42,6 @@ class RestartWriter {
 
   void number(const std::string& name, double value);
   void integer(const std::string& name, std::int64_t value);
-  void text(const std::string& name, const std::string& value);
 
   /// Declares an array of `size` doubles; write() fills it in pieces.
   void array(const std::string& name, std::uint64_t size);
@@ -74,8 +73,6 @@ class RestartReader {
 
   [[nodiscard]] double number(const std::string& name) const;
   [[nodiscard]] std::int64_t integer(const std::string& name) const;
-  [[nodiscard]] std::string text(const std::string& name) const;
-  [[nodiscard]] std::uint64_t size(const std::string& name) const;
 
   /// Reads entries [first, first + values.size()) of an array.
   void read(const std::string& name, std::uint64_t first, std::span<double> values) const;

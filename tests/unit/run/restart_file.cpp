@@ -27,7 +27,6 @@ void write_restart(const std::filesystem::path& file, double time, std::size_t s
   RestartWriter restart(file, scene);
   restart.number("time", time);
   restart.integer("step", 1'234'567'890'123);
-  restart.text("scheme", "z");
   restart.array("U", size);
   restart.write("U", size / 2, std::span(values).subspan(size / 2));
   restart.write("U", 0, std::span(values).first(size / 2));
@@ -44,8 +43,6 @@ TEST(RestartFile, RestoresEveryBit) {
   const RestartReader restart(directory / "restart.h5", scene);
   EXPECT_EQ(restart.number("time"), 1.0 / 3.0);
   EXPECT_EQ(restart.integer("step"), 1'234'567'890'123);
-  EXPECT_EQ(restart.text("scheme"), "z");
-  ASSERT_EQ(restart.size("U"), 1500U);
   std::vector<double> values(1500);
   restart.read("U", 0, std::span(values).first(700));
   restart.read("U", 700, std::span(values).subspan(700));
@@ -78,8 +75,8 @@ TEST(RestartFile, NamesAMissingEntry) {
   const std::string number =
       failure_of(ExitCode::io_error, [&restart] { static_cast<void>(restart.number("dt")); });
   EXPECT_NE(number.find("'dt'"), std::string::npos) << number;
-  const std::string array =
-      failure_of(ExitCode::io_error, [&restart] { static_cast<void>(restart.size("V")); });
+  std::vector<double> values(1);
+  const std::string array = failure_of(ExitCode::io_error, [&] { restart.read("V", 0, values); });
   EXPECT_NE(array.find("restart.h5"), std::string::npos) << array;
 }
 
