@@ -85,26 +85,20 @@ class FabricSolver : public Solver {
   }
   [[nodiscard]] std::vector<double> download_state() override {
     synchronize();
-    const StateList list = state_list();
-    const typename StateList::Packed packed("drogue::fabric::packed_state", list.size());
-    launch_each(space(), "drogue::fabric::pack_state", list.most_rows(),
-                stepping::CopyStateFunctor<ExecutionSpace>{list, packed, true});
-    std::vector<double> values(list.size());
-    device::copy_out(space(), values.data(), packed, values.size());
+    enqueue_checkpoint();
+    std::vector<double> values(_saved.size());
+    device::copy_out(space(), values.data(), _saved, values.size());
     space().fence("drogue::fabric::download_state");
     return values;
   }
   void upload_state(std::span<const double> values) override {
-    const StateList list = state_list();
     const auto is_finite = [](double value) { return std::abs(value) < divergence_limit; };
-    if (values.size() != list.size() || !std::ranges::all_of(values, is_finite))
+    if (values.size() != _saved.size() || !std::ranges::all_of(values, is_finite))
       throw std::invalid_argument("fabric solver: all arrays of the state must be given, and be finite");
     if (_loop.has_captured_steps()) synchronize();
     if (_contact) _contact->reset();
-    const typename StateList::Packed packed("drogue::fabric::packed_state", list.size());
-    device::copy_in(space(), packed, values.data(), values.size());
-    launch_each(space(), "drogue::fabric::unpack_state", list.most_rows(),
-                stepping::CopyStateFunctor<ExecutionSpace>{list, packed, false});
+    device::copy_in(space(), _saved, values.data(), values.size());
+    restore_checkpoint();
     _failure.reset();
     reset_monitor();
     enqueue_start();
@@ -329,6 +323,7 @@ class FabricSolver : public Solver {
     _pulls.record(space(), _state.x, CompletedStep<ExecutionSpace>{_state.at(0.0)});
   }
   void save_checkpoint(std::int64_t launches);
+  void restore_checkpoint();
   /// Sets the device's step counter to the host's and clears its failure record. Blocks.
   void reset_monitor() {
     stepping::reset_monitor(space(), _state.monitor, _state.time.step);
@@ -447,6 +442,14 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_start() {
   enqueue_checkpoint();
 }
 
+/// Enqueues the copy of the last checkpoint to the state.
+template <class ExecutionSpace, class VertexForce>
+void FabricSolver<ExecutionSpace, VertexForce>::restore_checkpoint() {
+  const StateList list = state_list();
+  launch_each(space(), "drogue::fabric::restore_checkpoint", list.most_rows(),
+              stepping::CopyStateFunctor<ExecutionSpace>{list, _saved, false});
+}
+
 /// Enqueues a checkpoint that publishes `launches`, unless that is negative.
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::save_checkpoint(std::int64_t launches) {
@@ -457,11 +460,8 @@ void FabricSolver<ExecutionSpace, VertexForce>::save_checkpoint(std::int64_t lau
 
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::synchronize() {
-  const auto first = _checkpoint.roll_back_after_failure(space(), _state.monitor, [this] {
-    const StateList list = state_list();
-    launch_each(space(), "drogue::fabric::restore_checkpoint", list.most_rows(),
-                stepping::CopyStateFunctor<ExecutionSpace>{list, _saved, false});
-  });
+  const auto first =
+      _checkpoint.roll_back_after_failure(space(), _state.monitor, [this] { restore_checkpoint(); });
   TimeState& time = _state.time;
   if (_loop.has_captured_steps())
     time.step = stepping::completed_steps(space(), _state.monitor, _state.parity);

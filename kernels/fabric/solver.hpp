@@ -50,9 +50,9 @@ namespace drogue::fabric {
 /// other kernels on the device, use `FabricSolver`, which is this class with the functions that they need.
 ///
 /// Call `upload`, then `enqueue_steps` as often as needed. A step fails if its state is not finite or exceeds
-/// 1e100, or if contact fails. The solver then returns to its last checkpoint: one of every 256 steps, or the
-/// uploaded state. All functions that read the state then refer to the checkpoint, and `time_state` returns
-/// its step.
+/// 1e100, or if contact fails. The solver then returns to its last checkpoint: one of every 256 steps, or
+/// that of an upload or `download_state`. All functions that read the state then refer to the checkpoint, and
+/// `time_state` returns its step.
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -61,7 +61,8 @@ class Solver {
   /// equal solver continues bit for bit. Throws only std::bad_alloc.
   [[nodiscard]] virtual std::vector<stepping::StateArray> state_arrays() const = 0;
 
-  /// Values of `state_arrays`, one array after another. Blocks. Throws only after a failed kernel.
+  /// Values of `state_arrays`, one array after another, of a checkpoint that it takes. Blocks. Throws only
+  /// after a failed kernel.
   [[nodiscard]] virtual std::vector<double> download_state() = 0;
 
   /// Restores the state at the present time and forgets a failure. Blocks. Throws std::invalid_argument for
