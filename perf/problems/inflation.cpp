@@ -11,7 +11,6 @@
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 #include "perf/measure/timed_parts.hpp"
@@ -26,7 +25,8 @@ constexpr double speed = 10.0;  // m/s
 struct State {
   std::pmr::vector<std::pmr::vector<double>> flow;  ///< arrays of `flow::state_fields`
   flow::Progress progress;
-  coupling::RestartState sheets;
+  std::map<std::string, std::vector<double>> sheets;  ///< arrays of `coupling::Solver::state`
+  coupling::BlockProgress block;
 };
 
 void save(coupling::Solver& solver, const coupling::Parameters& p, State& state) {
@@ -37,14 +37,19 @@ void save(coupling::Solver& solver, const coupling::Parameters& p, State& state)
     solver.download(fields[k], state.flow[k]);
   }
   state.progress = solver.progress();
-  state.sheets = coupling::download_restart_state(solver, p.fabric.mass.size());
+  for (const stepping::StateArray& array : solver.state()) {
+    state.sheets[array.name].resize(array.size());
+    solver.download(array.name, state.sheets[array.name]);
+  }
+  state.block = solver.block();
 }
 
 void restore(coupling::Solver& solver, const coupling::Parameters& p, const State& state) {
   std::size_t k = 0;
   for (const flow::StateField field : flow::state_fields(p.flow)) solver.upload(field, state.flow[k++]);
   solver.restore(state.progress);
-  coupling::upload_restart_state(solver, state.sheets);
+  for (const auto& [name, values] : state.sheets) solver.upload(name, values);
+  solver.set_block(state.block);
 }
 
 /// Puts the cloth into the uniform stream.
@@ -198,7 +203,7 @@ double imbalance(const coupling::Parameters& p, coupling::Solver& solver) {
   const flow::Totals totals = solver.totals();
   const double spacing = (p.flow.high[0] - p.flow.low[0]) / p.flow.cells[0];
   std::vector<fabric::Vector> on_air(p.fabric.mass.size());
-  solver.forces(on_air);
+  solver.download("sheet_force", coupling::numbers(on_air));
   return std::max(totals.divergence_rms * spacing / totals.max_speed,
                   parachute_app::force_balance(solver.total_force_on_air(), on_air));
 }

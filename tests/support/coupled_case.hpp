@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "kernels/coupling/sheet/solver.hpp"
@@ -112,6 +114,58 @@ inline CoupledCase taut_strip(int nx, int ny, double spacing, double dt, int wav
   return c;
 }
 
+/// State of cloth and of the air beside it on the host, by the list of its solver.
+struct ClothState {
+  std::map<std::string, std::vector<double>> arrays;  ///< by their names
+  std::vector<double> force;                          ///< of the vertices on the air, N
+  coupling::BlockProgress block;
+  coupling::FrameMotion frame;
+};
+
+inline ClothState cloth_state(coupling::Solver& solver) {
+  ClothState state{{}, {}, solver.block(), solver.frame()};
+  const auto read = [&](const std::string& name, std::size_t size, std::vector<double>& values) {
+    values.resize(size);
+    solver.download(name, values);
+  };
+  std::size_t numbers = 0;
+  for (const stepping::StateArray& array : solver.state()) {
+    read(array.name, array.size(), state.arrays[array.name]);
+    if (array.name == "sheet_position") numbers = array.size();
+  }
+  read("sheet_force", numbers, state.force);
+  return state;
+}
+
+/// Restores it, after `Solver::restore`.
+inline void restore_cloth(coupling::Solver& solver, const ClothState& state) {
+  for (const auto& [name, values] : state.arrays) solver.upload(name, values);
+  solver.set_block(state.block);
+  solver.set_frame(state.frame);
+}
+
+/// State of cloth and flow on the host.
+struct CoupledState : ClothState {
+  std::vector<std::vector<double>> flow;  ///< arrays of `flow::state_fields`
+  flow::Progress progress;
+};
+
+inline CoupledState coupled_state(const CoupledCase& c, coupling::Solver& solver) {
+  CoupledState state{cloth_state(solver), {}, solver.progress()};
+  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
+    state.flow.emplace_back(flow::state_size(c.p.flow, field));
+    solver.download(field, state.flow.back());
+  }
+  return state;
+}
+
+inline void restore(const CoupledCase& c, const CoupledState& state, coupling::Solver& solver) {
+  std::size_t k = 0;
+  for (const flow::StateField field : flow::state_fields(c.p.flow)) solver.upload(field, state.flow[k++]);
+  solver.restore(state.progress);
+  restore_cloth(solver, state);
+}
+
 /// A case on the backend of the test program.
 struct CoupledRun {
   explicit CoupledRun(const CoupledCase& of) : vertices(of.x.size()), solver(of.solver(tested_backend)) {}
@@ -125,7 +179,7 @@ struct CoupledRun {
   /// Sum of the forces of the sheet on the air in the last step, N.
   [[nodiscard]] fabric::Vector force() const {
     std::vector<fabric::Vector> each(vertices);
-    solver->forces(each);
+    solver->download("sheet_force", coupling::numbers(each));
     fabric::Vector sum{};
     for (const fabric::Vector& of_vertex : each)
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += of_vertex[axis];

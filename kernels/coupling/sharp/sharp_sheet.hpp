@@ -3,6 +3,7 @@
 #include "kernels/coupling/grid_transfer.hpp"
 #include "kernels/coupling/sharp/crossings.hpp"
 #include "kernels/coupling/sheet/closing_sheets.hpp"
+#include "kernels/coupling/sheet/state_list.hpp"
 #include "kernels/device/backend_list.hpp"
 #include "kernels/device/relaxed_access.hpp"
 #include "kernels/fabric/surface/surface.hpp"
@@ -271,12 +272,16 @@ class SharpSheet {
         _corner_force("drogue::coupling::corner_force", static_cast<std::size_t>(surface.triangles())),
         _count(faces_of<int>("drogue::coupling::crossings")),
         _before(faces_of<double>("drogue::coupling::velocity_before")),
-        _acceleration(faces_of<double>("drogue::coupling::face_acceleration")),
+        _list("drogue::coupling::face_acceleration", number_of_faces(), 1),
+        _acceleration(listed_faces()),
         _foretold(faces_of<double>("drogue::coupling::foretold_force")),
         _closing(closing) {}
 
-  /// Filtered acceleration of the air without the sheet at all faces, m/s^2: a part of the state.
+  /// Filtered acceleration of the air without the sheet at all faces, m/s^2: a part of the state. Does not
+  /// throw.
   [[nodiscard]] const Faces<double>& acceleration() const { return _acceleration; }
+  /// The same as one list, component by component. Does not throw.
+  [[nodiscard]] const StateView<ExecutionSpace>& list() const { return _list; }
 
   /// Enqueues a copy of the velocity of the flow, m/s. Throws std::invalid_argument for Views of the wrong
   /// extents.
@@ -346,15 +351,30 @@ class SharpSheet {
   }
 
  private:
+  [[nodiscard]] std::size_t extent(int component, int axis) const {
+    return static_cast<std::size_t>(faces_along(_transfer.grid, component, axis));
+  }
+  [[nodiscard]] std::size_t number_of_faces() const {
+    std::size_t sum = 0;
+    for (int d = 0; d < 3; ++d) sum += extent(d, 0) * extent(d, 1) * extent(d, 2);
+    return sum;
+  }
   template <class T>
   [[nodiscard]] Faces<T> faces_of(const std::string& label) const {
     Faces<T> faces;
-    for (int d = 0; d < 3; ++d) {
-      const auto extent = [&](int axis) {
-        return static_cast<std::size_t>(faces_along(_transfer.grid, d, axis));
-      };
+    for (int d = 0; d < 3; ++d)
       faces.component[d] =
-          Kokkos::View<T***, Kokkos::LayoutLeft, Memory>(label, extent(0), extent(1), extent(2));
+          Kokkos::View<T***, Kokkos::LayoutLeft, Memory>(label, extent(d, 0), extent(d, 1), extent(d, 2));
+    return faces;
+  }
+  /// The faces of `_list`, which owns them.
+  [[nodiscard]] Faces<double> listed_faces() const {
+    Faces<double> faces;
+    double* first = _list.data();
+    for (int d = 0; d < 3; ++d) {
+      faces.component[d] = Kokkos::View<double***, Kokkos::LayoutLeft, Memory>(first, extent(d, 0),
+                                                                               extent(d, 1), extent(d, 2));
+      first += faces.component[d].size();
     }
     return faces;
   }
@@ -387,7 +407,9 @@ class SharpSheet {
   double _density;  ///< kg/m^3
   Kokkos::View<double* [9], Memory> _corner_force;
   Faces<int> _count;
-  Faces<double> _before, _acceleration, _foretold;
+  Faces<double> _before;
+  StateView<ExecutionSpace> _list;
+  Faces<double> _acceleration, _foretold;
   ClosingSheets<ExecutionSpace> _closing;
 };
 

@@ -13,6 +13,7 @@
 #include "kernels/coupling/sheet/line_strength.hpp"
 #include "kernels/coupling/sheet/moving_frame.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/coupling/sheet/state_list.hpp"
 #include "kernels/coupling/sheet/vertex_motion.hpp"
 #include "kernels/coupling/total_force.hpp"
 #include "kernels/device/stopwatch.hpp"
@@ -31,34 +32,21 @@ namespace drogue::coupling {
 template <class ExecutionSpace>
 using SavedStep = Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space>;
 
-/// Saves the cloth, the air at its vertices, and the forces of the last step with the places where they act,
-/// at the beginning of a step of the flow. After the flow has stopped, only the state at the end of its last
-/// step is new.
+/// Saves the state at the beginning of a step of the flow. After the flow has stopped, only the state at the
+/// end of its last step is new.
 template <class ExecutionSpace>
-struct SaveClothFunctor {
-  using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
-
+struct SaveStateFunctor {
   flow::ControlView<ExecutionSpace> control;
   SavedStep<ExecutionSpace> saved_step;
-  fabric::State<ExecutionSpace> cloth;
-  Vectors acceleration, defect, force, places;
-  Vectors saved_positions, saved_velocities, saved_acceleration, saved_defect, saved_force, saved_places;
+  CopyRowsFunctor<ExecutionSpace> save;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     if (control().trial.stop != flow::Stop::running && control().now.step == saved_step()) return;
-    const auto save = [i](const auto& from, const Vectors& to) {
-      spatial::store_vector(to, i, spatial::load_vector(from, i));
-    };
-    save(cloth.positions, saved_positions);
-    save(cloth.velocities, saved_velocities);
-    save(acceleration, saved_acceleration);
-    if (defect.extent(0) > 0) save(defect, saved_defect);
-    save(force, saved_force);
-    save(places, saved_places);
+    save(i);
   }
 };
 
-/// Kernel of one thread that completes `SaveClothFunctor`, and stops the flow before its step if the cloth
+/// Kernel of one thread that completes `SaveStateFunctor`, and stops the flow before its step if the cloth
 /// has failed.
 template <class ExecutionSpace>
 struct CheckClothFunctor {
@@ -141,16 +129,13 @@ class CoupledSolver {
         _fabric(_space, _parameters.fabric, _sheet.relaxation()),
         _reason("drogue::coupling::failure_reason"),
         _saved_step("drogue::coupling::saved_step"),
-        _saved_positions("drogue::coupling::saved_positions", rows()),
-        _saved_velocities("drogue::coupling::saved_velocities", rows()),
-        _saved_acceleration("drogue::coupling::saved_acceleration", rows()),
-        _saved_defect("drogue::coupling::saved_defect", _sheet.defect().extent(0)),
-        _saved_force("drogue::coupling::saved_force", rows()),
-        _saved_places("drogue::coupling::saved_places", rows()),
+        _state(_sheet.state()),
         _total_force(flow::coupling_grid(_flow.grid())),
         _frame(_parameters.follow, _parameters.fabric),
         _cuts(_parameters.cuts, _parameters.fabric),
         _strength(_space, _parameters) {
+    _state.add("sheet_position", "m", _fabric.state().positions);
+    _state.add("sheet_velocity", "m/s", _fabric.state().velocities);
     _strength.set_stiffness(_space, _cuts.stiffness());
     if (_frame.follows()) _flow.check_frame(_parameters.follow.axes);
   }
@@ -176,6 +161,15 @@ class CoupledSolver {
   [[nodiscard]] FailureReason failure_reason();
   [[nodiscard]] int failed_line();
   [[nodiscard]] const std::optional<fabric::StepFailure>& cloth_failure() const { return _cloth_failure; }
+  [[nodiscard]] std::vector<stepping::StateArray> state() const { return _state.arrays(); }
+  void upload(std::string_view name, std::span<const double> values) {
+    _state.upload(_space, name, values);
+    renew_cloth();
+    _sheet.update_acceleration(_space);
+  }
+  void download(std::string_view name, std::span<double> values) const {
+    _state.download(_space, name, values);
+  }
   void watch_pulls(std::span<const fabric::Pull> pulls) {
     _pulls = fabric::PeakPulls<ExecutionSpace>(_space, _parameters.fabric.mesh, _cuts.stiffness(), pulls);
   }
@@ -243,6 +237,7 @@ class CoupledSolver {
   [[nodiscard]] bool cloth_has_failed();
   [[nodiscard]] bool needs_shorter_steps(const flow::Progress& now);
   void return_to_last_step(const flow::Progress& now);
+  void renew_cloth();
 
   ExecutionSpace _space;
   Parameters _parameters;
@@ -253,8 +248,7 @@ class CoupledSolver {
   BlockProgress _block;
   typename CheckClothFunctor<ExecutionSpace>::ReasonView _reason;
   SavedStep<ExecutionSpace> _saved_step;
-  Vectors _saved_positions, _saved_velocities, _saved_acceleration, _saved_defect, _saved_force,
-      _saved_places;
+  StateList<ExecutionSpace> _state;
   TotalForce<ExecutionSpace> _total_force;
   MovingFrame<ExecutionSpace> _frame;
   LineCuts _cuts;
@@ -443,20 +437,8 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
              force_density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
   // Not before: the pressure of an output contains the forces of the last step.
   clear_spread(_space, _sheet.transfer(), force_density);
-  device::launch_each(_space, "drogue::coupling::save_cloth", _fabric.vertices(),
-                      SaveClothFunctor<ExecutionSpace>{.control = _flow.control(),
-                                                       .saved_step = _saved_step,
-                                                       .cloth = _fabric.state(),
-                                                       .acceleration = _sheet.acceleration(),
-                                                       .defect = _sheet.defect(),
-                                                       .force = _sheet.force(),
-                                                       .places = _sheet.transfer().positions,
-                                                       .saved_positions = _saved_positions,
-                                                       .saved_velocities = _saved_velocities,
-                                                       .saved_acceleration = _saved_acceleration,
-                                                       .saved_defect = _saved_defect,
-                                                       .saved_force = _saved_force,
-                                                       .saved_places = _saved_places});
+  device::launch_each(_space, "drogue::coupling::save_state", _fabric.vertices(),
+                      SaveStateFunctor<ExecutionSpace>{_flow.control(), _saved_step, _state.save()});
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
   _sheet.spread_forces(_space, _fabric.state(), force_density, dt);
@@ -508,20 +490,23 @@ void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& no
   Kokkos::deep_copy(_space, _sheet.transfer().counts, TransferCounts{});
   count_cloth_time_from(now.time);
   set_cloth_time();
-  std::vector<fabric::Vector> positions(rows()), velocities(rows());
-  fabric::PointsReader<ExecutionSpace> reader;
-  reader.read(_space, _saved_positions, positions);
-  reader.read(_space, _saved_velocities, velocities);
-  _fabric.upload(positions, velocities);
-  Kokkos::deep_copy(_space, _sheet.acceleration(), _saved_acceleration);
-  Kokkos::deep_copy(_space, _sheet.defect(), _saved_defect);
-  _sheet.update_acceleration(_space);
+  // Where the forces of the discarded step have been spread, before its places are lost.
   const auto force_density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
   clear_spread(_space, _sheet.transfer(), force_density);
-  Kokkos::deep_copy(_space, _sheet.force(), _saved_force);
-  Kokkos::deep_copy(_space, _sheet.transfer().positions, _saved_places);
+  _state.roll_back(_space);
+  renew_cloth();
+  _sheet.update_acceleration(_space);
   spread(_space, _sheet.transfer(), _sheet.force(), force_density);
   _space.fence("drogue::coupling::return_to_last_step");
+}
+
+/// Gives the fabric the positions and velocities that the list has changed; it forgets a failure.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::renew_cloth() {
+  std::vector<fabric::Vector> positions(rows()), velocities(rows());
+  download("sheet_position", numbers(positions));
+  download("sheet_velocity", numbers(velocities));
+  _fabric.upload(positions, velocities);
 }
 
 template <class ExecutionSpace>

@@ -15,6 +15,7 @@
 #include "kernels/coupling/sheet/explicit_exchange.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
 #include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/coupling/sheet/state_list.hpp"
 #include "kernels/coupling/spread.hpp"
 #include "kernels/device/backend_list.hpp"
 #include "kernels/fabric/state.hpp"
@@ -42,16 +43,6 @@ struct BeginSheetStepFunctor {
     spatial::store_vector(air.velocity, i, spatial::load_vector(air.before, i));
     air.impulse(i) = 0.0;
     if (air.is_no_slip(i)) spatial::store_vector(air.no_slip_impulse, i, spatial::Point{0.0, 0.0, 0.0});
-  }
-};
-
-/// Copies the rows of vertices; Views may have more.
-template <class ExecutionSpace>
-struct CopyRowsFunctor {
-  fabric::PointsView<ExecutionSpace> from, to;
-
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    spatial::store_vector(to, i, spatial::load_vector(from, i));
   }
 };
 
@@ -207,7 +198,8 @@ class ImmersedSheet {
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
         _present("drogue::coupling::present_positions", _inset.size() > 0 ? rows() : 0),
-        _interpolated_force(vectors("drogue::coupling::interpolated_force")) {
+        _interpolated_force(vectors("drogue::coupling::interpolated_force")),
+        _state(_surface.vertices()) {
     if (parameters.method == CouplingMethod::explicit_) _air.last_force = _force;
     if (parameters.defect_filter > 0.0) {
       _filtered.mean = vectors("drogue::coupling::mean_acceleration");
@@ -218,35 +210,31 @@ class ImmersedSheet {
     const bool is_sharp = parameters.method == CouplingMethod::sharp;
     _closing.emplace(space, parameters.closing, _air.law,
                      is_sharp ? cloth.mesh.triangles : std::vector<std::array<int, 3>>());
-    if (parameters.method != CouplingMethod::sharp) return;
+    _state.add("air_acceleration", "m/s^2", _filtered.mean);
+    if (parameters.defect_filter > 0.0) _state.add("defect", "m/s^2", _filtered.defect);
+    _state.add("sheet_force", "N", _force, {.restarted = parameters.method == CouplingMethod::explicit_});
+    _state.add("sheet_place", "m", _transfer.positions, {.restarted = false});
+    if (!is_sharp) return;
     _transfer.has_stencils = false;
     _sharp.emplace(_transfer, _surface, _air.law, density, *_closing);
+    // Not changed by failed steps.
+    _state.add("face_acceleration", "m/s^2", _sharp->list(), {.saved = false});
   }
 
   /// VertexForce of the fabric solver.
   [[nodiscard]] AirRelaxation<ExecutionSpace> relaxation() const { return {_air}; }
   /// Force of each vertex on the air in the last step of the flow, (vertices, 3), N. Does not throw.
   [[nodiscard]] const Vectors& force() const { return _force; }
-  /// Filtered acceleration of the air at each vertex, (vertices, 3), m/s^2; with the state of cloth and flow,
-  /// and `defect`, it continues a run. Does not throw.
-  [[nodiscard]] const Vectors& acceleration() const { return _filtered.mean; }
-  /// Filtered defect at each vertex, (vertices, 3), m/s^2; empty without `SheetParameters::defect_filter`.
-  /// Does not throw.
-  [[nodiscard]] const Vectors& defect() const { return _filtered.defect; }
-  /// The sheet as an internal boundary; none unless the method is `CouplingMethod::sharp`. Does not throw.
-  [[nodiscard]] const std::optional<SharpSheet<ExecutionSpace>>& sharp() const { return _sharp; }
+  /// Arrays that continue a run with the state of cloth and flow. Does not throw.
+  [[nodiscard]] const StateList<ExecutionSpace>& state() const { return _state; }
   /// Weights of both directions. Does not throw.
   [[nodiscard]] const GridTransfer<ExecutionSpace>& transfer() const { return _transfer; }
 
   /// Sets the force and the acceleration of the air to zero, as before the first step, but beside closing
   /// sheets to that of what drives the air. Asynchronous. Does not throw.
   void forget_steps(const ExecutionSpace& space) const {
-    Kokkos::deep_copy(space, _filtered.mean, 0.0);
-    Kokkos::deep_copy(space, _filtered.defect, 0.0);
-    Kokkos::deep_copy(space, _filtered.sum, 0.0);
+    _state.clear(space);
     Kokkos::deep_copy(space, _force, 0.0);
-    if (_sharp)
-      for (const auto& faces : _sharp->acceleration().component) Kokkos::deep_copy(space, faces, 0.0);
     for (const ClosingSheet& sheet : _parameters.closing) {
       const auto axis = static_cast<std::size_t>(sheet.axis);
       if (_sharp) Kokkos::deep_copy(space, _sharp->acceleration().component[axis], sheet.driving);
@@ -256,7 +244,7 @@ class ImmersedSheet {
     update_acceleration(space);
   }
 
-  /// Enqueues what a change of `acceleration` or `defect` makes necessary. Throws only after a failed kernel.
+  /// Enqueues what a change of the state makes necessary. Throws only after a failed kernel.
   void update_acceleration(const ExecutionSpace& space) const {
     if (_filtered.defect.extent(0) > 0)
       device::launch_each(space, "drogue::coupling::add_defect", _transfer.points, _filtered);
@@ -334,7 +322,7 @@ class ImmersedSheet {
     present.positions = cloth.positions;
     if (_inset.size() > 0) {
       device::launch_each(space, "drogue::coupling::present_positions", _transfer.points,
-                          CopyRowsFunctor<ExecutionSpace>{cloth.positions, _present});
+                          CopyRowsFunctor<ExecutionSpace>{1, {cloth.positions}, {_present}});
       _inset(space, cloth, 0.0, _present);
       present.positions = _present;
     }
@@ -413,6 +401,7 @@ class ImmersedSheet {
   Vectors _force, _after;
   Vectors _present;  ///< positions with the inset, m; empty without it
   Vectors _interpolated_force;
+  StateList<ExecutionSpace> _state;
   std::optional<ClosingSheets<ExecutionSpace>> _closing;  ///< never empty
   std::optional<SharpSheet<ExecutionSpace>> _sharp;
 };

@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "kernels/coupling/sheet/parameters.hpp"
 #include "kernels/fabric/results.hpp"
 #include "kernels/flow/solver.hpp"
+#include "kernels/stepping/state_array.hpp"
 
 namespace drogue::coupling {
 
@@ -52,6 +54,11 @@ struct FrameMotion {
   }
 };
 
+/// Numbers of vectors, as an array of a state has them. Does not throw.
+[[nodiscard]] inline std::span<double> numbers(std::vector<fabric::Vector>& rows) {
+  return {rows.empty() ? nullptr : rows.front().data(), 3 * rows.size()};
+}
+
 /// Cloth in incompressible flow on a backend that a program chooses at run time. Needs an initialised
 /// runtime. To couple other kernels on the device, use `CoupledSolver`.
 ///
@@ -73,37 +80,20 @@ class Solver : public flow::Solver {
   /// Copies positions, m, and velocities, m/s. Throws std::invalid_argument for spans of the wrong length.
   virtual void download_cloth(std::span<fabric::Vector> positions, std::span<fabric::Vector> velocities) = 0;
 
-  /// Forces of the vertices on the air, N: mean over the last step of the flow. Throws std::invalid_argument
-  /// for a span of the wrong length.
-  virtual void forces(std::span<fabric::Vector> on_air) = 0;
+  /// Arrays of the state of the cloth and of the air beside it, with which and with those of the flow, the
+  /// progress, the block and the frame, an equal solver continues bit for bit. Does not throw.
+  [[nodiscard]] virtual std::vector<stepping::StateArray> state() const = 0;
 
-  /// Restores the forces on the air, N, after `restore`: a part of the state with explicit coupling. Throws
-  /// std::invalid_argument for a span of the wrong length.
-  virtual void upload_forces(std::span<const fabric::Vector> on_air) = 0;
+  /// Restores an array of `state`, in its unit, after `restore`. Throws std::invalid_argument for an unknown
+  /// name, a span of the wrong length, and positions and velocities that are not finite.
+  virtual void upload(std::string_view name, std::span<const double> values) = 0;
+  using flow::Solver::upload;
 
-  /// Filtered acceleration of the air at the vertices, m/s^2, a part of the state. Throws
-  /// std::invalid_argument for a span of the wrong length.
-  virtual void download_air_acceleration(std::span<fabric::Vector> values) = 0;
-
-  /// Restores the filtered acceleration of the air, m/s^2, after `restore`. Throws std::invalid_argument for
-  /// a span of the wrong length.
-  virtual void upload_air_acceleration(std::span<const fabric::Vector> values) = 0;
-
-  /// Filtered defect at the vertices, m/s^2, a part of the state with `SheetParameters::defect_filter`; else
-  /// empty. Throws only std::bad_alloc and after a failed kernel.
-  [[nodiscard]] virtual std::vector<fabric::Vector> download_defect() = 0;
-
-  /// Restores the filtered defect, m/s^2, after `restore`. Throws std::invalid_argument for a span of the
-  /// wrong length.
-  virtual void upload_defect(std::span<const fabric::Vector> values) = 0;
-
-  /// Filtered acceleration of the air at all faces, m/s^2, a part of the state with a sharp sheet; else
-  /// empty. Throws only std::bad_alloc and after a failed kernel.
-  [[nodiscard]] virtual std::vector<double> download_face_acceleration() = 0;
-
-  /// Restores the acceleration of the air at all faces, m/s^2, after `restore`. Throws std::invalid_argument
-  /// for a span of the wrong length.
-  virtual void upload_face_acceleration(std::span<const double> values) = 0;
+  /// Copies an array of `state`, or "sheet_force": the forces of the vertices on the air, N, mean over the
+  /// last step of the flow, which is a part of the state with explicit coupling alone. Throws
+  /// std::invalid_argument for an unknown name and a span of the wrong length.
+  virtual void download(std::string_view name, std::span<double> values) = 0;
+  using flow::Solver::download;
 
   /// Block of the present step. Does not throw.
   [[nodiscard]] virtual BlockProgress block() const = 0;
@@ -118,8 +108,8 @@ class Solver : public flow::Solver {
   /// velocity along an axis that the frame does not follow.
   virtual void set_frame(const FrameMotion& frame) = 0;
 
-  /// Total of the force densities that act on the air in the last step of the flow, N: the sum of `forces` to
-  /// round-off. Throws only after a failed kernel.
+  /// Total of the force densities that act on the air in the last step of the flow, N: the sum of
+  /// "sheet_force" to round-off. Throws only after a failed kernel.
   [[nodiscard]] virtual std::array<double, 3> total_force_on_air() = 0;
 
   /// Velocity of the air, m/s, interpolated to the present positions of all vertices. Throws

@@ -44,13 +44,11 @@ class SolverAdapter final : public Solver {
   void download_cloth(std::span<fabric::Vector> positions, std::span<fabric::Vector> velocities) override {
     _solver.fabric().download(positions, velocities);
   }
-  void forces(std::span<fabric::Vector> on_air) override { read(_solver.sheet().force(), on_air); }
-  void upload_forces(std::span<const fabric::Vector> on_air) override {
-    write(on_air, _solver.sheet().force());
-  }
   std::array<double, 3> total_force_on_air() override { return _solver.total_force_on_air(); }
   void air_velocity(std::span<fabric::Vector> at_vertices) override {
-    read(_solver.air_velocity(), at_vertices);
+    if (at_vertices.size() != static_cast<std::size_t>(_solver.fabric().vertices()))
+      throw std::invalid_argument("coupled solver: there must be one vector per vertex");
+    _reader.read(_instance.space(), _solver.air_velocity(), at_vertices);
   }
   void elastic_forces(std::span<fabric::Vector> on_vertices) override {
     _solver.fabric().forces(on_vertices);
@@ -58,39 +56,11 @@ class SolverAdapter final : public Solver {
   void cloth_stress(fabric::StressMeasure measure, std::span<fabric::Stress> of_triangles) override {
     _solver.fabric().stress(measure, of_triangles);
   }
-  void download_air_acceleration(std::span<fabric::Vector> values) override {
-    read(_solver.sheet().acceleration(), values);
+  [[nodiscard]] std::vector<stepping::StateArray> state() const override { return _solver.state(); }
+  void upload(std::string_view name, std::span<const double> values) override {
+    _solver.upload(name, values);
   }
-  void upload_air_acceleration(std::span<const fabric::Vector> values) override {
-    write(values, _solver.sheet().acceleration());
-    _solver.sheet().update_acceleration(_instance.space());
-  }
-  std::vector<fabric::Vector> download_defect() override {
-    std::vector<fabric::Vector> values(_solver.sheet().defect().extent(0));
-    if (!values.empty()) read(_solver.sheet().defect(), values);
-    return values;
-  }
-  void upload_defect(std::span<const fabric::Vector> values) override {
-    if (values.size() != _solver.sheet().defect().extent(0))
-      throw std::invalid_argument("coupled solver: there must be one defect per vertex if it is filtered");
-    if (values.empty()) return;
-    write(values, _solver.sheet().defect());
-    _solver.sheet().update_acceleration(_instance.space());
-  }
-  std::vector<double> download_face_acceleration() override {
-    std::vector<double> values(faces());
-    copy_faces([&](const auto& list, std::size_t first) {
-      device::copy_out(_instance.space(), values.data() + first, list, list.extent(0));
-    });
-    return values;
-  }
-  void upload_face_acceleration(std::span<const double> values) override {
-    if (values.size() != faces())
-      throw std::invalid_argument("coupled solver: there must be one acceleration per face of a sharp sheet");
-    copy_faces([&](const auto& list, std::size_t first) {
-      device::copy_in(_instance.space(), list, values.data() + first, list.extent(0));
-    });
-  }
+  void download(std::string_view name, std::span<double> values) override { _solver.download(name, values); }
   [[nodiscard]] BlockProgress block() const override { return _solver.block(); }
   void set_block(const BlockProgress& block) override { _solver.set_block(block); }
   [[nodiscard]] FrameMotion frame() const override { return _solver.frame(); }
@@ -104,37 +74,6 @@ class SolverAdapter final : public Solver {
   std::optional<fabric::StepFailure> cloth_failure() override { return _solver.cloth_failure(); }
 
  private:
-  [[nodiscard]] std::size_t faces() const {
-    std::size_t sum = 0;
-    if (const auto& sharp = _solver.sheet().sharp())
-      for (const auto& one : sharp->acceleration().component) sum += one.size();
-    return sum;
-  }
-  /// Calls `copy(list, first)` for the faces of each component as a list, and waits.
-  template <class Copy>
-  void copy_faces(const Copy& copy) {
-    using List = Kokkos::View<double*, typename ExecutionSpace::memory_space, Kokkos::MemoryUnmanaged>;
-    std::size_t first = 0;
-    if (const auto& sharp = _solver.sheet().sharp())
-      for (const auto& one : sharp->acceleration().component) {
-        copy(List(one.data(), one.size()), first);
-        first += one.size();
-      }
-    _instance.space().fence("drogue::coupling::face_acceleration");
-  }
-  void require_vertices(std::size_t count) const {
-    if (count != static_cast<std::size_t>(_solver.fabric().vertices()))
-      throw std::invalid_argument("coupled solver: there must be one vector per vertex");
-  }
-  void read(const typename LocalAir<ExecutionSpace>::Vectors& from, std::span<fabric::Vector> to) {
-    require_vertices(to.size());
-    _reader.read(_instance.space(), from, to);
-  }
-  void write(std::span<const fabric::Vector> from, const typename LocalAir<ExecutionSpace>::Vectors& to) {
-    require_vertices(from.size());
-    fabric::copy_to_points(_instance.space(), from, to);
-  }
-
   fabric::PointsReader<ExecutionSpace> _reader;
   device::Instance<ExecutionSpace> _instance;
   CoupledSolver<ExecutionSpace> _solver;

@@ -247,19 +247,13 @@ void SharedSolver::upload_cloth(std::span<const fabric::Vector> positions,
   _own->run([&] { _own->coupled().upload_cloth(positions, velocities); });
 }
 
-void SharedSolver::upload_air_acceleration(std::span<const fabric::Vector> values) {
-  request_with(Request::upload_air_acceleration, {values});
-  _own->run([&] { _own->coupled().upload_air_acceleration(values); });
-}
-
-void SharedSolver::upload_defect(std::span<const fabric::Vector> values) {
-  request_with(Request::upload_defect, {values});
-  _own->run([&] { _own->coupled().upload_defect(values); });
-}
-
-void SharedSolver::upload_forces(std::span<const fabric::Vector> on_air) {
-  request_with(Request::upload_forces, {on_air});
-  _own->run([&] { _own->coupled().upload_forces(on_air); });
+void SharedSolver::upload(std::string_view name, std::span<const double> values) {
+  MessageWriter message;
+  message.put(Request::upload_array);
+  message.put_text(std::string(name));
+  message.put_all(std::vector<double>(values.begin(), values.end()));
+  static_cast<void>(_communicator.broadcast(message.take()));
+  _own->run([&] { _own->coupled().upload(name, values); });
 }
 
 void SharedSolver::set_block(const coupling::BlockProgress& block) {

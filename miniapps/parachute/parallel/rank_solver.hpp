@@ -25,15 +25,13 @@ enum class Request : int {
   restore,  ///< progress
   advance,  ///< target time, pause step
   totals,
-  download,                 ///< field: rank 0 receives the parts
-  sample,                   ///< field: rank 0 receives the parts
-  write,                    ///< field, offset, file: all ranks write a field
-  upload_cloth,             ///< positions and velocities of all vertices
-  upload_air_acceleration,  ///< values of all vertices
-  upload_defect,            ///< values of all vertices, or none
-  upload_forces,            ///< values of all vertices
-  set_block,                ///< block
-  set_frame,                ///< motion
+  download,      ///< field: rank 0 receives the parts
+  sample,        ///< field: rank 0 receives the parts
+  write,         ///< field, offset, file: all ranks write a field
+  upload_cloth,  ///< positions and velocities of all vertices
+  upload_array,  ///< name of an array of the cloth, and its values
+  set_block,     ///< block
+  set_frame,     ///< motion
   total_force_on_air,
   air_velocity,
 };
@@ -129,9 +127,7 @@ class SharedSolver final : public coupling::Solver {
 
   void upload_cloth(std::span<const fabric::Vector> positions,
                     std::span<const fabric::Vector> velocities) override;
-  void upload_air_acceleration(std::span<const fabric::Vector> values) override;
-  void upload_defect(std::span<const fabric::Vector> values) override;
-  void upload_forces(std::span<const fabric::Vector> on_air) override;
+  void upload(std::string_view name, std::span<const double> values) override;
   void set_block(const coupling::BlockProgress& block) override;
   void set_frame(const coupling::FrameMotion& frame) override;
   [[nodiscard]] std::array<double, 3> total_force_on_air() override;
@@ -140,19 +136,10 @@ class SharedSolver final : public coupling::Solver {
   void download_cloth(std::span<fabric::Vector> positions, std::span<fabric::Vector> velocities) override {
     _own->coupled().download_cloth(positions, velocities);
   }
-  void forces(std::span<fabric::Vector> on_air) override { _own->coupled().forces(on_air); }
-  void download_air_acceleration(std::span<fabric::Vector> values) override {
-    _own->coupled().download_air_acceleration(values);
-  }
-  [[nodiscard]] std::vector<fabric::Vector> download_defect() override {
-    return _own->coupled().download_defect();
-  }
-  // Empty: sharp sheets work on one rank.
-  [[nodiscard]] std::vector<double> download_face_acceleration() override {
-    return _own->coupled().download_face_acceleration();
-  }
-  void upload_face_acceleration(std::span<const double> values) override {
-    _own->coupled().upload_face_acceleration(values);
+  // Sharp sheets, which have an array of the faces, work on one rank.
+  [[nodiscard]] std::vector<stepping::StateArray> state() const override { return _own->coupled().state(); }
+  void download(std::string_view name, std::span<double> values) override {
+    _own->coupled().download(name, values);
   }
   [[nodiscard]] coupling::BlockProgress block() const override { return _own->coupled().block(); }
   [[nodiscard]] coupling::FrameMotion frame() const override { return _own->coupled().frame(); }

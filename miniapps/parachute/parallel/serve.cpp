@@ -47,9 +47,7 @@ class Worker {
       case Request::totals:
         return _solver->run([&] { step(request, message); });
       case Request::upload_cloth:
-      case Request::upload_air_acceleration:
-      case Request::upload_defect:
-      case Request::upload_forces:
+      case Request::upload_array:
       case Request::set_block:
       case Request::set_frame:
       case Request::total_force_on_air:
@@ -89,12 +87,9 @@ class Worker {
     if (request == Request::upload_cloth) {
       const auto positions = message.get_all<fabric::Vector>();
       solver.upload_cloth(positions, message.get_all<fabric::Vector>());
-    } else if (request == Request::upload_air_acceleration) {
-      solver.upload_air_acceleration(message.get_all<fabric::Vector>());
-    } else if (request == Request::upload_defect) {
-      solver.upload_defect(message.get_all<fabric::Vector>());
-    } else if (request == Request::upload_forces) {
-      solver.upload_forces(message.get_all<fabric::Vector>());
+    } else if (request == Request::upload_array) {
+      const std::string name = message.get_text();
+      solver.upload(name, message.get_all<double>());
     } else if (request == Request::set_block) {
       solver.set_block(message.get<coupling::BlockProgress>());
     } else if (request == Request::set_frame) {

@@ -32,7 +32,7 @@ SheetState Simulation::sheet_state() {
   for (auto* values : {&state.positions, &state.velocities, &state.on_air, &state.elastic})
     values->resize(vertices);
   _coupled->download_cloth(state.positions, state.velocities);
-  _coupled->forces(state.on_air);
+  _coupled->download("sheet_force", coupling::numbers(state.on_air));
   _coupled->elastic_forces(state.elastic);
   return state;
 }
@@ -42,7 +42,7 @@ std::vector<Vector> Simulation::body_forces() {
   std::vector<Vector> sums(_scene.bodies.size(), Vector{});
   if (sums.empty()) return sums;
   std::vector<Vector> on_fluid(_sheets.positions.size());
-  _coupled->forces(on_fluid);
+  _coupled->download("sheet_force", coupling::numbers(on_fluid));
   auto force = on_fluid.begin();
   for (std::size_t i = 0; i < sums.size(); ++i)
     for (std::size_t k = 0; k < static_cast<std::size_t>(_scene.bodies[i].vertices()); ++k, ++force)

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/device/backend.hpp"
 #include "kernels/reference/coupling/closed_channel.hpp"
 #include "tests/support/coupled_case.hpp"
@@ -77,7 +76,7 @@ TEST(ClosingSheets, TakeTheStepsOfTheWholeChannel) {
           velocity = expected.velocity;
           ASSERT_NEAR(mean_velocity(c, run), velocity, 1e-10) << nx << ' ' << laws.size() << ' ' << step;
           std::vector<Vector> forces(c.x.size());
-          run.solver->forces(forces);
+          run.solver->download("sheet_force", numbers(forces));
           for (std::size_t k = 0; k < sheets.size(); ++k) {
             const ClosingSheet& sheet = c.p.sheet.closing[k];
             double sum = 0.0;
@@ -141,21 +140,15 @@ TEST(ClosingSheets, ContinueBitForBitAndBackendsAgree) {
     CoupledRun whole(c), first(c), second(c);
     ASSERT_TRUE(whole.advance(20));
     ASSERT_TRUE(first.advance(8));
-    for (const flow::StateField field : flow::state_fields(c.p.flow)) {
-      std::vector<double> values(flow::state_size(c.p.flow, field));
-      first.solver->download(field, values);
-      second.solver->upload(field, values);
-    }
-    second.solver->restore(first.solver->progress());
-    upload_restart_state(*second.solver, download_restart_state(*first.solver, c.x.size()));
+    restore(c, coupled_state(c, *first.solver), *second.solver);
     ASSERT_TRUE(second.advance(12));
     EXPECT_EQ(second.force(), whole.force());
     std::vector<Vector> here(c.x.size()), there(c.x.size());
-    whole.solver->forces(here);
+    whole.solver->download("sheet_force", numbers(here));
     for (const device::Backend backend : device::compiled_backends()) {
       const auto other = c.solver(backend);
       ASSERT_EQ(other->advance(1e9, 20, {}), flow::Stop::pause);
-      other->forces(there);
+      other->download("sheet_force", numbers(there));
       for (std::size_t i = 0; i < here.size(); ++i)
         EXPECT_NEAR(there[i][0], here[i][0], drogue::testing::run_tolerance) << i;
     }

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/expression_program.hpp"
 
@@ -149,9 +148,7 @@ TEST(MovingFrame, ContinuesBitForBit) {
     ASSERT_TRUE(first.advance(48));
     const auto second = create_solver(tested_backend, c.p);
     const std::vector<StateField> fields = flow::state_fields(c.p.flow);
-    for (const StateField field : fields) second->upload(field, array_of(c, *first.solver, field));
-    second->restore(first.solver->progress());
-    upload_restart_state(*second, download_restart_state(*first.solver, c.x.size()));
+    drogue::testing::restore(c, coupled_state(c, *first.solver), *second);
     ASSERT_EQ(second->advance(1e9, 71, {}), flow::Stop::pause);
     for (const StateField field : fields)
       EXPECT_EQ(array_of(c, *second, field), array_of(c, *whole.solver, field));

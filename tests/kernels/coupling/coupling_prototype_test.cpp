@@ -312,7 +312,7 @@ Inflation inflate(double speed, double areal, bool impermeable, double defect_fi
       return mean;
     }
     std::vector<Vector> forces(run.vertices), x(run.vertices), v(run.vertices);
-    run.solver->forces(forces);
+    run.solver->download("sheet_force", numbers(forces));
     run.solver->download_cloth(x, v);
     double square = 0.0, sum = 0.0;
     std::vector<double> strength;

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/flow/halo/decomposition.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/ranks.hpp"
@@ -33,11 +32,11 @@ struct Case {
   std::vector<Vector> x, v;
 };
 
-struct State : RestartState {
+struct State : drogue::testing::ClothState {
   std::vector<std::vector<double>> flow;
   std::array<double, 3> total_force{};
   flow::Progress progress;
-  std::vector<Vector> air = {};  ///< velocities of the air at the vertices, m/s
+  std::vector<double> air = {};  ///< velocities of the air at the vertices, m/s
 };
 
 /// A case on the ranks of a group, with whole arrays of the flow.
@@ -71,13 +70,13 @@ class SharedRun {
     for (const StateField field : flow::state_fields(_p))
       _solver->upload(field, cut(state.flow[k++], extents(_p, field), flow::part_of(_p, _ranks, field)));
     _solver->restore(state.progress);
-    upload_restart_state(*_solver, state);
+    drogue::testing::restore_cloth(*_solver, state);
   }
   [[nodiscard]] State state() {
-    State s{
-        download_restart_state(*_solver, _vertices), {}, _solver->total_force_on_air(), _solver->progress()};
-    s.air.resize(_vertices);
-    _solver->air_velocity(s.air);
+    State s{drogue::testing::cloth_state(*_solver), {}, _solver->total_force_on_air(), _solver->progress()};
+    std::vector<Vector> air(_vertices);
+    _solver->air_velocity(air);
+    s.air.assign(numbers(air).begin(), numbers(air).end());
     for (const StateField field : flow::state_fields(_p)) {
       const linear::CellBox part = flow::part_of(_p, _ranks, field);
       std::vector<double> own(part.size());
@@ -182,12 +181,6 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
   return difference / scale;
 }
 
-std::vector<double> numbers(const std::vector<Vector>& rows) {
-  std::vector<double> all;
-  for (const Vector& row : rows) all.insert(all.end(), row.begin(), row.end());
-  return all;
-}
-
 void expect_near(const State& a, const State& b, const std::string& what) {
   EXPECT_EQ(a.progress.step, b.progress.step) << what;
   EXPECT_EQ(a.block.substeps, b.block.substeps) << what;
@@ -195,16 +188,10 @@ void expect_near(const State& a, const State& b, const std::string& what) {
   EXPECT_NEAR(a.progress.time, b.progress.time, tolerance) << what;
   for (std::size_t k = 0; k < a.flow.size(); ++k)
     EXPECT_LT(relative_difference(a.flow[k], b.flow[k]), tolerance) << what << ", array " << k;
-  const auto compare = [&](const std::vector<Vector>& one, const std::vector<Vector>& other,
-                           const char* rows) {
-    EXPECT_LT(relative_difference(numbers(one), numbers(other)), tolerance) << what << ", " << rows;
-  };
-  compare(a.positions, b.positions, "positions");
-  compare(a.velocities, b.velocities, "velocities");
-  compare(a.air_acceleration, b.air_acceleration, "acceleration");
-  compare(a.defect, b.defect, "defect");
-  compare(a.forces, b.forces, "forces");
-  compare(a.air, b.air, "velocities of the air");
+  for (const auto& [name, values] : a.arrays)
+    EXPECT_LT(relative_difference(values, b.arrays.at(name)), tolerance) << what << ", " << name;
+  EXPECT_LT(relative_difference(a.force, b.force), tolerance) << what << ", forces";
+  EXPECT_LT(relative_difference(a.air, b.air), tolerance) << what << ", velocities of the air";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(a.total_force[axis], b.total_force[axis], tolerance) << what;
     EXPECT_NEAR(a.frame.velocity[axis], b.frame.velocity[axis], tolerance) << what;
@@ -213,11 +200,8 @@ void expect_near(const State& a, const State& b, const std::string& what) {
 
 void expect_equal(const State& a, const State& b, const std::string& what) {
   EXPECT_EQ(a.flow, b.flow) << what;
-  EXPECT_EQ(a.positions, b.positions) << what;
-  EXPECT_EQ(a.velocities, b.velocities) << what;
-  EXPECT_EQ(a.air_acceleration, b.air_acceleration) << what;
-  EXPECT_EQ(a.defect, b.defect) << what;
-  EXPECT_EQ(a.forces, b.forces) << what;
+  EXPECT_EQ(a.arrays, b.arrays) << what;
+  EXPECT_EQ(a.force, b.force) << what;
   EXPECT_EQ(a.air, b.air) << what;
   EXPECT_EQ(a.total_force, b.total_force) << what;
   EXPECT_EQ(a.progress.time, b.progress.time) << what;
@@ -252,7 +236,7 @@ TEST_F(CoupledRanks, TakeTheStepsOfOneRank) {
         const State expected = single.state();
         expect_near(expected, shared.state(), what + " after step " + std::to_string(step));
         double force = 0.0;
-        for (const double f : numbers(expected.forces)) force = std::max(force, std::abs(f));
+        for (const double f : expected.force) force = std::max(force, std::abs(f));
         EXPECT_GT(force, 1e-5) << what;
       }
       expect_one_cloth(shared, what);

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/points_transfer.hpp"
 #include "kernels/reference/coupling/sharp_sheet.hpp"
@@ -205,25 +204,19 @@ TEST(SharpSheet, ContinuesBitForBitAndBackendsAgree) {
   ASSERT_TRUE(whole.advance(20));
   ASSERT_TRUE(whole.advance(20));
   ASSERT_TRUE(first.advance(20));
-  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
-    std::vector<double> values(flow::state_size(c.p.flow, field));
-    first.solver->download(field, values);
-    second.solver->upload(field, values);
-  }
-  second.solver->restore(first.solver->progress());
-  const RestartState sheets = download_restart_state(*first.solver, c.x.size());
-  EXPECT_EQ(sheets.face_acceleration.size(), 3 * 16U * 8U);
-  upload_restart_state(*second.solver, sheets);
-  EXPECT_THROW(second.solver->upload_face_acceleration(std::vector<double>(7)), std::invalid_argument);
+  const drogue::testing::CoupledState middle = coupled_state(c, *first.solver);
+  EXPECT_EQ(middle.arrays.at("face_acceleration").size(), 3 * 16U * 8U);
+  restore(c, middle, *second.solver);
+  EXPECT_THROW(second.solver->upload("face_acceleration", std::vector<double>(7)), std::invalid_argument);
   ASSERT_TRUE(second.advance(20));
   EXPECT_EQ(second.force(), whole.force());
   std::vector<Vector> here(c.x.size()), there(c.x.size());
-  whole.solver->forces(here);
+  whole.solver->download("sheet_force", numbers(here));
   for (const device::Backend backend : device::compiled_backends()) {
     const auto other = c.solver(backend);
     ASSERT_EQ(other->advance(1e9, 20, {}), flow::Stop::pause);
     ASSERT_EQ(other->advance(1e9, 40, {}), flow::Stop::pause);
-    other->forces(there);
+    other->download("sheet_force", numbers(there));
     for (std::size_t i = 0; i < here.size(); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(there[i][axis], here[i][axis], drogue::testing::run_tolerance) << i << ' ' << axis;

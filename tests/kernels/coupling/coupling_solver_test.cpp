@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "kernels/coupling/sheet/edge_inset.hpp"
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/coupling/edge_inset.hpp"
 #include "kernels/reference/coupling/grid_transfer.hpp"
@@ -25,6 +24,8 @@ namespace {
 using drogue::testing::counted_steps;
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
+using drogue::testing::CoupledState;
+using drogue::testing::restore;
 using drogue::testing::tested_backend;
 using fabric::Vector;
 
@@ -57,43 +58,33 @@ CoupledCase meeting_strips(bool with_contact) {
   return c;
 }
 
-struct State : RestartState {
-  std::vector<std::vector<double>> flow;
+struct State : CoupledState {
   Vector total_force;
-  flow::Progress progress;
 };
 
 State state_of(const CoupledCase& c, Solver& solver) {
-  State s{download_restart_state(solver, c.x.size()), {}, solver.total_force_on_air(), solver.progress()};
-  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
-    s.flow.emplace_back(flow::state_size(c.p.flow, field));
-    solver.download(field, s.flow.back());
-  }
-  return s;
+  return {coupled_state(c, solver), solver.total_force_on_air()};
 }
 
-void restore(const CoupledCase& c, const State& s, Solver& solver) {
-  std::size_t k = 0;
-  for (const flow::StateField field : flow::state_fields(c.p.flow)) solver.upload(field, s.flow[k++]);
-  solver.restore(s.progress);
-  upload_restart_state(solver, s);
-}
-
-double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      largest = std::max(largest, std::abs(a[i][axis] - b[i][axis]));
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = a.size() == b.size() ? 0.0 : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    largest = std::max(largest, std::abs(a[i] - b[i]));
   return largest;
 }
 
+double distance(std::vector<Vector> a, std::vector<Vector> b) {
+  return distance(std::vector<double>(numbers(a).begin(), numbers(a).end()),
+                  std::vector<double>(numbers(b).begin(), numbers(b).end()));
+}
+
 double distance(const State& a, const State& b) {
-  double largest = std::max({distance(a.positions, b.positions), distance(a.velocities, b.velocities),
-                             1e-3 * distance(a.air_acceleration, b.air_acceleration),
-                             1e-3 * distance(a.defect, b.defect)});
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < a.flow[k].size(); ++i)
-      largest = std::max(largest, std::abs(a.flow[k][i] - b.flow[k][i]));
+  double largest = 0.0;
+  for (const auto& [name, values] : a.arrays) {
+    const bool is_acceleration = name != "sheet_position" && name != "sheet_velocity";
+    largest = std::max(largest, (is_acceleration ? 1e-3 : 1.0) * distance(values, b.arrays.at(name)));
+  }
+  for (std::size_t k = 0; k < 3; ++k) largest = std::max(largest, distance(a.flow[k], b.flow[k]));
   return largest;
 }
 
@@ -127,7 +118,8 @@ TEST(CoupledSolver, ContinuesBitForBitWithTheFilteredDefect) {
   ASSERT_TRUE(first.advance(21));
   State middle = state_of(c, *first.solver);
   double largest = 0.0;
-  for (const Vector& defect : middle.defect) largest = std::max(largest, std::abs(defect[0]));
+  for (std::size_t k = 0; k < middle.arrays["defect"].size(); k += 3)
+    largest = std::max(largest, std::abs(middle.arrays["defect"][k]));
   EXPECT_GT(largest, 0.1);
   CoupledRun second(c), without(c);
   restore(c, middle, *second.solver);
@@ -136,7 +128,7 @@ TEST(CoupledSolver, ContinuesBitForBitWithTheFilteredDefect) {
   const State end = state_of(c, *whole.solver);
   EXPECT_EQ(distance(state_of(c, *second.solver), end), 0.0);
   // It is a part of the state.
-  middle.defect.assign(c.x.size(), Vector{});
+  std::ranges::fill(middle.arrays["defect"], 0.0);
   restore(c, middle, *without.solver);
   ASSERT_TRUE(without.advance(19));
   EXPECT_GT(distance(state_of(c, *without.solver), end), 1e-6);
@@ -154,7 +146,10 @@ TEST(CoupledSolver, ContinuesBitForBitWithABodyInMotion) {
     ASSERT_TRUE(begun.advance(first));
     const State middle = state_of(c, *begun.solver);
     restore(c, middle, *continued.solver);
-    EXPECT_EQ(distance(state_of(c, *continued.solver).positions, middle.positions), 0.0) << first;
+    EXPECT_EQ(distance(state_of(c, *continued.solver).arrays.at("sheet_position"),
+                       middle.arrays.at("sheet_position")),
+              0.0)
+        << first;
     ASSERT_TRUE(continued.advance(40 - first));
     EXPECT_EQ(distance(state_of(c, *continued.solver), state_of(c, *whole.solver)), 0.0) << first;
   }
@@ -360,7 +355,7 @@ TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
   ASSERT_TRUE(run.advance(10));
   const std::size_t vertices = c.x.size();
   std::vector<Vector> on_air(vertices), elastic(vertices), x(vertices), v(vertices);
-  run.solver->forces(on_air);
+  run.solver->download("sheet_force", numbers(on_air));
   const std::array<double, 3> total = run.solver->total_force_on_air();
   Vector sum{};
   double magnitude = 0.0;
@@ -472,7 +467,7 @@ void expect_failure(const CoupledCase& c, FailureReason reason) {
   run.solver->air_velocity(air);
   again.solver->air_velocity(expected_air);
   EXPECT_EQ(distance(air, expected_air), 0.0);
-  EXPECT_EQ(distance(expected.forces, last.forces), 0.0);
+  EXPECT_EQ(distance(expected.force, last.force), 0.0);
   EXPECT_EQ(expected.total_force, last.total_force);
 }
 
@@ -495,6 +490,30 @@ TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
   run.solver->start();
   EXPECT_TRUE(run.advance(5));
   EXPECT_EQ(run.solver->failure_reason(), FailureReason::flow);
+}
+
+TEST(CoupledSolver, FailedStepsReturnToEveryArrayOfTheState) {
+  std::vector<CoupledCase> cases(4, flying_strip());
+  cases[1].p.sheet.defect_filter = 0.1;
+  cases[2].p.sheet.method = CouplingMethod::explicit_;
+  cases[2].set_mass(5.0);
+  cases[3].p.sheet.method = CouplingMethod::sharp;
+  cases[3].p.fabric.pinned.assign(cases[3].x.size(), 7);
+  cases[3].v.assign(cases[3].x.size(), {0.5, 0.2, 0.0});
+  for (const CoupledCase& c : cases) {
+    CoupledRun run(c);
+    ASSERT_TRUE(run.advance(3)) << static_cast<int>(c.p.sheet.method);
+    CoupledState changed = coupled_state(c, *run.solver);
+    double place = 0.0;
+    for (auto& [name, values] : changed.arrays)
+      for (double& value : values) value += 1e-3 * std::sin(place += 1.0);
+    // The next step fails, whatever the cloth does.
+    changed.flow[0].assign(changed.flow[0].size(), std::nan(""));
+    restore(c, changed, *run.solver);
+    EXPECT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
+    EXPECT_EQ(run.solver->progress().step, 3);
+    EXPECT_EQ(coupled_state(c, *run.solver).arrays, changed.arrays);
+  }
 }
 
 TEST(CoupledSolver, LineThatCarriesMoreThanItsStrengthIsAFailure) {
@@ -636,13 +655,14 @@ TEST(CoupledSolver, RejectsArraysOfTheWrongLength) {
   const CoupledCase c = flying_strip();
   CoupledRun run(c);
   std::vector<Vector> few(c.x.size() - 1);
-  EXPECT_THROW(run.solver->forces(few), std::invalid_argument);
   EXPECT_THROW(run.solver->air_velocity(few), std::invalid_argument);
-  EXPECT_THROW(run.solver->download_air_acceleration(few), std::invalid_argument);
-  EXPECT_THROW(run.solver->upload_air_acceleration(few), std::invalid_argument);
-  EXPECT_THROW(run.solver->upload_forces(few), std::invalid_argument);
-  EXPECT_THROW(run.solver->upload_defect(c.x), std::invalid_argument) << "it is not filtered";
-  EXPECT_TRUE(run.solver->download_defect().empty());
+  for (const char* name : {"air_acceleration", "sheet_force", "sheet_position", "sheet_velocity"}) {
+    EXPECT_THROW(run.solver->download(name, numbers(few)), std::invalid_argument) << name;
+    EXPECT_THROW(run.solver->upload(name, numbers(few)), std::invalid_argument) << name;
+  }
+  std::vector<Vector> whole(c.x.size());
+  EXPECT_THROW(run.solver->upload("defect", numbers(whole)), std::invalid_argument) << "it is not filtered";
+  for (const stepping::StateArray& array : run.solver->state()) EXPECT_NE(array.name, "defect");
   EXPECT_THROW(run.solver->upload_cloth(few, few), std::invalid_argument);
 }
 
