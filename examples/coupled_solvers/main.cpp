@@ -68,7 +68,7 @@ int run(int steps) {
   const device::Instance<ExecutionSpace> instance(8);
   const ExecutionSpace& space = instance.space();
   flow::FlowSolver<ExecutionSpace> flow(instance, air(dt));
-  fabric::FabricSolver<ExecutionSpace> fabric(space, cloth(dt));
+  fabric::FabricSolver<ExecutionSpace> fabric(instance, cloth(dt));
   const int vertices = fabric.vertices();
   const coupling::GridTransfer<ExecutionSpace> transfer(space, flow::coupling_grid(flow.grid()),
                                                         coupling::DeltaFunction::cbs43, vertices);

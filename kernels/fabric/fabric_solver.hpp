@@ -30,27 +30,28 @@
 
 namespace drogue::fabric {
 
-/// Fabric of any constitutive model on the caller's instance of an execution space, for coupling to other
-/// kernels. `Solver` is the facade over it for programs that choose the backend at run time. Functions that
-/// block throw std::runtime_error after a failed kernel.
+/// Fabric of any constitutive model on the caller's instance of an execution space. Other kernels of the same
+/// instance run in order with it, read and write its state on the device and add forces of their own.
+/// Functions of `Solver` are documented there; those that block throw std::runtime_error after a failed
+/// kernel.
 ///
-/// All work is enqueued on the instance given to the constructor. Kernels of the same instance run in order
-/// with it; other streams need events. On CUDA the instance must have a stream of its own, since steps are
-/// captured from it. Member functions are asynchronous unless stated otherwise.
+/// On CUDA the instance must have a stream of its own, since steps are captured from it. Other streams need
+/// events.
 ///
 /// `VertexForce` is evaluated with the elastic forces in every stage, fused into the kernels of every driver
 /// (`IsVertexForce`). `forces`, `totals`, `fastest_frequency` and `frequency_at_least` do not include it, and
 /// a checkpoint does not hold its state.
 template <class ExecutionSpace, class VertexForce = NoVertexForce>
-class FabricSolver {
+class FabricSolver : public Solver {
   // Members with generic lambdas are defined in the class: nvcc cannot emit them outside of a class template
   // with a default argument.
  public:
   using Points = PointsView<ExecutionSpace>;
 
-  /// Allocates all memory of steps, and places the vertices at rest; blocks. Throws std::invalid_argument for
-  /// parameters out of range.
-  FabricSolver(const ExecutionSpace& space, const Parameters& parameters, VertexForce vertex_force = {});
+  /// Allocates all memory of steps, and places the vertices at rest; blocks. `instance` must outlive the
+  /// solver. Throws std::invalid_argument for parameters out of range.
+  FabricSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
+               VertexForce vertex_force = {});
   FabricSolver(const FabricSolver&) = delete;  // captured steps refer to this object
   FabricSolver& operator=(const FabricSolver&) = delete;
 
@@ -64,19 +65,13 @@ class FabricSolver {
   /// Does not throw.
   [[nodiscard]] State<ExecutionSpace> state() const;
 
-  /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
-  /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
-  /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit,
-  /// except with an interval of contact.
-  /// Throws std::invalid_argument for a negative number, and one that ends beyond step 2^53.
-  ///
-  /// It may be called while the caller captures the instance's stream into a CUDA graph, except with contact
-  /// (std::logic_error). Each launch of that graph takes `steps` steps; the caller bounds the launches in
-  /// flight. From the first capture on, the solver takes no checkpoints of its own, and `time_state` is valid
-  /// after `synchronize`; `upload` does not change that, and the graph remains valid. A captured graph is
-  /// invalid after `set_time_state` and `watch_pulls`. After `set_time_state` the solver takes checkpoints
-  /// again.
-  bool enqueue_steps(std::int64_t steps);
+  /// It may also be called while the caller captures the instance's stream into a CUDA graph, except with
+  /// contact (std::logic_error). Each launch of that graph takes `steps` steps; the caller bounds the
+  /// launches in flight. From the first capture on, the solver takes no checkpoints of its own, and
+  /// `time_state` is valid after `synchronize`; `upload` does not change that, and the graph remains valid. A
+  /// captured graph is invalid after `set_time_state` and `watch_pulls`. After `set_time_state` the solver
+  /// takes checkpoints again.
+  bool enqueue_steps(std::int64_t steps) override;
 
   /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure. Throws
   /// std::runtime_error if the launch fails.
@@ -86,40 +81,23 @@ class FabricSolver {
   /// std::runtime_error after a failed kernel.
   void synchronize();
 
-  /// First failed step, if any. Blocks. Throws std::runtime_error after a failed kernel.
-  [[nodiscard]] std::optional<StepFailure> failure();
-
   /// Record of failures for other kernels, which may read `has_failed`. Does not throw.
   [[nodiscard]] const StepMonitor<ExecutionSpace>& monitor() const { return _monitor; }
 
-  /// Sets E A of every line, N; 0 for a line that is cut, which is no obstacle in contact. Blocks. Throws
-  /// std::invalid_argument for values that are negative or not finite and a span of the wrong length.
-  void set_line_stiffness(std::span<const double> of_lines);
-
-  /// Sets positions, m, and velocities, m/s, and forgets a failure. Blocks. Throws std::invalid_argument for
-  /// values that are not finite and spans of the wrong length.
-  void upload(std::span<const Vector> positions, std::span<const Vector> velocities);
-
-  /// Copies positions, m, and velocities, m/s, to the host. Blocks. Throws std::invalid_argument for spans of
-  /// the wrong length.
-  void download(std::span<Vector> positions, std::span<Vector> velocities);
-
-  /// Step count, dt and time after the steps enqueued so far; after a failure has been reported, those of the
-  /// restored state. Times in s. Does not throw.
-  [[nodiscard]] TimeState time_state() const { return _time; }
-
-  /// Blocks. Throws std::invalid_argument unless dt is positive, the time finite and 0 <= since <= step.
-  void set_time_state(const TimeState& time);
-
-  /// The functions below block. They are documented in `Solver`.
-  void forces(std::span<Vector> forces);
-  [[nodiscard]] double fastest_frequency();
-  [[nodiscard]] double frequency_at_least();
-  [[nodiscard]] double fastest_decay() const { return _decay; }
-  void stress(StressMeasure measure, std::span<Stress> of_triangles);
-  void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices);
-  [[nodiscard]] Totals totals();
-  void watch_pulls(std::span<const Pull> pulls) {
+  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override;
+  void download(std::span<Vector> positions, std::span<Vector> velocities) override;
+  [[nodiscard]] std::optional<StepFailure> failure() override;
+  [[nodiscard]] TimeState time_state() const override { return _time; }
+  void set_time_state(const TimeState& time) override;
+  void set_line_stiffness(std::span<const double> of_lines) override;
+  void forces(std::span<Vector> forces) override;
+  [[nodiscard]] double fastest_frequency() override;
+  [[nodiscard]] double frequency_at_least() override;
+  [[nodiscard]] double fastest_decay() const override { return _decay; }
+  void stress(StressMeasure measure, std::span<Stress> of_triangles) override;
+  void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override;
+  [[nodiscard]] Totals totals() override;
+  void watch_pulls(std::span<const Pull> pulls) override {
     if (_parameters.integrator != Integrator::verlet)
       throw std::invalid_argument("fabric solver: pulls are watched in steps of the velocity Verlet method");
     // The contact of an interval moves its last state after the forces on it were compared.
@@ -133,17 +111,17 @@ class FabricSolver {
     record_pulls();
     enqueue_checkpoint();
   }
-  [[nodiscard]] std::vector<PeakPull> peak_pulls() {
+  [[nodiscard]] std::vector<PeakPull> peak_pulls() override {
     synchronize();
     return _pulls.peaks(space());
   }
-  void set_peak_pulls(std::span<const PeakPull> peaks) {
+  void set_peak_pulls(std::span<const PeakPull> peaks) override {
     _pulls.set_peaks(space(), peaks);
     enqueue_checkpoint();
   }
-  [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
-  void contact_work(std::span<ContactWork> of_vertices);
-  void set_contact_work(std::span<const ContactWork> of_vertices);
+  [[nodiscard]] const char* driver() const override { return stepping::driver_name(_launcher.driver()); }
+  void contact_work(std::span<ContactWork> of_vertices) override;
+  void set_contact_work(std::span<const ContactWork> of_vertices) override;
 
  private:
   [[nodiscard]] Points points(const std::string& label) const {
@@ -271,7 +249,7 @@ class FabricSolver {
     _reader.read(space(), _next, forces);
   }
 
-  device::Instance<ExecutionSpace> _instance;
+  const device::Instance<ExecutionSpace>& _instance;
   Parameters _parameters;
   VertexForce _vertex_force;
   int _vertices, _padded;  ///< `_padded`: in whole slices
@@ -305,17 +283,17 @@ class FabricSolver {
 // ---- set-up ----
 
 template <class ExecutionSpace, class VertexForce>
-FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& space, const Parameters& p,
-                                                        VertexForce vertex_force)
-    : _instance(space),
+FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const device::Instance<ExecutionSpace>& instance,
+                                                        const Parameters& p, VertexForce vertex_force)
+    : _instance(instance),
       _parameters((check_parameters(p), p)),
       _vertex_force(vertex_force),
       _vertices(static_cast<int>(p.mesh.rest.size())),
       _padded(padded_vertices(_vertices)),
       _decay(p.integrator == Integrator::rk4 ? p.damping : 0.0),
       _time{0, p.dt, 0, 0.0},
-      _fabric(make_fabric_views(space, p)),
-      _dead(make_dead_loads(space, p)),
+      _fabric(make_fabric_views(space(), p)),
+      _dead(make_dead_loads(space(), p)),
       _loop(_instance),
       _launcher(_instance, requested_driver(p)),
       _monitor(stepping::make_monitor<ExecutionSpace>(_loop.status_view())),
@@ -324,14 +302,14 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
     throw std::invalid_argument("fabric solver: only the symplectic Euler method relaxes velocities");
   _fabric.load = _dead.total;
   make_external_loads();
-  if (!p.motions.empty()) _dirichlet = make_dirichlet(space, p.motions, rest_positions());
+  if (!p.motions.empty()) _dirichlet = make_dirichlet(space(), p.motions, rest_positions());
   _x = points("drogue::fabric::positions");
   _v = points("drogue::fabric::velocities");
   _next = points("drogue::fabric::next");
   _saved_x = points("drogue::fabric::saved_positions");
   _saved_v = points("drogue::fabric::saved_velocities");
-  copy_to_points(space, p.mesh.rest, _x);
-  device::copy(space, _saved_x, _x);
+  copy_to_points<ExecutionSpace>(space(), p.mesh.rest, _x);
+  device::copy(space(), _saved_x, _x);
   reset_monitor();
   if (p.contact.is_enabled())
     _contact =

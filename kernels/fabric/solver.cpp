@@ -11,7 +11,7 @@
 
 namespace drogue::fabric {
 
-// Defined in solver_adapter.hpp, instantiated for each backend in instances/.
+// Defined and instantiated for each backend in instances/solver.cpp.
 template <class ExecutionSpace>
 std::unique_ptr<Solver> make_solver(const Parameters& parameters);
 

@@ -46,9 +46,9 @@ namespace drogue::fabric {
 }
 
 /// Cloth and strings on a backend that a program chooses at run time. Needs an initialised runtime. To couple
-/// other kernels on the device, use `FabricSolver`.
+/// other kernels on the device, use `FabricSolver`, which is this class with the functions that they need.
 ///
-/// Call `upload`, then `advance` as often as needed. A step fails if its state is not finite or exceeds
+/// Call `upload`, then `enqueue_steps` as often as needed. A step fails if its state is not finite or exceeds
 /// 1e100, or if contact fails. The solver then returns to its last checkpoint: one of every 256 steps, or the
 /// uploaded state. All functions that read the state then refer to the checkpoint, and `time_state` returns
 /// its step.
@@ -64,11 +64,12 @@ class Solver {
   /// length.
   virtual void download(std::span<Vector> positions, std::span<Vector> velocities) = 0;
 
-  /// Enqueues `steps` steps of `time_state().dt`. Asynchronous but for a bound on the steps in flight.
-  /// Returns false once a failure is known; no steps follow until the next `upload`. The distribution of
-  /// steps over calls changes no bit. Throws std::invalid_argument for a negative number of steps, and
-  /// std::runtime_error after a failed kernel.
-  virtual bool advance(std::int64_t steps) = 0;
+  /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
+  /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
+  /// nothing more, once a failure is known on the host; no steps follow until the next `upload`. The
+  /// distribution of steps over calls changes no bit, except with an interval of contact. Throws
+  /// std::invalid_argument for a negative number, and one that ends beyond step 2^53.
+  virtual bool enqueue_steps(std::int64_t steps) = 0;
 
   /// First failed step, if any. Blocks until all steps are done. Throws only after a failed kernel.
   [[nodiscard]] virtual std::optional<StepFailure> failure() = 0;
@@ -118,8 +119,8 @@ class Solver {
   /// on every backend. Blocks. Throws only after a failed kernel.
   [[nodiscard]] virtual Totals totals() = 0;
 
-  /// Sets E A of every line of the mesh, N; 0 cuts a line. Blocks. Throws std::invalid_argument for values
-  /// that are negative or not finite, and spans of the wrong length.
+  /// Sets E A of every line of the mesh, N; 0 cuts a line, which is then no obstacle in contact. Blocks.
+  /// Throws std::invalid_argument for values that are negative or not finite, and spans of the wrong length.
   virtual void set_line_stiffness(std::span<const double> of_lines) = 0;
 
   /// Records the largest forces of lines on vertices, N, from now on, those of the present state included:

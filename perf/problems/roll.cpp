@@ -82,7 +82,7 @@ Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count) {
             solver.set_contact_work(none);
           },
           [&solver, count] {
-            solver.advance(count);
+            solver.enqueue_steps(count);
             static_cast<void>(solver.failure());  // blocks until the steps are done
             return count;
           }};

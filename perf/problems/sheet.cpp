@@ -57,7 +57,7 @@ Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count) {
   solver.set_dt(default_dt(p, solver));
   return {[&solver, from = start(p)] { solver.upload(from.x, from.v); },
           [&solver, count] {
-            solver.advance(count);
+            solver.enqueue_steps(count);
             static_cast<void>(solver.failure());  // blocks until the steps are done
             return count;
           }};

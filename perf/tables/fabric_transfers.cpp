@@ -73,7 +73,7 @@ Case case_of(device::Backend backend, const FabricTransfer& row) {
                             Run& now = **run;
                             now.parts = timed_parts([&] { now.solver->upload(now.x, now.v); },
                                                     [&] {
-                                                      now.solver->advance(row.substeps);
+                                                      now.solver->enqueue_steps(row.substeps);
                                                       static_cast<void>(now.solver->failure());  // blocks
                                                     },
                                                     [&] { now.solver->download(now.x, now.v); });

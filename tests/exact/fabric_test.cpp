@@ -69,7 +69,7 @@ std::string run_bytes(device::Backend backend, int threads, const Parameters& p)
   const std::size_t n = p.mass.size();
   std::vector<Vector> x = shaken(p.mesh.rest, 0.1, 1), v = random_vectors(n, 1.0, 2), f(n);
   solver->upload(x, v);
-  if (!solver->advance(80) || solver->failure()) throw std::runtime_error("the state was lost");
+  if (!solver->enqueue_steps(80) || solver->failure()) throw std::runtime_error("the state was lost");
   solver->download(x, v);
   solver->forces(f);
   std::vector<Stress> triangles(p.mesh.triangles.size()), vertices(n);
@@ -124,7 +124,7 @@ std::string contact_bytes(device::Backend backend, int threads, testing::Sheets 
   const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(threads)});
   const auto solver = create_solver(backend, s.p);
   solver->upload(s.x, s.v);
-  if (!solver->advance(200) || solver->failure()) throw std::runtime_error("the state was lost");
+  if (!solver->enqueue_steps(200) || solver->failure()) throw std::runtime_error("the state was lost");
   solver->download(s.x, s.v);
   std::vector<ContactWork> work(s.x.size());
   solver->contact_work(work);

@@ -126,7 +126,7 @@ class CoupledSolver {
         _flow(instance, _parameters.flow, group),
         _sheet(_space, flow::coupling_grid(_flow.grid()), _parameters.fabric, _parameters.sheet,
                _parameters.flow.density, group, flow::face_window(_flow.grid())),
-        _fabric(_space, _parameters.fabric, _sheet.relaxation()),
+        _fabric(instance, _parameters.fabric, _sheet.relaxation()),
         _reason("drogue::coupling::failure_reason"),
         _saved_step("drogue::coupling::saved_step"),
         _state(_sheet.state()),

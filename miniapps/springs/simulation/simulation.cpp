@@ -213,7 +213,7 @@ bool Simulation::take_steps(std::int64_t steps, const framework::Poll& poll) {
   while (steps > 0) {
     const std::int64_t count = std::min(steps, _settings.baseline ? 1 : _batch);
     const Stopwatch stopwatch;
-    const bool advanced = _solver->advance(count);
+    const bool advanced = _solver->enqueue_steps(count);
     _failure = _solver->failure();
     const double seconds = stopwatch.seconds();
     _compute_s += seconds;
@@ -260,7 +260,7 @@ bool Simulation::plan_next_interval() {
 void Simulation::return_to_last_good(std::int64_t lost) {
   round_trip();  // an upload clears the failure
   // The start itself may be lost.
-  _solver->advance(std::max<std::int64_t>(0, lost - 1 - _solver->time_state().step));
+  _solver->enqueue_steps(std::max<std::int64_t>(0, lost - 1 - _solver->time_state().step));
   _solver->failure();  // waits
 }
 

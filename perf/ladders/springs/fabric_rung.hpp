@@ -20,7 +20,7 @@ class FabricRung : public RungRun {
   void reset() override { _solver->upload(_problem.renumbered.start.x, _problem.renumbered.start.v); }
 
   void run() override {
-    _solver->advance(_problem.steps);
+    _solver->enqueue_steps(_problem.steps);
     static_cast<void>(_solver->failure());  // blocks until the steps are done
   }
 

@@ -36,7 +36,7 @@ ContactRun run_with_contact(Sheets& s, int steps, int every) {
   run.start_kinetic = start.kinetic;
   run.start_energy = start.energy();
   for (int step = 0; step < steps; step += every) {
-    solver->advance(every);
+    solver->enqueue_steps(every);
     run.failure = solver->failure();
     if (run.failure) break;
     solver->download(s.x, s.v);
@@ -263,7 +263,7 @@ std::array<double, 2> slide_on_incline(double angle, double friction, double spe
   const auto solver = create_solver(backend, s.p);
   const std::vector<Vector> from = s.x;
   solver->upload(s.x, s.v);
-  EXPECT_TRUE(solver->advance(steps) && !solver->failure());
+  EXPECT_TRUE(solver->enqueue_steps(steps) && !solver->failure());
   solver->download(s.x, s.v);
   return {c * (s.x[12][0] - from[12][0]) - d * (s.x[12][2] - from[12][2]), c * s.v[12][0] - d * s.v[12][2]};
 }
@@ -314,9 +314,9 @@ TEST(FabricContact, HoldsByFrictionOnAPinnedSheet) {
     for (std::size_t i = 64; i < s.x.size(); ++i) sum += s.x[i][0] / 25.0;
     return sum;
   };
-  EXPECT_TRUE(solver->advance(2000));
+  EXPECT_TRUE(solver->enqueue_steps(2000));
   const double before = mean();
-  EXPECT_TRUE(solver->advance(2000));
+  EXPECT_TRUE(solver->enqueue_steps(2000));
   // Without cancellation, half a kick per step would move the sheet by 4.9e-6 m in 2000 steps.
   EXPECT_NEAR(mean(), before, 5e-7);
 }
@@ -340,7 +340,7 @@ TEST(FabricContact, FrictionWorkEqualsForceTimesSlidingDistance) {
   Totals before = start;
   double distance_before = 0.0;
   for (int part = 0; part < 5; ++part) {
-    ASSERT_TRUE(solver->advance(200) && !solver->failure());
+    ASSERT_TRUE(solver->enqueue_steps(200) && !solver->failure());
     solver->download(s.x, s.v);
     const double distance = std::hypot(s.x[12][0] - from[0], s.x[12][1] - from[1]);
     const Totals now = solver->totals();
@@ -373,7 +373,7 @@ TEST(FabricContact, FrictionBetweenLayersDissipatesEnergy) {
     const Totals start = solver->totals();
     double before = 0.0;
     for (int part = 0; part < 10; ++part) {
-      ASSERT_TRUE(solver->advance(20) && !solver->failure());
+      ASSERT_TRUE(solver->enqueue_steps(20) && !solver->failure());
       const double now = solver->totals().friction;
       EXPECT_LE(now, before);
       before = now;
@@ -405,7 +405,7 @@ TEST(FabricContact, KeepsFabricOutsideBodies) {
       int inside = 0;
       double least = 1.0;
       for (int look = 0; look < 80; ++look) {
-        EXPECT_TRUE(solver->advance(20) && !solver->failure());
+        EXPECT_TRUE(solver->enqueue_steps(20) && !solver->failure());
         solver->download(s.x, s.v);
         for (const auto& t : s.p.mesh.triangles) {
           const auto at = [&](std::size_t k) { return s.x[static_cast<std::size_t>(t[k])]; };
@@ -433,7 +433,7 @@ TEST(FabricContact, LevelSetOfASphereMatchesTheSphere) {
     s.p.contact.bodies = {as_level_set ? level_set : sphere};
     const auto solver = create_solver(backend, s.p);
     solver->upload(s.x, s.v);
-    EXPECT_TRUE(solver->advance(150) && !solver->failure());
+    EXPECT_TRUE(solver->enqueue_steps(150) && !solver->failure());
     solver->download(s.x, s.v);
     ends[as_level_set ? 1 : 0] = s.x;
   }
@@ -464,7 +464,7 @@ TEST(FabricContact, RestartsWithIdenticalBits) {
   Sheets s = folded(3.0);
   const auto whole = create_solver(backend, s.p);
   whole->upload(s.x, s.v);
-  ASSERT_TRUE(whole->advance(150));
+  ASSERT_TRUE(whole->enqueue_steps(150));
   std::vector<Vector> x = s.x, v = s.v;
   whole->download(x, v);
   std::vector<ContactWork> work(x.size()), end_work = work, other_work = work;
@@ -473,7 +473,7 @@ TEST(FabricContact, RestartsWithIdenticalBits) {
   part->set_time_state(whole->time_state());
   part->upload(x, v);
   part->set_contact_work(work);
-  ASSERT_TRUE(whole->advance(150) && part->advance(70) && part->advance(80));
+  ASSERT_TRUE(whole->enqueue_steps(150) && part->enqueue_steps(70) && part->enqueue_steps(80));
   whole->download(s.x, s.v), part->download(x, v);
   whole->contact_work(end_work), part->contact_work(other_work);
   EXPECT_EQ(x, s.x);

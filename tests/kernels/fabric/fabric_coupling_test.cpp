@@ -144,19 +144,19 @@ void expect_force_like_load(Integrator integrator, Driver driver, Model model, d
                       shaken(std::vector<Vector>(p.mass.size(), Vector{}), 0.1, 2)};
 
   FabricSolver<Space, Push> forced(
-      space, p, {on_device_points(space, p.mesh.rest), on_device_points(space, direction), strength});
+      instance, p, {on_device_points(space, p.mesh.rest), on_device_points(space, direction), strength});
   Motions by_force = start;
   const std::int64_t of_forced = launches_of(forced, by_force);
   EXPECT_LE(of_forced, most_launches(integrator, driver, false));
 
-  FabricSolver<Space> free(space, p);
+  FabricSolver<Space> free(instance, p);
   Motions without = start;
   EXPECT_LE(of_forced, launches_of(free, without)) << "forces add no launches";
   EXPECT_STREQ(forced.driver(), free.driver());
   EXPECT_GT(distance(by_force, without), 1e-3);
 
   p.timed_loads = {{strength, direction}};
-  FabricSolver<Space> loaded(space, p);
+  FabricSolver<Space> loaded(instance, p);
   Motions by_load = start;
   EXPECT_LE(launches_of(loaded, by_load), most_launches(integrator, driver, true));
   EXPECT_STREQ(loaded.driver(), free.driver()) << "loads do not change the driver";
@@ -182,7 +182,7 @@ TEST(FabricCoupling, LinesHaveTheirNewStiffnessAsIfGivenAtTheStart) {
     const Motions start{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
     std::vector<double> stiffness(p.mesh.lines.size(), 40.0);
     stiffness.back() = 0.0;
-    FabricSolver<Space> changed(instance.space(), p);
+    FabricSolver<Space> changed(instance, p);
     Motions one = start, other = start;
     changed.upload(one.x, one.v);
     ASSERT_TRUE(changed.enqueue_steps(20));
@@ -191,7 +191,7 @@ TEST(FabricCoupling, LinesHaveTheirNewStiffnessAsIfGivenAtTheStart) {
     ASSERT_TRUE(changed.enqueue_steps(20) && !changed.failure());
     changed.download(one.x, one.v);
     p.mesh.line_stiffness = stiffness;
-    FabricSolver<Space> given(instance.space(), p);
+    FabricSolver<Space> given(instance, p);
     given.upload(other.x, other.v);
     ASSERT_TRUE(given.enqueue_steps(20) && !given.failure());
     given.download(other.x, other.v);
@@ -220,7 +220,7 @@ TEST(FabricCoupling, ClothMovesThroughALineThatIsCut) {
   s.p.mesh.line_stiffness = {1e6};
   for (const int interval : {1, 8}) {
     s.p.contact.interval = interval;
-    FabricSolver<Space> solver(instance.space(), s.p);
+    FabricSolver<Space> solver(instance, s.p);
     Motions end{s.x, s.v};
     const auto middle_after = [&](int steps) {
       EXPECT_TRUE(solver.enqueue_steps(steps) && !solver.failure());
@@ -239,7 +239,7 @@ TEST(FabricCoupling, ClothMovesThroughALineThatIsCut) {
 Motions mounted_motions(Integrator integrator, Driver driver, const std::vector<std::int64_t>& cuts) {
   const device::Instance<Space> instance(1);
   const Parameters p = mounted_sheet(integrator, driver);
-  FabricSolver<Space, Mount> solver(instance.space(), p,
+  FabricSolver<Space, Mount> solver(instance, p,
                                     {on_device_points(instance.space(), p.mesh.rest), 20.0, 0.05});
   Motions now{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
   solver.upload(now.x, now.v);
@@ -278,7 +278,7 @@ TEST(FabricCoupling, RelaxesVelocitiesOncePerStepBetweenKickAndDrift) {
   p.integrator = Integrator::symplectic_euler;
   p.dt = 0.5;
   const Halving halving{decltype(Halving::steps)("steps", 2)};
-  FabricSolver<Space, Halving> solver(instance.space(), p, halving);
+  FabricSolver<Space, Halving> solver(instance, p, halving);
   Motions now{p.mesh.rest, {{1.0, 4.0, 0.0}, {1.0, 0.0, 0.0}}};
   solver.upload(now.x, now.v);
   solver.enqueue_steps(2);
@@ -294,14 +294,14 @@ TEST(FabricCoupling, RelaxesVelocitiesOncePerStepBetweenKickAndDrift) {
   EXPECT_EQ(taken(0), 2);
   for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
     p.integrator = integrator;
-    EXPECT_THROW((FabricSolver<Space, Halving>(instance.space(), p, halving)), std::invalid_argument);
+    EXPECT_THROW((FabricSolver<Space, Halving>(instance, p, halving)), std::invalid_argument);
   }
 }
 
 TEST(FabricCoupling, RejectsStepsThatDoNotExist) {
   const device::Instance<Space> instance(1);
   const Parameters p = mounted_sheet(Integrator::rk4, Driver::automatic);
-  FabricSolver<Space> solver(instance.space(), p);
+  FabricSolver<Space> solver(instance, p);
   solver.upload(p.mesh.rest, std::vector<Vector>(p.mass.size()));
   EXPECT_THROW(solver.enqueue_steps(-5), std::invalid_argument);
   EXPECT_THROW(solver.enqueue_steps(std::numeric_limits<std::int64_t>::max()), std::invalid_argument);
@@ -319,7 +319,7 @@ TEST(FabricCoupling, MassInAVertexForceSpringOscillates) {
     p.mass = {2.0, 2.0};
     p.integrator = integrator;
     p.dt = 1e-3;
-    FabricSolver<Space, Mount> solver(instance.space(), p,
+    FabricSolver<Space, Mount> solver(instance, p,
                                       {on_device_points(instance.space(), p.mesh.rest), 50.0, 0.0});
     Motions now{{{0.1, 0, 0}, {1, 0.2, 0}}, std::vector<Vector>(2)};
     solver.upload(now.x, now.v);
@@ -350,7 +350,7 @@ TEST(FabricCoupling, AnotherKernelWritesTheStateWithoutACopy) {
   for (const Integrator integrator : {Integrator::rk4, Integrator::verlet, Integrator::symplectic_euler}) {
     Parameters p = mounted_sheet(integrator, Driver::automatic);
     p.relative_damping = 0.5;  // with dashpots, Verlet's method alternates between two buffers of velocities
-    FabricSolver<Space> solver(space, p), other(space, p);
+    FabricSolver<Space> solver(instance, p), other(instance, p);
     Motions now{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
     solver.upload(now.x, now.v);
     const State<Space> state = solver.state();
@@ -397,7 +397,7 @@ TEST(FabricCoupling, MovesPayloadsFreelyAndPinsAtTheWrittenVelocity) {
     p.mass.push_back(20.0);
     p.pinned.push_back(0);
     for (const int corner : {0, 10, 88, 98}) p.mesh.lines.push_back({corner, payload});
-    FabricSolver<Space> solver(space, p);
+    FabricSolver<Space> solver(instance, p);
     Motions now{p.mesh.rest, std::vector<Vector>(p.mass.size(), Vector{})};
     solver.upload(now.x, now.v);
     // Anchors move with 2 m/s along x.
@@ -424,7 +424,7 @@ struct CoupledSheet {
   FabricSolver<Space, Mount> solver;
 
   CoupledSheet(const device::Instance<Space>& instance, const Parameters& p)
-      : solver(instance.space(), p, {on_device_points(instance.space(), p.mesh.rest), 20.0, 0.05}) {
+      : solver(instance, p, {on_device_points(instance.space(), p.mesh.rest), 20.0, 0.05}) {
     solver.upload(shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size()));
   }
 
@@ -484,7 +484,7 @@ void expect_failure_of_a_replay(Integrator integrator, Driver driver) {
   const Push burst{on_device_points(instance.space(), p.mesh.rest),
                    on_device_points(instance.space(), std::vector<Vector>(p.mass.size())),
                    postfix({20.6 * p.dt, "t", "-", "sqrt"})};
-  FabricSolver<Space, Push> solver(instance.space(), p, burst), direct(instance.space(), p, burst);
+  FabricSolver<Space, Push> solver(instance, p, burst), direct(instance, p, burst);
   const Motions start{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size())};
   for (FabricSolver<Space, Push>* each : {&solver, &direct}) each->upload(start.x, start.v);
   const device::CapturedGraph<Space> graph(instance, [&](const Space&) { solver.enqueue_steps(7); });

@@ -46,9 +46,9 @@ TEST(FabricFailure, ReportsTheFirstFailedStepAndItsLowestVertex) {
     v[20] = {0.0, -0.5e100, 0.0};         // overflows when 0.5 + 0.05 n reaches 1: at step 10
     v[83] = v[71] = {0.6e100, 0.0, 0.0};  // 0.6 + 0.06 n: at step 7
     solver->upload(x, v);
-    EXPECT_TRUE(solver->advance(6));
+    EXPECT_TRUE(solver->enqueue_steps(6));
     EXPECT_FALSE(solver->failure());
-    solver->advance(20);
+    solver->enqueue_steps(20);
     const std::optional<StepFailure> failure = solver->failure();
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->index, 71);
@@ -93,8 +93,8 @@ TEST(FabricFailure, RestoresTheLastCheckpoint) {
   for (const StepMethod& method : methods) {
     const Parameters p = patch_and_escaping_vertex(method);
     const auto solver = started(p);
-    solver->advance(700);
-    solver->advance(1700);
+    solver->enqueue_steps(700);
+    solver->enqueue_steps(1700);
     const std::optional<StepFailure> failure = solver->failure();
     ASSERT_TRUE(failure);
     const TimeState clock = solver->time_state();
@@ -104,18 +104,18 @@ TEST(FabricFailure, RestoresTheLastCheckpoint) {
     const State kept = state_of(*solver, p.mass.size());
     // A solver that stops at the checkpoint has the same bits.
     const auto stopped = started(p);
-    EXPECT_TRUE(stopped->advance(clock.step));
+    EXPECT_TRUE(stopped->enqueue_steps(clock.step));
     const State there = state_of(*stopped, p.mass.size());
     EXPECT_EQ(kept.x, there.x);
     EXPECT_EQ(kept.v, there.v);
     // The step before the failure still succeeds.
-    EXPECT_TRUE(stopped->advance(failure->step - 1 - clock.step));
+    EXPECT_TRUE(stopped->enqueue_steps(failure->step - 1 - clock.step));
     EXPECT_FALSE(stopped->failure());
-    EXPECT_FALSE(stopped->advance(1) && !stopped->failure());
+    EXPECT_FALSE(stopped->enqueue_steps(1) && !stopped->failure());
     EXPECT_EQ(stopped->failure()->index, failure->index);
     EXPECT_EQ(stopped->failure()->step, failure->step);
     // A failed solver takes no further steps.
-    EXPECT_FALSE(solver->advance(10));
+    EXPECT_FALSE(solver->enqueue_steps(10));
     EXPECT_EQ(solver->time_state().step, clock.step);
     EXPECT_EQ(state_of(*solver, p.mass.size()).x, kept.x);
   }
@@ -127,12 +127,12 @@ TEST(FabricFailure, UploadClearsTheFailure) {
   std::vector<Vector> x(100, Vector{}), v = x;
   v[3] = {0.9e100, 0.0, 0.0};
   solver->upload(x, v);
-  solver->advance(5);
+  solver->enqueue_steps(5);
   ASSERT_TRUE(solver->failure());
   v[3] = {1.0, 0.0, 0.0};
   solver->upload(x, v);
   EXPECT_FALSE(solver->failure());
-  EXPECT_TRUE(solver->advance(5));
+  EXPECT_TRUE(solver->enqueue_steps(5));
   solver->download(x, v);
   EXPECT_NEAR(x[3][0], 0.5, 1e-15);
 }
@@ -140,11 +140,11 @@ TEST(FabricFailure, UploadClearsTheFailure) {
 TEST(FabricFailure, KeepsTheTimeOfTheRestoredCheckpoint) {
   const Parameters p = patch_and_escaping_vertex({Integrator::rk4});
   const auto solver = started(p);
-  solver->advance(2400);
+  solver->enqueue_steps(2400);
   solver->set_dt(2e-3);
   EXPECT_EQ(solver->time_state().step, 768);
   EXPECT_NEAR(solver->time_state().time(), 0.768, 1e-13);
-  EXPECT_FALSE(solver->advance(1));
+  EXPECT_FALSE(solver->enqueue_steps(1));
 }
 
 TEST(FabricFailure, RejectsNonFiniteAndOverflowingStates) {
@@ -164,11 +164,11 @@ TEST(FabricTimeState, CountsStepsAndKeepsTimeWhenTheStepChanges) {
   const auto solver = create_solver(backend, free_vertices({Integrator::rk4}));
   std::vector<Vector> x(100, Vector{}), v(100, Vector{1.0, 0.0, 0.0});
   solver->upload(x, v);
-  solver->advance(5);
+  solver->enqueue_steps(5);
   EXPECT_EQ(solver->time_state().step, 5);
   EXPECT_NEAR(solver->time_state().time(), 0.5, 1e-15);
   solver->set_dt(0.25);
-  solver->advance(2);
+  solver->enqueue_steps(2);
   EXPECT_EQ(solver->time_state().step, 7);
   EXPECT_NEAR(solver->time_state().time(), 1.0, 1e-15);
   solver->download(x, v);

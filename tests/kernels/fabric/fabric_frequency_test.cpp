@@ -156,7 +156,7 @@ double growth(Parameters p, double dt) {
   std::vector<Vector> x = start, v(start.size(), Vector{});
   const auto solver = create_solver(backend, p);
   solver->upload(x, v);
-  if (!solver->advance(4000) || solver->failure()) return INFINITY;
+  if (!solver->enqueue_steps(4000) || solver->failure()) return INFINITY;
   solver->download(x, v);
   double most = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -213,7 +213,7 @@ TEST(FabricFrequency, GrowsWithStrain) {
   const std::vector<Vector> now = stretched(p.mesh.rest, 1.5, 1.5);
   solver->upload(now, std::vector<Vector>(now.size(), Vector{}));
   solver->set_dt(stability_limit(Integrator::rk4) / drawn);
-  EXPECT_TRUE(solver->advance(1000));
+  EXPECT_TRUE(solver->enqueue_steps(1000));
   EXPECT_FALSE(solver->failure());
 }
 

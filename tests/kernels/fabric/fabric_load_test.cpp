@@ -28,7 +28,7 @@ struct State {
 State moved(const Parameters& p, State state, std::int64_t steps) {
   const auto solver = create_solver(backend, p);
   solver->upload(state.x, state.v);
-  EXPECT_TRUE(solver->advance(steps));
+  EXPECT_TRUE(solver->enqueue_steps(steps));
   solver->download(state.x, state.v);
   return state;
 }
@@ -143,10 +143,10 @@ TEST(FabricLoad, TimeContinuesAcrossCallsAndStepChanges) {
   const auto solver = create_solver(backend, p);
   std::vector<Vector> x = still(1), v = x;
   solver->upload(x, v);
-  solver->advance(3);
-  solver->advance(5);
+  solver->enqueue_steps(3);
+  solver->enqueue_steps(5);
   solver->set_dt(0.25);
-  solver->advance(4);
+  solver->enqueue_steps(4);
   solver->download(x, v);
   EXPECT_NEAR(x[0][0], 8.0, 1e-14);
   EXPECT_NEAR(v[0][0], 12.0, 1e-14);
@@ -203,7 +203,7 @@ TEST(FabricDashpot, ConservesMomentaAndDissipatesEnergy) {
     const auto solver = create_solver(backend, p);
     solver->upload(shaken(p.mesh.rest, 0.1, 1), shaken(still(p.mass.size()), 1.0, 2));
     const Totals before = solver->totals();
-    EXPECT_TRUE(solver->advance(2000));
+    EXPECT_TRUE(solver->enqueue_steps(2000));
     const Totals after = solver->totals();
     EXPECT_LT(after.energy(), 0.5 * before.energy());
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -226,7 +226,7 @@ TEST(FabricDashpot, DecayAndFrequencyLimitTheStableStep) {
     p.dt = dt;
     const auto solver = create_solver(backend, p);
     solver->upload(p.mesh.rest, std::vector<Vector>{{0, 0, 0}, {1e-9, 0, 0}});
-    if (!solver->advance(600) || solver->failure()) return false;
+    if (!solver->enqueue_steps(600) || solver->failure()) return false;
     std::vector<Vector> x(2), v(2);
     solver->download(x, v);
     return std::abs(v[1][0] - v[0][0]) < 1e-8;
@@ -281,7 +281,7 @@ TEST(FabricLoad, SplitCallsGiveIdenticalBits) {
     const auto solver = create_solver(backend, p);
     State cut = initial_state(p);
     solver->upload(cut.x, cut.v);
-    for (const std::int64_t steps : {1, 0, 5, 250, 44}) solver->advance(steps);
+    for (const std::int64_t steps : {1, 0, 5, 250, 44}) solver->enqueue_steps(steps);
     solver->download(cut.x, cut.v);
     EXPECT_EQ(once.x, cut.x);
     EXPECT_EQ(once.v, cut.v);
@@ -294,13 +294,13 @@ TEST(FabricLoad, RestartsFromStateAndTimeWithIdenticalBits) {
     const auto first = create_solver(backend, p), second = create_solver(backend, p);
     State state = initial_state(p);
     first->upload(state.x, state.v);
-    first->advance(70);
+    first->enqueue_steps(70);
     first->set_dt(0.9e-4);
-    first->advance(80);
+    first->enqueue_steps(80);
     first->download(state.x, state.v);
     second->upload(state.x, state.v);
     second->set_time_state(first->time_state());
-    first->advance(150), second->advance(150);
+    first->enqueue_steps(150), second->enqueue_steps(150);
     State there = state;
     first->download(state.x, state.v);
     second->download(there.x, there.v);

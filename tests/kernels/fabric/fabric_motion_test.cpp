@@ -26,7 +26,7 @@ struct State {
 State moved(const Parameters& p, State state, std::int64_t steps) {
   const auto solver = create_solver(backend, p);
   solver->upload(state.x, state.v);
-  solver->advance(steps);
+  solver->enqueue_steps(steps);
   solver->download(state.x, state.v);
   return state;
 }
@@ -117,7 +117,7 @@ TEST(FabricMotion, VerletBoundsTheEnergyError) {
   solver->upload(start.x, start.v);
   double least = 1.0, most = 1.0;
   for (int k = 0; k < 100; ++k) {
-    solver->advance(1000);
+    solver->enqueue_steps(1000);
     State now = start;
     solver->download(now.x, now.v);
     const double energy_ratio = energy_of(p, now) / energy_of(p, start);

@@ -227,7 +227,7 @@ void expect_the_same_steps() {
   std::vector<Vector> x = start, v = still, other_x = start, other_v = still;
   const auto solver = create_solver(device::Backend::serial, p);
   solver->upload(x, v);
-  ASSERT_TRUE(solver->advance(7));
+  ASSERT_TRUE(solver->enqueue_steps(7));
   solver->download(x, v);
   EXPECT_GT(distance(x, start), 1e-5);
   for (const int count : {1, 3}) {
@@ -281,7 +281,7 @@ void expect_the_same_steps_under_loads() {
   std::vector<Vector> x = start, v = still;
   const auto solver = create_solver(device::Backend::serial, p);
   solver->upload(x, v);
-  ASSERT_TRUE(solver->advance(7));
+  ASSERT_TRUE(solver->enqueue_steps(7));
   solver->download(x, v);
   for (const int count : {1, 3}) {
     std::vector<Vector> other_x = start, other_v = still;
@@ -315,7 +315,8 @@ void expect_the_same_steps_under_a_vertex_force() {
   const std::vector<Vector> start = shaken(p.mesh.rest, 0.1, 1), still(p.mass.size(), Vector{});
   std::vector<Vector> x = start, v = still;
   const Spring spring{loads_of(p).external.rest};
-  FabricSolver<Space, Spring> solver(Space(), p, spring);
+  const device::Instance<Space> instance(1);
+  FabricSolver<Space, Spring> solver(instance, p, spring);
   solver.upload(x, v);
   solver.enqueue_steps(7);
   solver.download(x, v);
@@ -360,7 +361,8 @@ void expect_the_same_relaxed_steps() {
     return Relaxing{loads_of(p).external.rest, ListView<Space, double>("taken", n)};
   };
   const Relaxing used = relaxing();
-  FabricSolver<Space, Relaxing> solver(Space(), p, used);
+  const device::Instance<Space> instance(1);
+  FabricSolver<Space, Relaxing> solver(instance, p, used);
   solver.upload(x, v);
   solver.enqueue_steps(9);
   solver.download(x, v);

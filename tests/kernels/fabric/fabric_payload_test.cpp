@@ -58,7 +58,7 @@ TEST(FabricPayload, RestsAtTheStaticElongationOfItsLines) {
     std::vector<Vector> force(x.size());
     solver->forces(force);
     EXPECT_NEAR(force[i][2], 2.0 * gravity, 1e-12);
-    ASSERT_TRUE(solver->advance(1000) && !solver->failure());
+    ASSERT_TRUE(solver->enqueue_steps(1000) && !solver->failure());
     solver->download(x, v);
     for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(x[i][axis], equilibrium[axis], 1e-13);
   }
@@ -72,7 +72,7 @@ TEST(FabricPayload, OscillatesOnItsLinesWithTheFrequencyOfTheClosedForm) {
     std::vector<Vector> x = hung.parameters.mesh.rest, v(x.size());
     // A start at rest without tension gives an amplitude equal to the static elongation.
     solver->upload(x, v);
-    ASSERT_TRUE(solver->advance(1700) && !solver->failure());
+    ASSERT_TRUE(solver->enqueue_steps(1700) && !solver->failure());
     solver->download(x, v);
     const double omega = std::sqrt(hung.stiffness / 2.0), phase = omega * 1.7;
     const double exact = 2.5 - hung.elongation * (1.0 - std::cos(phase));
@@ -154,7 +154,7 @@ MomentumChange momentum_change(Integrator integrator, int steps) {
   v[i] = {0.3, -0.2, -1.0};  // pulls the lines taut
   solver->upload(x, v);
   const Totals before = solver->totals();
-  EXPECT_TRUE(solver->advance(steps) && !solver->failure());
+  EXPECT_TRUE(solver->enqueue_steps(steps) && !solver->failure());
   const Totals after = solver->totals();
   MomentumChange change;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -44,7 +44,7 @@ Errors errors(Integrator integrator, int steps) {
   const auto solver = create_solver(backend, p);
   std::vector<Vector> x = p.mesh.rest, v(2, Vector{});
   solver->upload(x, v);
-  EXPECT_TRUE(solver->advance(steps));
+  EXPECT_TRUE(solver->enqueue_steps(steps));
   solver->download(x, v);
   const double exact = 1.6 / 7.0 * (std::sin(3.0 * end) - 0.75 * std::sin(4.0 * end));
   return {std::abs(x[1][0] - 1.0 - exact), std::abs(x[0][0] - 0.1 * std::sin(3.0 * end)),
@@ -92,7 +92,7 @@ TEST(FabricPrescribed, PrescribesAxesIndependently) {
     const auto solver = create_solver(backend, p);
     std::vector<Vector> x = p.mesh.rest, v(x.size(), Vector{});
     solver->upload(x, v);
-    EXPECT_TRUE(solver->advance(50));
+    EXPECT_TRUE(solver->enqueue_steps(50));
     solver->download(x, v);
     for (const std::size_t i : {std::size_t{3}, std::size_t{4}}) {
       EXPECT_NEAR(x[i][0], p.mesh.rest[i][0] + 0.5 * p.mesh.rest[i][1], 1e-15);
@@ -113,7 +113,7 @@ TEST(FabricPrescribed, ReportsTheVertexOfANonFiniteMotion) {
     const auto solver = create_solver(backend, p);
     std::vector<Vector> x = p.mesh.rest, v(2, Vector{});
     solver->upload(x, v);
-    solver->advance(100);
+    solver->enqueue_steps(100);
     const auto failure = solver->failure();
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->index, 1);
@@ -128,7 +128,7 @@ TEST(FabricPrescribed, FailureBeforeTheFirstUploadReturnsToRest) {
     Parameters p = shaken_spring(integrator, 0.01);
     p.motions = {{0, {1}, postfix({-1.0, "sqrt"})}};
     const auto solver = create_solver(backend, p);
-    solver->advance(3);
+    solver->enqueue_steps(3);
     const auto failure = solver->failure();
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->step, 1);

@@ -35,9 +35,9 @@ Parameters patch(Integrator integrator) {
 std::int64_t launches_of(const Parameters& p) {
   const auto solver = create_solver(backend, p);
   solver->upload(shaken(p.mesh.rest, 0.1, 1), std::vector<Vector>(p.mass.size(), Vector{}));
-  EXPECT_TRUE(solver->advance(256));
+  EXPECT_TRUE(solver->enqueue_steps(256));
   const ProfilingCounters before = testing::profiled();
-  EXPECT_TRUE(solver->advance(1024));
+  EXPECT_TRUE(solver->enqueue_steps(1024));
   const ProfilingCounters after = testing::profiled();
   EXPECT_EQ(after.fences, before.fences);
   EXPECT_EQ(after.allocations, before.allocations);
@@ -67,7 +67,7 @@ TEST(FabricProfiling, RepeatedQueriesDoNotAllocate) {
   solver->upload(s.x, s.v);
   std::vector<ContactWork> work(s.x.size());
   const auto query = [&] {
-    EXPECT_TRUE(solver->advance(2));
+    EXPECT_TRUE(solver->enqueue_steps(2));
     EXPECT_GT(solver->totals().kinetic, 0.0);
     EXPECT_GT(solver->fastest_frequency(), 0.0);
     solver->download(s.x, s.v);
@@ -127,9 +127,9 @@ TEST(FabricProfiling, ContactOnlyLaunchesKernels) {
   testing::Sheets s = testing::folded(3.0);
   const auto solver = create_solver(backend, s.p);
   solver->upload(s.x, s.v);
-  EXPECT_TRUE(solver->advance(10));
+  EXPECT_TRUE(solver->enqueue_steps(10));
   const ProfilingCounters before = testing::profiled();
-  EXPECT_TRUE(solver->advance(100));
+  EXPECT_TRUE(solver->enqueue_steps(100));
   const ProfilingCounters after = testing::profiled();
   EXPECT_EQ(after.fences, before.fences);
   EXPECT_EQ(after.allocations, before.allocations);

@@ -72,13 +72,14 @@ TEST(FabricPulls, PeaksAreThoseOfAllStepsHoweverTheyAreTaken) {
       std::vector<PeakPull> expected(made.pulls.size());
       std::vector<Vector> x(made.positions.size()), v(x.size());
       for (int step = 1; step <= 400; ++step) {
-        observed->advance(1);
+        observed->enqueue_steps(1);
         observed->download(x, v);
         for (std::size_t k = 0; k < expected.size(); ++k)
           if (const double force = force_of(p, made.pulls[k], x); force > expected[k].force)
             expected[k] = {force, observed->time_state().time()};
       }
-      for (std::int64_t done = 0; done < 400; done += batch) solver->advance(std::min(batch, 400 - done));
+      for (std::int64_t done = 0; done < 400; done += batch)
+        solver->enqueue_steps(std::min(batch, 400 - done));
       const std::vector<PeakPull> peaks = solver->peak_pulls();
       ASSERT_EQ(peaks.size(), 3U);
       for (std::size_t k = 0; k < 2; ++k) {
@@ -101,7 +102,7 @@ TEST(FabricPulls, StartWithThePresentStateAndForgetLinesThatAreCut) {
   EXPECT_NEAR(solver->peak_pulls()[0].force, taut, 1e-12 * taut);
   solver->set_peak_pulls(std::vector<PeakPull>{{1e-3, 0.0}, {5.0, 0.25}, {}});
   solver->set_line_stiffness(std::vector<double>(3, 0.0));
-  solver->advance(50);
+  solver->enqueue_steps(50);
   EXPECT_EQ(solver->peak_pulls()[0].force, 1e-3);
   EXPECT_EQ(solver->peak_pulls()[1].force, 5.0);
   EXPECT_EQ(solver->peak_pulls()[1].time, 0.25);
@@ -115,7 +116,7 @@ TEST(FabricPulls, ForgetStepsThatAreRolledBack) {
   solver->upload(made.positions, made.velocities);
   solver->watch_pulls(made.pulls);
   const double taut = force_of(made.parameters, made.pulls[0], made.positions);
-  solver->advance(200);
+  solver->enqueue_steps(200);
   ASSERT_TRUE(solver->failure().has_value());
   std::vector<Vector> x(made.positions.size()), v(x.size());
   solver->download(x, v);

@@ -51,7 +51,7 @@ double drift(SingleStorage storage) {
   const Totals start = solver->totals();
   double largest = 0.0;
   for (int step = 0; step < 500; ++step) {
-    EXPECT_TRUE(solver->advance(1));
+    EXPECT_TRUE(solver->enqueue_steps(1));
     solver->download(s.x, s.v);
     round_state(storage, s);
     solver->upload(s.x, s.v);
