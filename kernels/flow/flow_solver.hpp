@@ -52,8 +52,10 @@ inline std::array<Boundary, 6> sides_of(const Parameters& parameters, const line
 ///
 /// On a group of several ranks each holds a box of the cells (`decompose`). All functions are then
 /// collective, every step waits for the host, and arrays are those of the rank (`part_of`).
+///
+/// Final functions are documented in `Solver`.
 template <class ExecutionSpace>
-class FlowSolver {
+class FlowSolver : public Solver {
  public:
   using Values = List<ExecutionSpace>;
 
@@ -123,24 +125,23 @@ class FlowSolver {
   /// `advance` ends. Does not throw.
   [[nodiscard]] const ControlView<ExecutionSpace>& control() const { return _control; }
 
-  /// The functions below are documented in `Solver`.
-  void upload(StateField field, std::span<const double> values);
-  void download(StateField field, std::span<double> values);
-  void start();
-  void restore(const Progress& progress);
-  Stop advance(double target, std::int64_t pause_step, const Poll& poll);
-  [[nodiscard]] Progress progress() { return read_control().now; }
-  [[nodiscard]] StepFailure failure();
-  [[nodiscard]] Totals totals();
-  [[nodiscard]] Extremes extremes() const { return _extremes ? _extremes->read(space()) : Extremes{}; }
-  void set_extremes(const Extremes& extremes) const {
+  void upload(StateField field, std::span<const double> values) final;
+  void download(StateField field, std::span<double> values) final;
+  void start() final;
+  void restore(const Progress& progress) final;
+  Stop advance(double target, std::int64_t pause_step, const Poll& poll) final;
+  [[nodiscard]] Progress progress() final { return read_control().now; }
+  [[nodiscard]] StepFailure failure() final;
+  [[nodiscard]] Totals totals() final;
+  [[nodiscard]] Extremes extremes() final { return _extremes ? _extremes->read(space()) : Extremes{}; }
+  void set_extremes(const Extremes& extremes) final {
     if (!_extremes) throw std::invalid_argument("flow solver: no extremes are watched");
     _extremes->write(space(), extremes);
   }
-  void sample(CellField field, std::span<double> values);
-  [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
-  [[nodiscard]] const char* pressure_solver() const { return _pressure_equation->name(); }
-  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const {
+  void sample(CellField field, std::span<double> values) final;
+  [[nodiscard]] const char* driver() const final { return stepping::driver_name(_launcher.driver()); }
+  [[nodiscard]] const char* pressure_solver() const final { return _pressure_equation->name(); }
+  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const final {
     return _pressure_equation->last_solve();
   }
 

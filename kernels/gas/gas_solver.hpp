@@ -22,28 +22,30 @@ namespace drogue::gas {
 /// of the two has an effect.
 ///
 /// All work is enqueued on the instance, which must outlive the solver; on CUDA it must have a stream of its
-/// own. Functions that `Solver` declares are documented in `Solver`.
+/// own. Final functions are documented in `Solver`.
 template <class ExecutionSpace>
-class GasSolver {
+class GasSolver : public Solver {
  public:
   /// Throws std::runtime_error if memory runs out.
   GasSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters);
 
-  void upload(std::int64_t first, const ConstConservedFields& fields);
-  void download(std::int64_t first, const ConservedFields& fields);
-  void start();
-  void restore(const RestartState& state);
-  Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows, const Poll& poll);
-  HistoryRow totals();
-  RestartState restart_state() { return read_control().restart; }
-  StepFailure failure() { return read_control().failure; }
-  std::int64_t limited_cells();
-  void download_limited_cells(std::int64_t first, std::span<std::uint8_t> cells);
-  void upload_limited_cells(std::int64_t first, std::span<const std::uint8_t> cells);
-  void begin_snapshot();
-  ConstConservedFields finish_snapshot();
-  [[nodiscard]] const char* driver() const;
-  [[nodiscard]] Tiling tiling() const;
+  void upload(std::int64_t first, const ConstConservedFields& fields) final;
+  void download(std::int64_t first, const ConservedFields& fields) final;
+  void start() final;
+  void restore(const RestartState& state) final;
+  Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows,
+               const Poll& poll) final;
+  HistoryRow totals() final;
+  RestartState restart_state() final { return read_control().restart; }
+  StepFailure failure() final { return read_control().failure; }
+  std::int64_t limited_cells() final;
+  void download_limited_cells(std::int64_t first, std::span<std::uint8_t> cells) final;
+  void upload_limited_cells(std::int64_t first, std::span<const std::uint8_t> cells) final;
+  void begin_snapshot() final;
+  ConstConservedFields finish_snapshot() final;
+  [[nodiscard]] PhaseTimes phase_times() const final { return {}; }
+  [[nodiscard]] const char* driver() const final;
+  [[nodiscard]] Tiling tiling() const final;
 
  private:
   using Memory = typename ExecutionSpace::memory_space;

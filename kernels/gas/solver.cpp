@@ -8,8 +8,7 @@
 
 namespace drogue::gas {
 
-// Defined in solver_adapter.hpp and baseline/baseline_solver.hpp, instantiated for each backend in
-// instances/.
+// Solvers on an execution-space instance of their own: instances/solver.cpp, for each backend.
 template <class ExecutionSpace>
 std::unique_ptr<Solver> make_solver(const Parameters& parameters);
 template <class ExecutionSpace>

@@ -8,8 +8,9 @@
 #include "kernels/device/instance.hpp"
 #include "kernels/device/pinned_memory.hpp"
 #include "kernels/device/stopwatch.hpp"
+#include "kernels/gas/gas_solver.hpp"
+#include "kernels/gas/host_threads.hpp"
 #include "kernels/gas/solver.hpp"
-#include "kernels/gas/solver_adapter.hpp"
 #include "kernels/gas/tile/tile_update.hpp"
 
 namespace drogue::gas {
@@ -269,11 +270,5 @@ class BaselineSolver final : public Solver {
   StepFailure _failure;
   PhaseTimes _phase_times;
 };
-
-/// Solver of the baseline method on `ExecutionSpace`. Throws as its constructor does.
-template <class ExecutionSpace>
-std::unique_ptr<Solver> make_baseline_solver(const Parameters& parameters) {
-  return std::make_unique<BaselineSolver<ExecutionSpace>>(parameters);
-}
 
 }  // namespace drogue::gas
