@@ -75,6 +75,13 @@ Communicator::~Communicator() {
   MPI_Finalize();
 }
 
+Communicator::Communicator(Alone) {}
+
+Communicator& Communicator::self() {
+  static Communicator alone{Alone()};
+  return alone;
+}
+
 void Communicator::send(int to, int tag, std::string bytes) {
   release_sent();
   Transfer& sending = *_sends.emplace_back(std::make_unique<Transfer>());
@@ -161,6 +168,23 @@ void Communicator::run_collectively(const std::function<void()>& action) {
     sentence = *words;
   }
   throw Failure(static_cast<ExitCode>(*failed), of_rank(sentence, rank));
+}
+
+void Communicator::run_on_root(const std::function<void()>& action) {
+  run_collectively([&] {
+    if (is_root()) action();
+  });
+}
+
+void Communicator::run_or_abort(const std::function<void()>& action) {
+  if (_size == 1) return action();
+  try {
+    action();
+  } catch (const Failure&) {
+    throw;
+  } catch (...) {
+    abort();
+  }
 }
 
 void Communicator::abort() {

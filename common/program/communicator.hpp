@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstring>
 #include <functional>
 #include <list>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace drogue {
@@ -22,6 +24,9 @@ class Communicator {
   ~Communicator();
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
+
+  /// This process alone, however many a launcher started. Does not throw.
+  [[nodiscard]] static Communicator& self();
 
   [[nodiscard]] int rank() const { return _rank; }
   [[nodiscard]] int size() const { return _size; }
@@ -44,9 +49,25 @@ class Communicator {
   /// Returns the bytes of rank 0 on every rank. Collective and blocking.
   [[nodiscard]] std::string broadcast(std::string bytes);
 
+  /// Returns the value of rank 0 on every rank. Collective and blocking.
+  template <class Value>
+  [[nodiscard]] Value broadcast(Value value) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    const std::string bytes = broadcast(std::string(reinterpret_cast<const char*>(&value), sizeof value));
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+
   /// Runs `action` on every rank. Collective; blocks until all ranks are done. If it throws on some ranks,
   /// all ranks throw the `Failure` of the lowest one, so that no rank waits for one that has given up.
   void run_collectively(const std::function<void()>& action);
+
+  /// Runs `action` on rank 0. Collective; blocks until it is done. All ranks throw the `Failure` of rank 0.
+  void run_on_root(const std::function<void()>& action);
+
+  /// Runs an action in which ranks communicate. An exception other than a `Failure`, which all ranks throw
+  /// alike, ends all ranks (`abort`), because the others wait for this one; a process alone throws it.
+  void run_or_abort(const std::function<void()>& action);
 
   /// Prints the exception that is being handled and ends all ranks with its exit code, where other ranks wait
   /// for this one. Call it in a catch block only.
@@ -54,6 +75,8 @@ class Communicator {
 
  private:
   struct Transfer;
+  struct Alone {};
+  explicit Communicator(Alone);
   void release_sent();
 
   int _rank = 0;

@@ -75,6 +75,7 @@ Failure current_failure() {
 }
 
 void print_notice(const std::string& program, const std::string& sentence) {
+  if (launched_rank().rank != 0) return;
   std::fflush(stdout);  // what was printed before stands before it, also where both go to one pipe
   std::fprintf(stderr, "%s: %s\n", program.c_str(), sentence.c_str());
 }

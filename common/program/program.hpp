@@ -13,7 +13,7 @@ namespace drogue {
 /// `io_error` with the first line of what(), so that every program ends with a documented exit code.
 Failure current_failure();
 
-/// Prints `program: sentence` on stderr, for a run that ends early without an exception. Does not throw.
+/// Prints `program: sentence` on stderr, under mpirun on rank 0 alone. Does not throw.
 void print_notice(const std::string& program, const std::string& sentence);
 
 /// Runs `body` and returns the exit code of the process. Prints an exception as one sentence on stderr:

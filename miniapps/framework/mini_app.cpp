@@ -15,32 +15,20 @@
 namespace drogue::framework {
 namespace {
 
-/// Ends the work of the other ranks with rank 0, however that ends.
-class EndOfRanks {
- public:
-  explicit EndOfRanks(Communicator& communicator) : _communicator(communicator) {}
-  ~EndOfRanks() { static_cast<void>(_communicator.broadcast({})); }
-  EndOfRanks(const EndOfRanks&) = delete;
-  EndOfRanks& operator=(const EndOfRanks&) = delete;
-
- private:
-  Communicator& _communicator;
-};
-
-ExitCode run_on_ranks(const MiniApp& app, const MiniAppOptions& options,
-                      const std::filesystem::path& folder) {
+ExitCode run_on_all_ranks(const MiniApp& app, const MiniAppOptions& options,
+                          const std::filesystem::path& folder) {
   Communicator communicator;
   install_signal_handlers();
-  if (!communicator.is_root()) {
-    try {
-      app.serve(communicator, options);
-    } catch (...) {
-      communicator.abort();
-    }
-    return ExitCode::ok;  // rank 0 has the code of the run
+  try {
+    std::filesystem::path file;
+    communicator.run_collectively([&] { file = scene::find_scene(options.scene, folder); });
+    const ExitCode code = run_scene(app, options, file, communicator);
+    return communicator.is_root() ? code : ExitCode::ok;
+  } catch (const Failure&) {
+    // All ranks throw the same failure; rank 0 reports it.
+    if (communicator.is_root()) throw;
+    return ExitCode::ok;
   }
-  const EndOfRanks end(communicator);
-  return run_scene(app, options, scene::find_scene(options.scene, folder), &communicator);
 }
 
 }  // namespace
@@ -63,12 +51,12 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
     std::cout << scene::list_text(scene::list_scenes(folder));
     return ExitCode::ok;
   }
-  const bool on_ranks = launched_rank().ranks > 1;
-  if (!app.serve) require_one_rank();
-  if (on_ranks && !options.study.empty())
-    throw Failure(ExitCode::usage, "--study runs on one rank, not " + std::to_string(launched_rank().ranks));
+  if (!app.runs_on_ranks) require_one_rank();
+  if (const int ranks = launched_rank().ranks; ranks > 1 && !options.study.empty())
+    throw Failure(ExitCode::usage, "--study runs on one rank, not " + std::to_string(ranks));
   run::h5::open_library();
-  if (on_ranks && !options.check && !options.print_scene) return run_on_ranks(app, options, folder);
+  if (options.study.empty() && !options.check && !options.print_scene)
+    return run_on_all_ranks(app, options, folder);
   const std::filesystem::path file = scene::find_scene(options.scene, folder);
   if (options.check || options.print_scene) {
     const std::unique_ptr<Scene> scene = app.read(file, options.set, options.baseline);
@@ -80,7 +68,6 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
     return ExitCode::ok;
   }
   install_signal_handlers();
-  if (options.study.empty()) return run_scene(app, options, file, nullptr);
   if (!app.study) throw Failure(ExitCode::usage, "this program has no --study");
   const ExitCode code = app.study(options, file);
   if (code == ExitCode::interrupted)

@@ -27,9 +27,7 @@ struct MiniApp {
   /// Runs `--study` on a scene file; empty: the program has no studies.
   std::function<ExitCode(const MiniAppOptions& options, const std::filesystem::path& file)> study = {};
 
-  /// Work of the ranks other than 0, until they receive the empty message that rank 0 broadcasts at its end;
-  /// empty: the program runs on one rank. Rank 0 runs scenes with `SimulationSettings::communicator`.
-  std::function<void(Communicator& communicator, const MiniAppOptions& options)> serve = {};
+  bool runs_on_ranks = false;  ///< scenes run on several ranks of MPI, without studies
 
   /// Groups of result.json that exist however the run ends.
   run::Metrics metrics = {};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 
 #include "common/program/progress.hpp"
@@ -56,14 +55,6 @@ class RunLoop {
     return !has_last && _restart_step != _now.step;
   }
 
-  /// Step of the restart.h5 from which the run continues in the same directory.
-  [[nodiscard]] std::optional<std::int64_t> continued_step() const {
-    std::error_code absent;
-    const bool is_here = std::filesystem::equivalent(_request.files.restart,
-                                                     _request.files.directory->file("restart.h5"), absent);
-    return is_here ? std::optional(_now.step) : std::nullopt;
-  }
-
   void describe_times() {
     const run::ResultDocument::WallTimes phases = _simulation.phases();
     run::ResultDocument::WallTimes& timing = _result.timing;
@@ -75,9 +66,9 @@ class RunLoop {
   [[nodiscard]] bool ended() const { return _stop == StopReason::interrupted || _stop == StopReason::failed; }
 
   void open_files() {
-    if (_request.files.directory != nullptr) {
+    if (!_request.files.directory.empty()) {
       _output.emplace(_simulation, _request.files);
-      _restart_step = continued_step();
+      if (_output->continues_restart_file()) _restart_step = _now.step;
     }
     if (_output && _output->lacks_row(_now.time)) _output->write_row(_simulation.row());
     if (_request.files.restart.empty() && is_output_time(_wanted, _now.time)) write_output_now();
@@ -154,15 +145,20 @@ class RunLoop {
 
 void set_up(Simulation& simulation, const RunFiles& files) {
   if (files.restart.empty()) return simulation.start();
-  const run::RestartReader reader(files.restart, files.fingerprint, files.describe_difference);
+  const run::RestartReader reader(files.restart, files.fingerprint, files.describe_difference,
+                                  files.communicator);
   simulation.restore(reader);
   const EndTime end = simulation.end_time();
   run::require_not_after(files.restart, simulation.now().time, end.key, end.time);
-  require_continuable(simulation, files);
+  files.communicator.run_on_root([&] { require_continuable(simulation, files); });
 }
 
 ExitCode run_to_end(Simulation& simulation, const RunRequest& request, run::ResultDocument& result) {
-  return RunLoop(simulation, request, result).run();
+  RunLoop loop(simulation, request, result);
+  ExitCode code = ExitCode::ok;
+  // Here, since the end of `loop` is collective.
+  request.files.communicator.run_or_abort([&] { code = loop.run(); });
+  return code;
 }
 
 }  // namespace drogue::framework

@@ -15,12 +15,13 @@ struct RunRequest {
   std::function<void()> at_output;
 };
 
-/// Sets the initial state, or the state of `files.restart`. Throws `Failure` (io_error) for a restart file
-/// that is damaged, belongs to another scene, or is later than the end of the run, and for files of the run
-/// directory that cannot be continued; it changes no file.
+/// Sets the initial state, or the state of `files.restart`. Collective. Throws `Failure` (io_error) for a
+/// restart file that is damaged, belongs to another scene, or is later than the end of the run, and for files
+/// of the run directory that cannot be continued; it changes no file.
 void set_up(Simulation& simulation, const RunFiles& files);
 
 /// Runs `simulation` to its end, writes the files of the run, and fills in `result`, also if it throws.
+/// Collective.
 /// Returns `interrupted` after a signal, with the restart file written; otherwise `ok`. Throws `Failure`:
 /// numerical_failure once the last good state is on disk, io_error.
 ExitCode run_to_end(Simulation& simulation, const RunRequest& request, run::ResultDocument& result);

@@ -34,33 +34,35 @@ run::ExistingRun existing_run(const MiniAppOptions& options, bool is_empty,
 class SceneRun {
  public:
   SceneRun(const MiniApp& app, const MiniAppOptions& options, const std::filesystem::path& file,
-           Communicator* communicator)
+           Communicator& communicator)
       : _app(app),
         _options(options),
         _file(file),
         _communicator(communicator),
         _out(options.out.empty() ? std::filesystem::path("out") / file.stem() : options.out),
-        _restart(options.restart.empty() ? std::filesystem::path()
-                                         : run::restart_source(options.restart, _out)),
-        _is_empty(!holds_results(_out)),
-        _directory(_out, existing_run(options, _is_empty, _restart)),
         _result(run::new_result(app.program(), file.stem().string())) {
     _result.metrics = app.metrics;
-    if (communicator != nullptr) _result.ranks = communicator->size();
+    _result.ranks = communicator.size();
+    communicator.run_on_root([&] {
+      if (!options.restart.empty()) _restart = run::restart_source(options.restart, _out);
+      _is_empty = !holds_results(_out);
+      _directory.emplace(_out, existing_run(options, _is_empty, _restart));
+    });
+    _restart = communicator.broadcast(_restart.string());
   }
 
   ExitCode run() {
     try {
-      execute();
+      _communicator.run_or_abort([&] { execute(); });
     } catch (...) {
       const Failure failure = current_failure();
-      record(failure);
+      if (_communicator.is_root()) record(failure);
       throw failure;
     }
     const bool is_interrupted = _result.exit_code == ExitCode::interrupted;
     if (is_interrupted)
       _result.message = "interrupted by a signal; restart.h5 is written, continue with --restart auto";
-    write_result();
+    if (_communicator.is_root()) write_result();
     if (!_options.quiet) print_summary();
     if (is_interrupted) print_notice(_app.program(), _result.message);
     return _result.exit_code;
@@ -69,50 +71,81 @@ class SceneRun {
  private:
   /// The run itself. Sets the exit code, `ok` or `interrupted`.
   void execute() {
-    const std::unique_ptr<Scene> scene = _app.read(_file, _options.set, _options.baseline);
-    const device::Backend backend = choose_backend(_options.backend, scene->useful_threads(_result.ranks));
+    std::unique_ptr<Scene> scene;
+    device::Backend backend{};
+    _communicator.run_collectively([&] {
+      scene = _app.read(_file, _options.set, _options.baseline);
+      backend = choose_backend(_options.backend, scene->useful_threads(_result.ranks));
+    });
+    backend = _communicator.broadcast(backend);  // bits may differ between backends
     const SceneIdentity identity = scene->identity();
     const RunFiles files{
-        .directory = &_directory,
+        .communicator = _communicator,
+        .directory = _out,
         .title = _result.scene,
         .fingerprint = fingerprint(identity),
         .restart = _restart,
         .describe_difference = [&](const std::string& restarted) { return difference(restarted, identity); }};
-    if (!_is_empty && !_options.restart.empty() && !_options.overwrite) require_same_scene(files.fingerprint);
-    const DeviceSession session(backend, _options.kokkos);
-    session.describe(_result);
+    const std::string printed = scene->print();
+    require_scene_of_root(printed + files.fingerprint);
+    _communicator.run_on_root([&] {
+      if (!_is_empty && !_options.restart.empty() && !_options.overwrite)
+        require_same_scene(files.fingerprint);
+    });
+    std::optional<DeviceSession> session;
+    _communicator.run_collectively([&] {
+      require_backend(backend);
+      session.emplace(backend, _options.kokkos);
+    });
+    session->describe(_result);
     if (!_options.quiet) {
       for (const std::string& notice : scene->notices()) print_notice(_app.program(), notice);
-      session.print_shared_cores(_app.program());
+      session->print_shared_cores(_app.program());
     }
     _result.precision = scene->precision();
-    const std::unique_ptr<Simulation> simulation =
-        scene->create({backend, _options.baseline, _options.quiet, _communicator});
+    std::unique_ptr<Simulation> simulation;
+    _communicator.run_collectively([&] {
+      simulation = scene->create({backend, _options.baseline, _options.quiet, _communicator});
+    });
     set_up(*simulation, files);
-    require_not_finished_later(simulation->end_time());
-    begin_directory();
-    _directory.write_scene(scene->print());
+    _communicator.run_on_root([&] {
+      require_not_finished_later(simulation->end_time());
+      begin_directory();
+      _directory->write_scene(printed);
+    });
     _result.timing.setup_s = _stopwatch.seconds() - simulation->phases().phases();
     _result.exit_code = run_to_end(*simulation, {files, _options.quiet, true, {}}, _result);
     if (_result.exit_code != ExitCode::ok) return;
     {
       const ScopedStopwatch stopwatch(_result.timing.verify_s);
-      if (const std::vector<HistoryCheck> checks = scene->history_checks(); !checks.empty())
-        add_history_checks(checks, run::read_history(_directory.file("history.csv")), _result);
-      _result.exit_code = simulation->verify(&_directory, _result);
+      _communicator.run_on_root([&] {
+        if (const std::vector<HistoryCheck> checks = scene->history_checks(); !checks.empty())
+          add_history_checks(checks, run::read_history(_directory->file("history.csv")), _result);
+      });
+      _result.exit_code = simulation->verify(_directory ? &*_directory : nullptr, _result);
       if (_result.exit_code == ExitCode::interrupted) _result.checks.clear();  // it lacks others
     }
     if (!_options.quiet)
       for (const std::string& warning : _result.warnings) print_notice(_app.program(), warning);
-    if (_result.exit_code == ExitCode::interrupted)
-      write_restart_file(_directory.file("restart.h5"), files.fingerprint, *simulation);
-    if (const std::string failed = _result.failed_check(); !failed.empty())
-      throw Failure(ExitCode::verification_failed, failed);
+    if (_result.exit_code == ExitCode::interrupted) write_restart_file(*simulation, files);
+    _communicator.run_on_root([&] {
+      if (const std::string failed = _result.failed_check(); !failed.empty())
+        throw Failure(ExitCode::verification_failed, failed);
+    });
+  }
+
+  /// Ranks that read different scenes, say from disks of their own, would wait for each other.
+  void require_scene_of_root(const std::string& mine) {
+    const std::string roots = _communicator.broadcast(mine);
+    _communicator.run_collectively([&] {
+      if (mine != roots)
+        throw Failure(ExitCode::io_error, "the scene '" + _file.string() + "' is not the one of rank 0");
+    });
   }
 
   void begin_directory() {
     std::string names;
-    for (const std::string& name : _directory.begin()) names += (names.empty() ? "" : ", ") + name;
+    for (const std::string& name : _directory->begin()) names += (names.empty() ? "" : ", ") + name;
     if (!names.empty() && !_options.restart.empty())
       print_notice(_app.program(), "the run continues, and its former pictures are removed: " + names +
                                        "; drogue-plot draws them again");
@@ -168,16 +201,16 @@ class SceneRun {
   /// untouched, and so does a restart file that is refused; result.json states the refusal where none is.
   void record(const Failure& failure) {
     const bool refused_restart = !_restart.empty() && failure.code() == ExitCode::io_error &&
-                                 !std::filesystem::exists(_directory.file("result.json"));
+                                 !std::filesystem::exists(_directory->file("result.json"));
     run::record_failure(_result, failure, [&] {
-      if (_is_empty || _directory.begun() || refused_restart) write_result();
+      if (_is_empty || _directory->begun() || refused_restart) write_result();
     });
     if (failure.code() == ExitCode::verification_failed && !_options.quiet) print_summary();
   }
 
   void write_result() {
     _result.timing.wall_s = _stopwatch.seconds();
-    run::write_result(_directory.file("result.json"), _result);
+    run::write_result(_directory->file("result.json"), _result);
   }
 
   void print_summary() const {
@@ -196,18 +229,19 @@ class SceneRun {
   const MiniApp& _app;
   const MiniAppOptions& _options;
   const std::filesystem::path& _file;
-  Communicator* _communicator;
+  Communicator& _communicator;
   const Stopwatch _stopwatch;
-  const std::filesystem::path _out, _restart;
-  const bool _is_empty;
-  run::RunDirectory _directory;
+  const std::filesystem::path _out;
+  std::filesystem::path _restart;
+  bool _is_empty = false;                       ///< on rank 0
+  std::optional<run::RunDirectory> _directory;  ///< on rank 0
   run::ResultDocument _result;
 };
 
 }  // namespace
 
 ExitCode run_scene(const MiniApp& app, const MiniAppOptions& options, const std::filesystem::path& file,
-                   Communicator* communicator) {
+                   Communicator& communicator) {
   return SceneRun(app, options, file, communicator).run();
 }
 

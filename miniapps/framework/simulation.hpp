@@ -61,7 +61,8 @@ using Poll = std::function<bool(const SimulationTime&)>;
 using FieldsTask = std::function<void(run::FieldSink&)>;
 
 /// One run of a scene, from its start or a restart file to its end. Every function blocks until its result is
-/// on the host. Every function may throw `Failure`.
+/// on the host. Every function may throw `Failure`. On several ranks all call the same functions, of which
+/// all but `now`, `phases`, `write_mesh` and those that describe outputs are collective.
 class Simulation {
  public:
   Simulation() = default;
@@ -127,16 +128,17 @@ class Simulation {
   [[nodiscard]] virtual run::ResultDocument::WallTimes phases() const { return {}; }
 
   /// Computes errors and adds the checks of the scene's [verify]. `directory` holds the files of the run;
-  /// null if the run writes none. Returns `interrupted` after a signal, otherwise `ok`, also if checks fail.
+  /// null if the run writes none and on ranks other than 0, whose checks do not count. Returns `interrupted`
+  /// after a signal, otherwise `ok`, also if checks fail.
   virtual ExitCode verify(const run::RunDirectory*, run::ResultDocument&) { return ExitCode::ok; }
 };
 
 /// Settings of a simulation that stand on the command line.
 struct SimulationSettings {
   device::Backend backend = device::Backend::serial;
-  bool baseline = false;                 ///< algorithm of [Shi], with its host-device copies
-  bool quiet = false;                    ///< no progress line
-  Communicator* communicator = nullptr;  ///< of several ranks; null: one rank
+  bool baseline = false;  ///< algorithm of [Shi], with its host-device copies
+  bool quiet = false;     ///< no progress line
+  Communicator& communicator = Communicator::self();
 };
 
 /// A scene that was read and checked, with every default filled in.

@@ -9,7 +9,6 @@
 #include "kernels/mesh/quality.hpp"
 #include "miniapps/framework/metrics.hpp"
 #include "miniapps/framework/typed_scene.hpp"
-#include "miniapps/parachute/parallel/serve.hpp"
 #include "miniapps/parachute/scene/scene_keys.hpp"
 #include "miniapps/parachute/simulation/cloth_simulation.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
@@ -75,7 +74,7 @@ framework::MiniApp mini_app() {
   app.has_baseline = true;
   app.read = read;
   app.study = run_study;
-  app.serve = serve;
+  app.runs_on_ranks = true;
   framework::set_no_limiter(app.metrics);
   return app;
 }

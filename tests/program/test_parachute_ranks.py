@@ -32,6 +32,16 @@ class RanksTest(parachute_program.FlowTest):
         self.addCleanup(process.kill)
         return process
 
+    def begin_each(self, *lines):
+        """A rank for each command line."""
+        words = [LAUNCHER, "--oversubscribe"]
+        for line in lines:
+            words += [*([":"] if len(words) > 2 else []), "-n", "1", PROGRAM, *map(str, line)]
+        process = subprocess.Popen(list(map(str, words)), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   stdin=subprocess.DEVNULL, text=True, env=RANK_ENVIRONMENT)
+        self.addCleanup(process.kill)
+        return process
+
     def end(self, process):
         """Exit code, the lines of the program on stderr (mpirun adds others after a failure), and stdout."""
         output, errors = process.communicate(timeout=120)
@@ -174,6 +184,46 @@ class Failures(RanksTest):
         self.assertIn("cavitty", self.run_on(2, 2, "cavitty"))
         self.assertIn(".toml:2", self.run_on(3, 2, self.write('app = "parachute"\nwrong = 1\n'), *QUIET))
         self.assertIn("one rank", self.run_on(2, 2, self.write(VORTICES), *QUIET, "--study", "meshes=8:16"))
+
+    def test_reports_what_one_rank_alone_cannot_read(self):
+        """Each rank reads the scene, as on hosts with disks of their own."""
+        scene, broken = self.write(VORTICES), self.folder / "broken.toml"
+        broken.write_text('app = "parachute"\nwrong = 1\n')
+        other = self.folder / "other.toml"
+        other.write_text(scene.read_text().replace("end_time = ", "end_time = 1"))
+        for code, file, words in ((2, "absent.toml", "absent.toml"), (3, broken, ".toml:2"), (6, other, "is not the one of rank 0")):
+            with self.subTest(words):
+                options = (*QUIET, "--out", "out")
+                ended = self.end(self.begin_each((scene, *options), (file, *options)))
+                self.assertEqual((code, 1), (ended[0], len(ended[1])), ended)
+                self.assertIn(words, ended[1][0])
+                self.assertIn("(on rank 1)", ended[1][0])
+                self.assertFalse((self.folder / "out" / "history.csv").exists())
+
+    def test_refuses_a_run_directory_on_all_ranks(self):
+        scene = self.write(VORTICES)
+        (self.folder / "file").write_text("")
+        self.assertIn("cannot create the run directory", self.run_on(6, 2, scene, *QUIET, "--out", "file/out"))
+        self.run_on(0, 2, scene, *QUIET, "--out", "out")
+        before = (self.folder / "out" / "result.json").read_text()
+        self.assertIn("already holds a run", self.run_on(2, 2, scene, *QUIET, "--out", "out"))
+        self.assertIn("does not exist", self.run_on(2, 2, scene, *QUIET, "--out", "new", "--restart", "absent.h5"))
+        self.assertEqual(before, (self.folder / "out" / "result.json").read_text())
+
+    def test_reports_a_damaged_restart_file_once(self):
+        scene = self.write(VORTICES)
+        self.run_on(0, 2, scene, *QUIET, "--out", "out", sets=["output.restart_every=1"])
+        with open(self.folder / "out" / "restart.h5", "r+b") as file:
+            file.seek(-1, os.SEEK_END)
+            byte = file.read(1)
+            file.seek(-1, os.SEEK_END)
+            file.write(bytes([byte[0] ^ 1]))
+        self.assertIn("it is damaged", self.run_on(6, 2, scene, *QUIET, "--out", "out", "--restart", "auto"))
+
+    def test_reports_a_failed_check_once(self):
+        sentence = self.run_on(5, 2, self.write(VORTICES), *QUIET, "--out", "out", sets=["verify.l2_velocity=1e-30"])
+        self.assertIn("l2_velocity", sentence)
+        self.assertEqual("verification-failed", self.result("out")["status"])
 
     def test_refuses_more_ranks_than_the_grid_has_room_for(self):
         sentence = self.run_on(2, 4, self.write(VORTICES), *QUIET, "--out", "out", sets=["grid.cells=[16, 8, 1]"])

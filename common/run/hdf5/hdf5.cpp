@@ -58,6 +58,18 @@ Handle select_rows(const Handle& dataset, std::uint64_t first, std::uint64_t cou
   return space;
 }
 
+/// As `select_rows`, of a dataset with one dimension.
+Handle select_blocks(const Handle& dataset, const Blocks& blocks, std::size_t entries) {
+  const hsize_t first = blocks.first, length = blocks.length, count = blocks.count, stride = blocks.stride;
+  const std::vector<std::uint64_t> extent = shape(dataset);
+  if (extent.size() != 1 || length * count != entries || first + (count - 1) * stride + length > extent[0])
+    throw Failure(ExitCode::io_error, "blocks of a dataset must be within it");
+  Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "access", dataset.id());
+  if (H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, &stride, &count, &length) < 0)
+    fail("access", dataset.id());
+  return space;
+}
+
 Handle memory_space(const Handle& dataset, std::size_t count) {
   const hsize_t size = count;
   return checked(H5Screate_simple(1, &size, nullptr), H5Sclose, "access", dataset.id());
@@ -235,10 +247,18 @@ void write(const Handle& dataset, std::uint64_t first, std::span<const std::int6
   write_values(dataset, H5T_NATIVE_INT64, first, values.data(), values.size());
 }
 
-void read(const Handle& dataset, std::uint64_t first, std::span<double> values) {
+void write(const Handle& dataset, const Blocks& blocks, std::span<const double> values) {
+  const Lock lock;
+  const Handle selection = select_blocks(dataset, blocks, values.size());
+  const Handle memory = memory_space(dataset, values.size());
+  if (H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), selection.id(), H5P_DEFAULT, values.data()) < 0)
+    fail("write", dataset.id());
+}
+
+void read(const Handle& dataset, const Blocks& blocks, std::span<double> values) {
   const Lock lock;
   if (values.empty()) return;
-  const Handle selection = select_rows(dataset, first, values.size());
+  const Handle selection = select_blocks(dataset, blocks, values.size());
   const Handle memory = memory_space(dataset, values.size());
   if (H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), selection.id(), H5P_DEFAULT, values.data()) < 0) {
     fail("read", dataset.id());

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/run/hdf5/blocks.hpp"
+
 namespace drogue::run::h5 {
 
 /// The little of HDF5 that run directories need. Every call may be made from any thread (the library itself
@@ -83,7 +85,10 @@ std::uint64_t offset(const Handle& dataset);
 /// Entries [first, first + values.size()) in row-major order, whole rows of the first dimension.
 void write(const Handle& dataset, std::uint64_t first, std::span<const double> values);
 void write(const Handle& dataset, std::uint64_t first, std::span<const std::int64_t> values);
-void read(const Handle& dataset, std::uint64_t first, std::span<double> values);
+
+/// All entries of blocks of a dataset with one dimension.
+void write(const Handle& dataset, const Blocks& blocks, std::span<const double> values);
+void read(const Handle& dataset, const Blocks& blocks, std::span<double> values);
 
 void write_attribute(const Handle& object, const std::string& name, double value);
 void write_attribute(const Handle& object, const std::string& name, std::int64_t value);

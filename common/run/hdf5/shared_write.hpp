@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -10,6 +12,10 @@ namespace drogue::run {
 /// Part of a row-major array: extent of the whole, and begin and extent of the part along each dimension.
 struct ArrayPart {
   std::vector<std::uint64_t> whole, begin, extent;
+
+  [[nodiscard]] std::size_t entries() const {
+    return std::accumulate(extent.begin(), extent.end(), std::size_t{1}, std::multiplies<>());
+  }
 };
 
 /// Writes the parts that all ranks hold of one array of doubles to an existing file, from byte `offset` on,

@@ -8,6 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "common/program/communicator.hpp"
+#include "common/run/hdf5/blocks.hpp"
+
 namespace drogue::run {
 
 /// 16 hexadecimal digits that identify a text; equal on every machine.
@@ -26,9 +29,13 @@ using DescribeDifference = std::function<std::string(const std::string& fingerpr
 /// `scene` is the fingerprint of everything that must agree between the writing and the reading run. All
 /// functions throw `Failure` (io_error). One thread at a time may call them, also another thread than the
 /// constructor's.
+///
+/// On several ranks rank 0 writes, and the functions of the others do nothing. None communicates but
+/// commit(), which is collective and throws the first failure of rank 0 on all ranks.
 class RestartWriter {
  public:
-  RestartWriter(std::filesystem::path file, const std::string& scene);
+  RestartWriter(const std::filesystem::path& file, const std::string& scene,
+                Communicator& communicator = Communicator::self());
   ~RestartWriter();
   RestartWriter(const RestartWriter&) = delete;
   RestartWriter& operator=(const RestartWriter&) = delete;
@@ -40,6 +47,7 @@ class RestartWriter {
   /// Declares an array of `size` doubles; write() fills it in pieces.
   void array(const std::string& name, std::uint64_t size);
   void write(const std::string& name, std::uint64_t first, std::span<const double> values);
+  void write(const std::string& name, const Blocks& blocks, std::span<const double> values);
 
   /// Adds the checksum, syncs the file and renames it to its final name.
   void commit();
@@ -52,10 +60,14 @@ class RestartWriter {
 /// Reads a restart file. The constructor verifies every byte first. Throws `Failure` (io_error), with the
 /// fault, for a truncated or damaged file and for another format version or scene, how that differs
 /// according to `describe_difference`.
+///
+/// On several ranks, rank 0 verifies the file, and all read from it. Functions are collective, and throw on
+/// all ranks what one throws.
 class RestartReader {
  public:
   RestartReader(const std::filesystem::path& file, const std::string& scene,
-                const DescribeDifference& describe_difference = {});
+                const DescribeDifference& describe_difference = {},
+                Communicator& communicator = Communicator::self());
   ~RestartReader();
   RestartReader(const RestartReader&) = delete;
   RestartReader& operator=(const RestartReader&) = delete;
@@ -67,6 +79,8 @@ class RestartReader {
 
   /// Reads entries [first, first + values.size()) of an array.
   void read(const std::string& name, std::uint64_t first, std::span<double> values) const;
+  /// Reads blocks of an array; each rank may give others.
+  void read(const std::string& name, const Blocks& blocks, std::span<double> values) const;
 
  private:
   struct State;

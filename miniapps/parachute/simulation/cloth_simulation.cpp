@@ -49,7 +49,7 @@ ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::Simula
       _cuts(_sheets.cuts, _sheets.fabric),
       // It takes a kernel of each step.
       _peaks(scene.canopies.size(), !scene.verify.peak_forces.empty()) {
-  if (settings.communicator != nullptr)
+  if (settings.communicator.size() > 1)
     throw Failure(ExitCode::usage, "scenes without [fluid] run on one rank");
   _solver = fabric::create_solver(settings.backend, fabric_parameters(scene, _sheets));
 }

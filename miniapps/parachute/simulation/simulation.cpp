@@ -70,6 +70,8 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
 
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
     : _scene(scene),
+      _communicator(settings.communicator),
+      _parts(scene.parameters, _communicator.size() > 1 ? linear::RankGroup::world() : linear::RankGroup()),
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
                               scene.parameters.viscosity, scene.flags)),
       _airstream(scene),
@@ -77,24 +79,21 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
       _grids(grids_beside_canopies(scene, _sheets)),
       _statistics(scene.parameters.watches_extremes),
       _peaks(scene.canopies.size(), scene.has_sheets()) {
-  if (settings.communicator != nullptr) {
-    if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
-      throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
-    auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend,
-                                                 coupled_parameters(scene, _sheets));
-    _shared = shared.get();
-    if (scene.has_sheets()) _coupled = shared.get();
-    _solver = std::move(shared);
-  } else if (scene.has_sheets()) {
-    auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene, _sheets));
-    _coupled = coupled.get();
-    _solver = std::move(coupled);
-  } else {
-    _solver = flow::create_solver(settings.backend, scene.parameters);
-  }
+  const linear::RankGroup& group = _parts.group();
+  if (group.size() > 1 && scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
+    throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
+  with_usage_error([&] {  // for ranks that cannot share the grid
+    if (scene.has_sheets()) {
+      auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene, _sheets), group);
+      _coupled = coupled.get();
+      _solver = std::move(coupled);
+    } else {
+      _solver = flow::create_solver(settings.backend, scene.parameters, group);
+    }
+  });
   for (const Body& body : scene.bodies) _inside.emplace_back(body, scene.parameters);
   if (_coupled != nullptr) _peaks.watch(*_coupled, _sheets);
-  if (_shared != nullptr) return;
+  if (group.size() > 1) return;
   for (Snapshot& snapshot : _snapshots)
     for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));
 }
@@ -103,12 +102,8 @@ void Simulation::start() {
   const ScopedStopwatch stopwatch(_h2d_s);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string& velocity = _scene.initial_velocity()[axis];
-    if (_shared != nullptr) {
-      _shared->upload(axis, velocity);
-      continue;
-    }
     const flow::StateField field = velocity_field(axis);
-    _solver->upload(field, evaluate(SpaceTimeFunction(velocity), lattice_of(_scene.parameters, field), 0.0));
+    _solver->upload(field, evaluate(SpaceTimeFunction(velocity), _parts.lattice(field), 0.0));
   }
   if (_coupled != nullptr)
     _coupled->upload_cloth(_sheets.positions, std::vector<fabric::Vector>(_sheets.positions.size()));
@@ -217,7 +212,7 @@ void Simulation::sample_flow_field(CellField field, std::span<double> values) {
 }
 
 framework::FieldsTask Simulation::snapshot() {
-  if (_shared != nullptr)
+  if (_parts.group().size() > 1)
     return [this](run::FieldSink& fields) {
       for (const std::string& name : _scene.output.fields)
         if (is_canopy_field(name)) {
@@ -225,9 +220,11 @@ framework::FieldsTask Simulation::snapshot() {
           sample_canopy_field(name, values);
           fields.write("canopy/" + name, 0, values);
         } else {
+          const run::ArrayPart part = _parts.cells(field_spec(name, _scene.parameters.cells).shape);
+          std::vector<double> values(part.entries());
+          sample_flow_field(cell_field(name), values);
           const run::FieldPlace place = fields.place(name);
-          _shared->write(cell_field(name), place.offset, std::filesystem::absolute(place.file).string());
-          require_converged_pressure(cell_field(name));
+          run::write_parts(place.file, place.offset, part, values);
         }
       for (const SheetGrid& grid : _grids) {
         if (!grid.moves) continue;

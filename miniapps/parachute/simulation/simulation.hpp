@@ -8,8 +8,8 @@
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/parachute/bodies/inside_fluid.hpp"
 #include "miniapps/parachute/canopy/image_watch.hpp"
-#include "miniapps/parachute/parallel/rank_solver.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
+#include "miniapps/parachute/simulation/grid_parts.hpp"
 #include "miniapps/parachute/simulation/history_columns.hpp"
 #include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/verify/peak_pulls.hpp"
@@ -38,14 +38,15 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
   void write_mesh(run::FieldSink& fields) const override;
   [[nodiscard]] std::size_t snapshot_buffers() const override { return _snapshots.size(); }
-  [[nodiscard]] bool writes_on_calling_thread() const override { return _shared != nullptr; }
+  [[nodiscard]] bool writes_on_calling_thread() const override { return _parts.group().size() > 1; }
   [[nodiscard]] framework::FieldsTask snapshot() override;
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;
   [[nodiscard]] run::ResultDocument::WallTimes phases() const override;
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
-  /// Errors against the exact solution of the scene at the present time, by the names of the tolerances.
+  /// Errors against the exact solution of the scene at the present time, by the names of the tolerances. On
+  /// several ranks collective.
   /// Throws std::bad_optional_access without an exact solution.
   [[nodiscard]] std::map<std::string, double> error_norms();
 
@@ -60,6 +61,7 @@ class Simulation final : public framework::Simulation {
 
   [[nodiscard]] bool meets_image();
   void sample_fields(Snapshot& snapshot);
+  [[nodiscard]] std::vector<double> download_whole(flow::StateField field);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
   [[nodiscard]] std::vector<fabric::Vector> body_forces();
@@ -90,13 +92,14 @@ class Simulation final : public framework::Simulation {
   void read_coupling(const run::RestartReader& reader);
 
   const FlowScene& _scene;
+  Communicator& _communicator;
+  GridParts _parts;
   Sheets _sheets;
   Airstream _airstream;
   ImageWatch _images;
   std::optional<std::string> _met_image;  ///< what has ended the run
   std::vector<InsideFluid> _inside;       ///< of each body
   std::vector<SheetGrid> _grids;          ///< in fields.h5, beside flow and canopies
-  SharedSolver* _shared = nullptr;        ///< `_solver` on several ranks
   coupling::Solver* _coupled = nullptr;   ///< `_solver` with bodies or canopies
   std::unique_ptr<flow::Solver> _solver;
   RunStatistics _statistics;

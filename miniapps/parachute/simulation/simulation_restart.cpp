@@ -87,10 +87,12 @@ void Simulation::write_restart(run::RestartWriter& writer) {
   if (_coupled != nullptr) write_coupling(writer);
   std::vector<double> values;
   for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
-    values.resize(flow::state_size(_scene.parameters, field));
+    values.resize(_parts.lattice(field).size());
     _solver->download(field, values);
-    writer.array(array_name(field), values.size());
-    writer.write(array_name(field), 0, values);
+    writer.array(array_name(field), flow::state_size(_scene.parameters, field));
+    _parts.collect(field, values, [&](const run::Blocks& blocks, std::span<const double> part) {
+      writer.write(array_name(field), blocks, part);
+    });
   }
 }
 
@@ -104,8 +106,8 @@ void Simulation::restore(const run::RestartReader& reader) {
       });
   std::vector<double> values;
   for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
-    values.resize(flow::state_size(_scene.parameters, field));
-    reader.read(array_name(field), 0, values);
+    values.resize(_parts.lattice(field).size());
+    reader.read(array_name(field), _parts.blocks(field), values);
     _solver->upload(field, values);
   }
   _solver->restore(progress);

@@ -63,12 +63,10 @@ std::pair<double, double> SampledLine::maximum(double sign) const {
   return {_first + (static_cast<double>(top) + offset) * _spacing, value};
 }
 
-SampledLine sample_line(flow::Solver& solver, const flow::Parameters& parameters, const Profile& profile) {
+SampledLine sample_line(std::span<const double> all, const flow::Parameters& parameters,
+                        const Profile& profile) {
   const auto along = static_cast<std::size_t>(profile.along);
-  const flow::StateField field = velocity_field(static_cast<std::size_t>(profile.component));
-  const Lattice lattice = lattice_of(parameters, field);
-  std::vector<double> all(lattice.size());
-  solver.download(field, all);
+  const Lattice lattice = lattice_of(parameters, velocity_field(static_cast<std::size_t>(profile.component)));
   const std::size_t stride[] = {
       1, static_cast<std::size_t>(lattice.n[0]),
       static_cast<std::size_t>(lattice.n[0]) * static_cast<std::size_t>(lattice.n[1])};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -27,8 +28,9 @@ class SampledLine {
   std::vector<double> _values;
 };
 
-/// Velocity component along the line of a profile, m/s, linearly interpolated across the line.
-[[nodiscard]] SampledLine sample_line(flow::Solver& solver, const flow::Parameters& parameters,
+/// Velocity component along the line of a profile, m/s, linearly interpolated across the line. `all`: its
+/// array of the state, m/s.
+[[nodiscard]] SampledLine sample_line(std::span<const double> all, const flow::Parameters& parameters,
                                       const Profile& profile);
 
 }  // namespace drogue::parachute_app

@@ -76,18 +76,32 @@ void check_curves(const Verify& wanted, const run::History& history, run::Result
 
 }  // namespace
 
+/// An array of the state of the whole grid on rank 0, nothing on others. Collective.
+std::vector<double> Simulation::download_whole(flow::StateField field) {
+  std::vector<double> own(_parts.lattice(field).size());
+  _solver->download(field, own);
+  return _parts.whole(field, std::move(own));
+}
+
 std::map<std::string, double> Simulation::error_norms() {
   const flow::Parameters& p = _scene.parameters;
   const ExactSolution& exact = _scene.verify.exact.value();
   const double time = _solver->progress().time;
-  std::vector<double> values;
+  // Rank 0 adds up, so that the sums do not depend on the number of ranks.
+  const auto sums_of = [&](const std::vector<double>& values, const std::string& wanted,
+                           flow::StateField field, bool up_to_constant) {
+    ErrorSums sums;
+    _communicator.run_on_root([&] {
+      const Lattice lattice = lattice_of(p, field);
+      sums = errors_of(values, evaluate(SpaceTimeFunction(wanted), lattice, time), lattice, p.cells,
+                       up_to_constant);
+    });
+    return _communicator.broadcast(sums);
+  };
   std::map<std::string, double> norms = {{"l1_velocity", 0.0}, {"l2_velocity", 0.0}, {"linf_velocity", 0.0}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Lattice lattice = lattice_of(p, velocity_field(axis));
-    values.resize(lattice.size());
-    _solver->download(velocity_field(axis), values);
-    const std::vector<double> wanted = evaluate(SpaceTimeFunction(exact.velocity[axis]), lattice, time);
-    const ErrorSums sums = errors_of(values, wanted, lattice, p.cells, false);
+    const flow::StateField field = velocity_field(axis);
+    const ErrorSums sums = sums_of(download_whole(field), exact.velocity[axis], field, false);
     norms["l1_velocity"] += sums.absolute / sums.volume;
     norms["l2_velocity"] += sums.square / sums.volume;
     double& largest = norms["linf_velocity"];
@@ -97,17 +111,16 @@ std::map<std::string, double> Simulation::error_norms() {
   if (exact.pressure.empty()) return norms;
   const bool up_to_constant = std::ranges::none_of(
       p.boundary, [](const flow::Boundary& side) { return side.kind == flow::BoundaryKind::outflow; });
-  const Lattice cells = lattice_of(p, flow::StateField::pressure);
-  std::vector<double> sampled(cells.size());
+  const Lattice cells = _parts.lattice(flow::StateField::pressure);
+  std::vector<double> sampled(cells.size()), own(cells.size());
   sample_flow_field(flow::CellField::pressure, sampled);  // z fastest
-  values.resize(cells.size());
-  const auto nx = static_cast<std::size_t>(p.cells[0]), ny = static_cast<std::size_t>(p.cells[1]),
-             nz = static_cast<std::size_t>(p.cells[2]);
+  const auto nx = static_cast<std::size_t>(cells.n[0]), ny = static_cast<std::size_t>(cells.n[1]),
+             nz = static_cast<std::size_t>(cells.n[2]);
   for (std::size_t i = 0; i < nx; ++i)
     for (std::size_t j = 0; j < ny; ++j)
-      for (std::size_t k = 0; k < nz; ++k) values[i + nx * (j + ny * k)] = sampled[(i * ny + j) * nz + k];
-  const ErrorSums sums = errors_of(values, evaluate(SpaceTimeFunction(exact.pressure), cells, time), cells,
-                                   p.cells, up_to_constant);
+      for (std::size_t k = 0; k < nz; ++k) own[i + nx * (j + ny * k)] = sampled[(i * ny + j) * nz + k];
+  const ErrorSums sums = sums_of(_parts.whole(flow::StateField::pressure, std::move(own)), exact.pressure,
+                                 flow::StateField::pressure, up_to_constant);
   norms["l1_pressure"] = sums.absolute / sums.volume;
   norms["l2_pressure"] = std::sqrt(sums.square / sums.volume);
   norms["linf_pressure"] = sums.largest;
@@ -139,7 +152,10 @@ void Simulation::check_profiles(run::ResultDocument& result) {
   for (std::size_t i = 0; i < _scene.verify.profiles.size(); ++i) {
     const Profile& profile = _scene.verify.profiles[i];
     const std::string name = "profile_" + std::to_string(i);
-    const SampledLine line = sample_line(*_solver, _scene.parameters, profile);
+    const std::vector<double> all =
+        download_whole(velocity_field(static_cast<std::size_t>(profile.component)));
+    if (all.empty()) continue;  // the checks of rank 0 count
+    const SampledLine line = sample_line(all, _scene.parameters, profile);
     if (!profile.points.empty()) {
       double largest = 0.0;
       for (const auto& [where, value] : profile.points) {
@@ -167,9 +183,11 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
   }
   if (wanted.divergence || wanted.momentum || wanted.needs_extremes()) check_totals(result);
   if (_coupled != nullptr) _peaks.update(*_coupled);
-  const run::History rows = checked_rows(wanted, directory);
-  check_canopies(wanted, _peaks, rows, result);
-  check_curves(wanted, rows, result);
+  _communicator.run_on_root([&] {
+    const run::History rows = checked_rows(wanted, directory);
+    check_canopies(wanted, _peaks, rows, result);
+    check_curves(wanted, rows, result);
+  });
   check_profiles(result);
   return ExitCode::ok;
 }

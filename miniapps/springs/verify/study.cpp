@@ -40,7 +40,7 @@ ExitCode run_once(const SpringsScene& scene, device::Backend backend, const run:
   const bool first = runs.samples.empty();
   Simulation simulation(scene, {backend, false, true});
   framework::RunRequest request;
-  request.files.directory = &directory;
+  request.files.directory = directory.path();
   request.files.title = scene.name;
   request.quiet = true;
   request.keeps_restart = false;

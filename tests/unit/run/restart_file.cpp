@@ -52,6 +52,25 @@ TEST(RestartFile, RestoresEveryBit) {
   EXPECT_EQ(values, state());
 }
 
+TEST(RestartFile, WritesAndReadsBlocks) {
+  const TemporaryDirectory directory;
+  const Blocks even{0, 2, 3, 4}, odd{2, 2, 3, 4};
+  const std::vector<double> first = {0, 1, 4, 5, 8, 9}, second = {2, 3, 6, 7, 10, 11};
+  RestartWriter writer(directory / "restart.h5", scene);
+  writer.array("U", 12);
+  writer.write("U", odd, second);
+  writer.write("U", even, first);
+  EXPECT_NE(failure_of(ExitCode::io_error, [&] { writer.write("U", {4, 2, 3, 4}, first); }), "");
+  writer.commit();
+  const RestartReader reader(directory / "restart.h5", scene);
+  std::vector<double> whole(12), ascending(12), part(6);
+  std::iota(ascending.begin(), ascending.end(), 0.0);
+  reader.read("U", 0, whole);
+  reader.read("U", odd, part);
+  EXPECT_EQ(whole, ascending);
+  EXPECT_EQ(part, second);
+}
+
 TEST(RestartFile, NamesAMissingEntry) {
   const TemporaryDirectory directory;
   write_restart(directory / "restart.h5", 1.0);

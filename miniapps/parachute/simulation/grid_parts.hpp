@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "common/run/hdf5/blocks.hpp"
+#include "common/run/hdf5/shared_write.hpp"
+#include "kernels/flow/halo/decomposition.hpp"
+#include "kernels/linear/parallel/rank_group.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+
+namespace drogue::parachute_app {
+
+/// Parts of the arrays of a flow that ranks hold; a process alone holds all of them.
+class GridParts {
+ public:
+  GridParts(const flow::Parameters& parameters, linear::RankGroup group)
+      : _parameters(parameters), _group(std::move(group)) {}
+
+  [[nodiscard]] const linear::RankGroup& group() const { return _group; }
+
+  /// Points of this rank's part. Does not throw.
+  [[nodiscard]] Lattice lattice(flow::StateField field) const;
+
+  /// Place of this rank's part in the whole array. Does not throw.
+  [[nodiscard]] run::Blocks blocks(flow::StateField field) const { return blocks(field, _group.rank()); }
+
+  /// This rank's part of a dataset of that shape, in the order of `flow::Solver::sample`. Throws only
+  /// std::bad_alloc.
+  [[nodiscard]] run::ArrayPart cells(const std::vector<std::uint64_t>& shape) const;
+
+  /// Passes the parts of all ranks to `take` on rank 0, one after the other. `own` is this rank's part, and
+  /// room for others on rank 0. `take` must not throw on several ranks. Collective.
+  void collect(flow::StateField field, std::vector<double>& own,
+               const std::function<void(const run::Blocks&, std::span<const double>)>& take) const;
+
+  /// The whole array on rank 0, nothing on others. Collective.
+  [[nodiscard]] std::vector<double> whole(flow::StateField field, std::vector<double> own) const;
+
+ private:
+  [[nodiscard]] linear::CellBox box(flow::StateField field, int rank) const {
+    return flow::part_of(_parameters, flow::ranks_of(_parameters, _group.size(), rank), field);
+  }
+  [[nodiscard]] run::Blocks blocks(flow::StateField field, int rank) const;
+
+  const flow::Parameters& _parameters;
+  linear::RankGroup _group;
+};
+
+}  // namespace drogue::parachute_app
