@@ -89,7 +89,7 @@ struct CoupledCase {
   /// Solver on a backend at the start of the case.
   [[nodiscard]] std::unique_ptr<coupling::Solver> solver(device::Backend backend) const {
     auto solver = coupling::create_solver(backend, p);
-    solver->upload_cloth(x, v);
+    solver->fabric().upload(x, v);
     solver->start();
     return solver;
   }
@@ -118,12 +118,11 @@ inline CoupledCase taut_strip(int nx, int ny, double spacing, double dt, int wav
 struct ClothState {
   std::map<std::string, std::vector<double>> arrays;  ///< by their names
   std::vector<double> force;                          ///< of the vertices on the air, N
-  coupling::BlockProgress block;
-  coupling::FrameMotion frame;
+  coupling::Progress progress;
 };
 
 inline ClothState cloth_state(coupling::Solver& solver) {
-  ClothState state{{}, {}, solver.block(), solver.frame()};
+  ClothState state{{}, {}, solver.progress()};
   const auto read = [&](const std::string& name, std::size_t size, std::vector<double>& values) {
     values.resize(size);
     solver.download(name, values);
@@ -137,32 +136,30 @@ inline ClothState cloth_state(coupling::Solver& solver) {
   return state;
 }
 
-/// Restores it, after `Solver::restore`.
+/// Restores it, after the arrays of the flow.
 inline void restore_cloth(coupling::Solver& solver, const ClothState& state) {
   for (const auto& [name, values] : state.arrays) solver.upload(name, values);
-  solver.set_block(state.block);
-  solver.set_frame(state.frame);
+  solver.restore(state.progress);
 }
 
 /// State of cloth and flow on the host.
 struct CoupledState : ClothState {
   std::vector<std::vector<double>> flow;  ///< arrays of `flow::state_fields`
-  flow::Progress progress;
 };
 
 inline CoupledState coupled_state(const CoupledCase& c, coupling::Solver& solver) {
-  CoupledState state{cloth_state(solver), {}, solver.progress()};
+  CoupledState state{cloth_state(solver), {}};
   for (const flow::StateField field : flow::state_fields(c.p.flow)) {
     state.flow.emplace_back(flow::state_size(c.p.flow, field));
-    solver.download(field, state.flow.back());
+    solver.flow().download(field, state.flow.back());
   }
   return state;
 }
 
 inline void restore(const CoupledCase& c, const CoupledState& state, coupling::Solver& solver) {
   std::size_t k = 0;
-  for (const flow::StateField field : flow::state_fields(c.p.flow)) solver.upload(field, state.flow[k++]);
-  solver.restore(state.progress);
+  for (const flow::StateField field : flow::state_fields(c.p.flow))
+    solver.flow().upload(field, state.flow[k++]);
   restore_cloth(solver, state);
 }
 
@@ -172,8 +169,8 @@ struct CoupledRun {
 
   /// Takes steps of the flow; false after a failure.
   bool advance(std::int64_t steps) {
-    const std::int64_t end = solver->progress().step + steps;
-    return solver->advance(1e9, end, {}) == flow::Stop::pause && solver->progress().step == end;
+    const std::int64_t end = solver->progress().flow.step + steps;
+    return solver->advance(1e9, end, {}) == flow::Stop::pause && solver->progress().flow.step == end;
   }
 
   /// Sum of the forces of the sheet on the air in the last step, N.

@@ -18,6 +18,7 @@
 #include "kernels/coupling/total_force.hpp"
 #include "kernels/device/stopwatch.hpp"
 #include "kernels/fabric/peak_pulls.hpp"
+#include "kernels/fabric/points_transfer.hpp"
 
 namespace drogue::coupling {
 
@@ -35,8 +36,8 @@ struct CompletedFlowStep {
 
 /// Cloth in incompressible flow on the caller's instance of an execution space. Each step of the flow holds
 /// several steps of the cloth by the symplectic Euler method and one exchange of impulses (`CoupledStep`), so
-/// that the forces on the air and on the cloth are equal and opposite to round-off. `Solver` is the facade
-/// over it for programs that choose the backend at run time.
+/// that the forces on the air and on the cloth are equal and opposite to round-off. Final functions are
+/// documented in `Solver`.
 ///
 /// Steps of a block have the same dt, which the host chooses from the present speed of the air and frequency
 /// of the cloth: within a block, no step waits for the host, copies to it or allocates. A block ends early
@@ -49,7 +50,7 @@ struct CompletedFlowStep {
 /// Functions are then collective, except those that only return values of the cloth, and every step waits for
 /// the host.
 template <class ExecutionSpace>
-class CoupledSolver {
+class CoupledSolver : public Solver {
  public:
   using Flow = typename CoupledStep<ExecutionSpace>::Flow;
   using Fabric = typename CoupledStep<ExecutionSpace>::Fabric;
@@ -77,48 +78,42 @@ class CoupledSolver {
     if (_frame.follows()) _flow.check_frame(_parameters.follow.axes);
   }
 
-  /// The parts. Does not throw.
-  [[nodiscard]] Flow& flow() { return _flow; }
-  [[nodiscard]] const Flow& flow() const { return _flow; }
-  [[nodiscard]] Fabric& fabric() { return _fabric; }
-  [[nodiscard]] const Fabric& fabric() const { return _fabric; }
-
-  /// As the functions of `Solver`.
-  void start();
-  void restore(const flow::Progress& progress);
-  flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll);
-  [[nodiscard]] BlockProgress block() const { return _plan.block(); }
-  void set_block(const BlockProgress& block) {
-    _plan.set(block);
-    _fabric.set_time_state(_plan.cloth_time());
+  [[nodiscard]] Flow& flow() final { return _flow; }
+  [[nodiscard]] Fabric& fabric() final { return _fabric; }
+  void start() final;
+  void restore(const Progress& progress) final;
+  flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll) final;
+  [[nodiscard]] Progress progress() final { return {_flow.progress(), _plan.block(), _frame.motion()}; }
+  [[nodiscard]] StepFailure failure() final {
+    const FailureReason reason = _step.reason();
+    return {reason, reason == FailureReason::line ? _step.failed_line() : -1, _cloth_failure};
   }
-  [[nodiscard]] FrameMotion frame() const { return _frame.motion(); }
-  void set_frame(const FrameMotion& frame);
-  [[nodiscard]] FailureReason failure_reason() const { return _step.reason(); }
-  [[nodiscard]] int failed_line() const { return _step.failed_line(); }
-  [[nodiscard]] const std::optional<fabric::StepFailure>& cloth_failure() const { return _cloth_failure; }
-  [[nodiscard]] std::vector<stepping::StateArray> state() const { return _step.state().arrays(); }
-  void upload(std::string_view name, std::span<const double> values) {
+  [[nodiscard]] std::vector<stepping::StateArray> state() const final { return _step.state().arrays(); }
+  void upload(std::string_view name, std::span<const double> values) final {
     _step.state().upload(_space, name, values);
-    _step.renew();
   }
-  void download(std::string_view name, std::span<double> values) const {
+  void download(std::string_view name, std::span<double> values) final {
     _step.state().download(_space, name, values);
   }
-  void watch_pulls(std::span<const fabric::Pull> pulls) {
-    _pulls = fabric::PeakPulls<ExecutionSpace>(_space, _parameters.fabric.mesh, _cuts.stiffness(), pulls);
-  }
-  [[nodiscard]] std::vector<fabric::PeakPull> peak_pulls() const { return _pulls.peaks(_space); }
-  void set_peak_pulls(std::span<const fabric::PeakPull> peaks) const { _pulls.set_peaks(_space, peaks); }
-  [[nodiscard]] std::array<double, 3> total_force_on_air() const {
+  [[nodiscard]] std::array<double, 3> total_force_on_air() final {
     std::array<double, 3> force =
         _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
     _group.sum(force);
     return force;
   }
-  /// Velocity of the air at the present positions of all vertices, (vertices, 3), m/s, valid until the next
-  /// step. On one rank asynchronous. Throws only after a failed kernel.
+  void air_velocity(std::span<fabric::Vector> at_vertices) final {
+    if (at_vertices.size() != static_cast<std::size_t>(_fabric.vertices()))
+      throw std::invalid_argument("coupled solver: there must be one vector per vertex");
+    _reader.read(_space, air_velocity(), at_vertices);
+  }
+  /// The same on the device, (vertices, 3), m/s, valid until the next step. On one rank asynchronous. Throws
+  /// only after a failed kernel.
   [[nodiscard]] const Vectors& air_velocity() const { return _step.air_velocity(); }
+  void watch_pulls(std::span<const fabric::Pull> pulls) final {
+    _pulls = fabric::PeakPulls<ExecutionSpace>(_space, _parameters.fabric.mesh, _cuts.stiffness(), pulls);
+  }
+  [[nodiscard]] std::vector<fabric::PeakPull> peak_pulls() final { return _pulls.peaks(_space); }
+  void set_peak_pulls(std::span<const fabric::PeakPull> peaks) final { _pulls.set_peaks(_space, peaks); }
 
  private:
   static Parameters with_coupling_settings(Parameters p) {
@@ -138,7 +133,7 @@ class CoupledSolver {
     if (p.flow.horizon > 0.0 && p.flow.motion.empty()) p.flow.motion = vertex_motion(p);
     return p;
   }
-  void forget_steps();
+  void set_frame(const FrameMotion& frame);
   /// Gives the lines their stiffness after the cuts so far. Blocks.
   void set_lines() {
     const std::vector<double> stiffness = _cuts.stiffness();
@@ -176,6 +171,7 @@ class CoupledSolver {
   MovingFrame<ExecutionSpace> _frame;
   LineCuts _cuts;
   fabric::PeakPulls<ExecutionSpace> _pulls;
+  fabric::PointsReader<ExecutionSpace> _reader;
   std::optional<fabric::StepFailure> _cloth_failure;  ///< of the last step that failed by its cloth
 };
 
@@ -183,27 +179,26 @@ template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::start() {
   if (_frame.follows()) set_frame({});
   _flow.start();
-  forget_steps();
+  _plan.set({});
+  _cloth_failure.reset();
+  _step.start();
   if (_cuts.restart_at(0.0)) set_lines();
   _pulls.set_peaks(_space, std::vector<fabric::PeakPull>(_pulls.size()));
   record_pulls();
 }
 
 template <class ExecutionSpace>
-void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
-  _flow.restore(progress);
-  forget_steps();
-  if (_cuts.restart_at(progress.time)) set_lines();
-  // Bodies in prescribed motion are where they are at this time.
-  _plan.count_cloth_time_from(progress.time);
-  _fabric.set_time_state(_plan.cloth_time());
-}
-
-template <class ExecutionSpace>
-void CoupledSolver<ExecutionSpace>::forget_steps() {
-  _plan.set({});
+void CoupledSolver<ExecutionSpace>::restore(const Progress& progress) {
+  // First: it forgets a failure, after which the fabric would return to its checkpoint.
+  _step.renew();
+  _step.restore();
   _cloth_failure.reset();
-  _step.reset();
+  _flow.restore(progress.flow);
+  set_frame(progress.frame);
+  if (_cuts.restart_at(progress.flow.time)) set_lines();
+  _plan.set(progress.block);
+  // Bodies in prescribed motion are where they are at this time.
+  _fabric.set_time_state(_plan.cloth_time());
 }
 
 template <class ExecutionSpace>
@@ -323,7 +318,7 @@ bool CoupledSolver<ExecutionSpace>::cloth_has_failed() {
 /// True if the flow has stopped because the dt of the block exceeds the stability limit of the next step.
 template <class ExecutionSpace>
 bool CoupledSolver<ExecutionSpace>::needs_shorter_steps(const flow::Progress& now) {
-  return _parameters.flow.fixed_dt == 0.0 && failure_reason() == FailureReason::flow &&
+  return _parameters.flow.fixed_dt == 0.0 && _step.reason() == FailureReason::flow &&
          _flow.failure().reason == flow::FailureReason::time_step && _flow.largest_dt(now) < _plan.block().dt;
 }
 

@@ -154,12 +154,14 @@ class CoupledStep {
   }
 
   /// Forgets former steps and failures. Blocks.
-  void reset() const {
+  void start() const {
     _sheet.forget_steps(_space);
-    Kokkos::deep_copy(_space, _sheet.transfer().counts, TransferCounts{});
-    _strength.reset(_space);
-    Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
-    set_reason(FailureReason::flow);
+    forget_failures();
+  }
+  /// The same with an array of the state that has been restored.
+  void restore() const {
+    _sheet.forget_force(_space);
+    forget_failures();
   }
 
   /// Reason of the last failure, and the number in the mesh of the first line that was too weak. Block.
@@ -183,6 +185,12 @@ class CoupledStep {
     Kokkos::deep_copy(_space, value, view);
     _space.fence("drogue::coupling::read");
     return value;
+  }
+  void forget_failures() const {
+    Kokkos::deep_copy(_space, _sheet.transfer().counts, TransferCounts{});
+    _strength.reset(_space);
+    Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
+    set_reason(FailureReason::flow);
   }
   void save() const {
     device::launch_each(_space, "drogue::coupling::save_state", _fabric.vertices(),

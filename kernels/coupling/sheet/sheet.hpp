@@ -59,9 +59,14 @@ class Sheet {
   /// sheets to that of what drives the air. Does not throw.
   void forget_steps(const ExecutionSpace& space) const {
     _state.clear(space);
-    Kokkos::deep_copy(space, _force, 0.0);
+    forget_force(space);
     for (const ClosingSheet& sheet : _parameters.closing) set_driving(space, sheet);
     update_acceleration(space);
+  }
+
+  /// Sets the force to zero unless it is a part of the state. Does not throw.
+  void forget_force(const ExecutionSpace& space) const {
+    if (!_air.is_explicit()) Kokkos::deep_copy(space, _force, 0.0);
   }
 
   /// Enqueues what a change of the state makes necessary. Throws only after a failed kernel.

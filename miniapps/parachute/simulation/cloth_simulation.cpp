@@ -112,7 +112,7 @@ std::int64_t ClothSimulation::steps_to_event(const framework::AdvanceLimits& lim
 /// Takes steps and adapts the length of the next batch. Returns false if the state was lost.
 bool ClothSimulation::take_steps(std::int64_t steps) {
   const Stopwatch stopwatch;
-  _solver->advance(steps);
+  _solver->enqueue_steps(steps);
   _failure = _solver->failure();
   const double seconds = stopwatch.seconds();
   if (seconds < 0.5 * longest_batch_s && steps == _batch) _batch *= 2;

@@ -38,7 +38,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
     writer.write(array.name, 0, values);
   }
   _peaks.write(writer, *_coupled);
-  const coupling::BlockProgress block = _coupled->block();
+  const auto [flow, block, frame] = _coupled->progress();
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
   writer.integer("block_end", block.end);
@@ -46,7 +46,6 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   writer.integer("block_since", block.since);
   writer.number("block_start", block.start);
   if (_scene.frame != Frame::follow) return;
-  const coupling::FrameMotion frame = _coupled->frame();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     writer.number(std::string("frame_velocity_") + axis_names[axis], frame.velocity[axis]);
     writer.number(std::string("frame_start_") + axis_names[axis], frame.start[axis]);
@@ -54,28 +53,26 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   writer.number("frame_since", frame.since);
 }
 
-void Simulation::read_coupling(const run::RestartReader& reader) {
+void Simulation::read_coupling(const run::RestartReader& reader, coupling::Progress& progress) {
   std::vector<double> values;
   for (const stepping::StateArray& array : _coupled->state()) {
     values.resize(array.size());
     reader.read(array.name, 0, values);
     _coupled->upload(array.name, values);
   }
-  _peaks.read(reader, *_coupled);
-  _coupled->set_block({.dt = reader.number("block_dt"),
-                       .substeps = reader.integer("block_substeps"),
-                       .end = reader.integer("block_end"),
-                       .cloth_step = reader.integer("block_cloth_step"),
-                       .since = reader.integer("block_since"),
-                       .start = reader.number("block_start")});
+  progress.block = {.dt = reader.number("block_dt"),
+                    .substeps = reader.integer("block_substeps"),
+                    .end = reader.integer("block_end"),
+                    .cloth_step = reader.integer("block_cloth_step"),
+                    .since = reader.integer("block_since"),
+                    .start = reader.number("block_start")};
   if (_scene.frame != Frame::follow) return;
-  coupling::FrameMotion frame;
+  coupling::FrameMotion& frame = progress.frame;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     frame.velocity[axis] = reader.number(std::string("frame_velocity_") + axis_names[axis]);
     frame.start[axis] = reader.number(std::string("frame_start_") + axis_names[axis]);
   }
   frame.since = reader.number("frame_since");
-  _coupled->set_frame(frame);
 }
 
 void Simulation::write_restart(run::RestartWriter& writer) {
@@ -98,9 +95,9 @@ void Simulation::write_restart(run::RestartWriter& writer) {
 
 void Simulation::restore(const run::RestartReader& reader) {
   const ScopedStopwatch stopwatch(_h2d_s);
-  flow::Progress progress;
+  coupling::Progress progress;
   visit(
-      progress, [&](const std::string& name, double& value) { value = reader.number(name); },
+      progress.flow, [&](const std::string& name, double& value) { value = reader.number(name); },
       [&](const std::string& name, auto& value) {
         value = std::bit_cast<std::remove_reference_t<decltype(value)>>(reader.integer(name));
       });
@@ -110,9 +107,14 @@ void Simulation::restore(const run::RestartReader& reader) {
     reader.read(array_name(field), _parts.blocks(field), values);
     _solver->upload(field, values);
   }
-  _solver->restore(progress);
+  if (_coupled != nullptr) {
+    read_coupling(reader, progress);
+    _coupled->restore(progress);
+    _peaks.read(reader, *_coupled);
+  } else {
+    _solver->restore(progress.flow);
+  }
   _statistics.read(reader, *_solver);
-  if (_coupled != nullptr) read_coupling(reader);
   static_cast<void>(_solver->totals());
   sample_fields(_snapshots[0]);
 }

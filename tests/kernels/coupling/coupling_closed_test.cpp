@@ -51,7 +51,7 @@ void move_along_x(CoupledCase& c, const device::ExpressionProgram& displacement)
 }
 
 double mean_velocity(const CoupledCase& c, CoupledRun& run) {
-  return run.solver->totals().momentum[0] / (mass(c) * section(c));
+  return run.solver->flow().totals().momentum[0] / (mass(c) * section(c));
 }
 
 TEST(ClosingSheets, TakeTheStepsOfTheWholeChannel) {
@@ -99,7 +99,7 @@ TEST(ClosingSheets, CarryTheFluidOfALongChannel) {
     for (int step = 1; step <= 60; ++step) {
       ASSERT_TRUE(run.advance(1));
       std::vector<Vector> x(c.x.size()), v(c.x.size());
-      run.solver->download_cloth(x, v);
+      run.solver->fabric().download(x, v);
       const double dt = c.p.flow.fixed_dt, velocity = v[0][0];
       EXPECT_NEAR(velocity, amplitude * omega * std::cos(omega * step * dt), 1e-6) << step;
       EXPECT_NEAR(mean_velocity(c, run), velocity, 1e-12) << step;
@@ -122,7 +122,7 @@ TEST(ClosingSheets, ObeyTheLawAtOnceWhereTheFlowRateIsPrescribed) {
       c.p.flow.boundary[1].velocity = {1.0, 0.0, 0.0};
       CoupledRun run(c);
       std::vector<double> one(flow::state_size(c.p.flow, flow::StateField::velocity_x), 1.0);
-      run.solver->upload(flow::StateField::velocity_x, one);
+      run.solver->flow().upload(flow::StateField::velocity_x, one);
       run.solver->start();
       for (int step = 0; step < 10; ++step) {
         ASSERT_TRUE(run.advance(1));

@@ -35,7 +35,6 @@ struct Case {
 struct State : drogue::testing::ClothState {
   std::vector<std::vector<double>> flow;
   std::array<double, 3> total_force{};
-  flow::Progress progress;
   std::vector<double> air = {};  ///< velocities of the air at the vertices, m/s
 };
 
@@ -52,7 +51,7 @@ class SharedRun {
   Solver* operator->() { return _solver.get(); }
 
   void start(const Case& from) {
-    _solver->upload_cloth(from.x, from.v);
+    _solver->fabric().upload(from.x, from.v);
     for (const StateField field : {StateField::velocity_x, StateField::velocity_y, StateField::velocity_z}) {
       // The stream of the inflow, with a wave.
       const linear::CellBox part = flow::part_of(_p, _ranks, field);
@@ -61,26 +60,26 @@ class SharedRun {
       drogue::testing::for_each_entry(extents(_p, field), part, [&](std::size_t whole, std::size_t at) {
         own[at] = _p.boundary[0].velocity[axis] + 0.3 * std::sin(0.7 * static_cast<double>(whole + axis));
       });
-      _solver->upload(field, own);
+      _solver->flow().upload(field, own);
     }
     _solver->start();
   }
   void restore(const State& state) {
     std::size_t k = 0;
     for (const StateField field : flow::state_fields(_p))
-      _solver->upload(field, cut(state.flow[k++], extents(_p, field), flow::part_of(_p, _ranks, field)));
-    _solver->restore(state.progress);
+      _solver->flow().upload(field,
+                             cut(state.flow[k++], extents(_p, field), flow::part_of(_p, _ranks, field)));
     drogue::testing::restore_cloth(*_solver, state);
   }
   [[nodiscard]] State state() {
-    State s{drogue::testing::cloth_state(*_solver), {}, _solver->total_force_on_air(), _solver->progress()};
+    State s{drogue::testing::cloth_state(*_solver), {}, _solver->total_force_on_air()};
     std::vector<Vector> air(_vertices);
     _solver->air_velocity(air);
     s.air.assign(numbers(air).begin(), numbers(air).end());
     for (const StateField field : flow::state_fields(_p)) {
       const linear::CellBox part = flow::part_of(_p, _ranks, field);
       std::vector<double> own(part.size());
-      _solver->download(field, own);
+      _solver->flow().download(field, own);
       s.flow.push_back(joined(_group, own, extents(_p, field), part));
     }
     return s;
@@ -88,7 +87,7 @@ class SharedRun {
   /// Numbers of the cloth as the ranks have them, one row per rank.
   [[nodiscard]] std::vector<std::vector<double>> cloth_of_ranks() {
     std::vector<Vector> x(_vertices), v(_vertices);
-    _solver->download_cloth(x, v);
+    _solver->fabric().download(x, v);
     x.insert(x.end(), v.begin(), v.end());
     const std::vector<double> all = _group.gather({x.front().data(), 3 * x.size()});
     std::vector<std::vector<double>> rows;
@@ -182,10 +181,10 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
 }
 
 void expect_near(const State& a, const State& b, const std::string& what) {
-  EXPECT_EQ(a.progress.step, b.progress.step) << what;
-  EXPECT_EQ(a.block.substeps, b.block.substeps) << what;
-  EXPECT_EQ(a.block.end, b.block.end) << what;
-  EXPECT_NEAR(a.progress.time, b.progress.time, tolerance) << what;
+  EXPECT_EQ(a.progress.flow.step, b.progress.flow.step) << what;
+  EXPECT_EQ(a.progress.block.substeps, b.progress.block.substeps) << what;
+  EXPECT_EQ(a.progress.block.end, b.progress.block.end) << what;
+  EXPECT_NEAR(a.progress.flow.time, b.progress.flow.time, tolerance) << what;
   for (std::size_t k = 0; k < a.flow.size(); ++k)
     EXPECT_LT(relative_difference(a.flow[k], b.flow[k]), tolerance) << what << ", array " << k;
   for (const auto& [name, values] : a.arrays)
@@ -194,7 +193,7 @@ void expect_near(const State& a, const State& b, const std::string& what) {
   EXPECT_LT(relative_difference(a.air, b.air), tolerance) << what << ", velocities of the air";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(a.total_force[axis], b.total_force[axis], tolerance) << what;
-    EXPECT_NEAR(a.frame.velocity[axis], b.frame.velocity[axis], tolerance) << what;
+    EXPECT_NEAR(a.progress.frame.velocity[axis], b.progress.frame.velocity[axis], tolerance) << what;
   }
 }
 
@@ -204,7 +203,7 @@ void expect_equal(const State& a, const State& b, const std::string& what) {
   EXPECT_EQ(a.force, b.force) << what;
   EXPECT_EQ(a.air, b.air) << what;
   EXPECT_EQ(a.total_force, b.total_force) << what;
-  EXPECT_EQ(a.progress.time, b.progress.time) << what;
+  EXPECT_EQ(a.progress.flow.time, b.progress.flow.time) << what;
 }
 
 /// Whether the whole cloth has the same bits on all ranks.
@@ -276,7 +275,7 @@ TEST_F(CoupledRanks, FollowAVertexAsOneRank) {
   EXPECT_EQ(Stop::pause, single->advance(endless, 20, {}));
   EXPECT_EQ(Stop::pause, shared->advance(endless, 20, {}));
   const State expected = single.state();
-  EXPECT_GT(std::abs(expected.frame.velocity[2]), 0.1);
+  EXPECT_GT(std::abs(expected.progress.frame.velocity[2]), 0.1);
   expect_near(expected, shared.state(), each.name);
 }
 
@@ -287,12 +286,12 @@ void expect_failure(const Case& each, FailureReason reason) {
   for (SharedRun* run : {&single, &shared, &again}) run->start(each);
   ASSERT_EQ(Stop::failed, single->advance(endless, -1, {})) << each.name;
   ASSERT_EQ(Stop::failed, shared->advance(endless, -1, {})) << each.name;
-  EXPECT_EQ(reason, single->failure_reason()) << each.name;
-  EXPECT_EQ(reason, shared->failure_reason()) << each.name;
+  EXPECT_EQ(reason, single->failure().reason) << each.name;
+  EXPECT_EQ(reason, shared->failure().reason) << each.name;
   const State last = shared.state();
-  EXPECT_EQ(single->progress().step, last.progress.step) << each.name;
-  if (last.progress.step > 0) {
-    ASSERT_EQ(Stop::pause, again->advance(endless, last.progress.step, {})) << each.name;
+  EXPECT_EQ(single->progress().flow.step, last.progress.flow.step) << each.name;
+  if (last.progress.flow.step > 0) {
+    ASSERT_EQ(Stop::pause, again->advance(endless, last.progress.flow.step, {})) << each.name;
   }
   expect_equal(again.state(), last, each.name);
   EXPECT_EQ(Stop::failed, shared->advance(endless, -1, {})) << each.name;
@@ -318,7 +317,7 @@ TEST_F(CoupledRanks, ShortenTheStepsOfABlockTogether) {
   for (SharedRun* run : {&single, &shared}) {
     run->start(each);
     EXPECT_EQ(Stop::target, (*run)->advance(0.064, -1, {}));
-    EXPECT_LT((*run)->progress().dt_min, 0.6 * (*run)->progress().dt_max);
+    EXPECT_LT((*run)->progress().flow.dt_min, 0.6 * (*run)->progress().flow.dt_max);
   }
   expect_near(single.state(), shared.state(), "accelerated");
 }
@@ -332,8 +331,8 @@ TEST_F(CoupledRanks, KeepTheStepsEqualIfOneRankIsInterrupted) {
     return world.rank() != 3 || now.step < 20;
   }));
   // Between two polls lie a few steps, the same on all ranks.
-  EXPECT_GE(shared->progress().step, 20);
-  EXPECT_LE(shared->progress().step, 32);
+  EXPECT_GE(shared->progress().flow.step, 20);
+  EXPECT_LE(shared->progress().flow.step, 32);
   EXPECT_EQ(Stop::pause, shared->advance(endless, 33, [](const flow::Status&) { return true; }));
   expect_one_cloth(shared, "after an interrupt");
 }

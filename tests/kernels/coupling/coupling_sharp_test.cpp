@@ -122,7 +122,7 @@ TEST(SharpSheet, ForcesOfCrumpledLayersMatchTheReference) {
 
 /// Mean velocity of the air, m/s.
 Vector mean_velocity_of(const CoupledCase& c, CoupledRun& run) {
-  const flow::Totals totals = run.solver->totals();
+  const flow::Totals totals = run.solver->flow().totals();
   Vector mean{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     mean[axis] = totals.momentum[axis] / (c.p.flow.density * c.volume());
@@ -189,7 +189,7 @@ TEST(SharpSheet, TakesTheMomentumThatTheAirLoses) {
   Vector last{};
   for (int step = 0; step < 40; ++step) {
     ASSERT_TRUE(run.advance(1));
-    const flow::Totals now = run.solver->totals();
+    const flow::Totals now = run.solver->flow().totals();
     const Vector force = run.force(), total = run.solver->total_force_on_air();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(now.momentum[axis] - last[axis], 0.004 * force[axis], 1e-13);
