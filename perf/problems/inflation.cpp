@@ -11,7 +11,6 @@
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 #include "perf/measure/timed_parts.hpp"
@@ -24,9 +23,9 @@ constexpr double speed = 10.0;  // m/s
 
 /// State that a sample begins from.
 struct State {
-  std::pmr::vector<std::pmr::vector<double>> flow;  ///< arrays of `flow::state_fields`
-  flow::Progress progress;
-  coupling::RestartState sheets;
+  std::pmr::vector<std::pmr::vector<double>> flow;    ///< arrays of `flow::state_fields`
+  std::map<std::string, std::vector<double>> sheets;  ///< arrays of `coupling::Solver::state`
+  coupling::Progress progress;
 };
 
 void save(coupling::Solver& solver, const coupling::Parameters& p, State& state) {
@@ -34,25 +33,29 @@ void save(coupling::Solver& solver, const coupling::Parameters& p, State& state)
   state.flow.resize(fields.size());
   for (std::size_t k = 0; k < fields.size(); ++k) {
     state.flow[k].resize(flow::state_size(p.flow, fields[k]));
-    solver.download(fields[k], state.flow[k]);
+    solver.flow().download(fields[k], state.flow[k]);
   }
   state.progress = solver.progress();
-  state.sheets = coupling::download_restart_state(solver, p.fabric.mass.size());
+  for (const stepping::StateArray& array : solver.state()) {
+    state.sheets[array.name].resize(array.size());
+    solver.download(array.name, state.sheets[array.name]);
+  }
 }
 
 void restore(coupling::Solver& solver, const coupling::Parameters& p, const State& state) {
   std::size_t k = 0;
-  for (const flow::StateField field : flow::state_fields(p.flow)) solver.upload(field, state.flow[k++]);
+  for (const flow::StateField field : flow::state_fields(p.flow))
+    solver.flow().upload(field, state.flow[k++]);
+  for (const auto& [name, values] : state.sheets) solver.upload(name, values);
   solver.restore(state.progress);
-  coupling::upload_restart_state(solver, state.sheets);
 }
 
 /// Puts the cloth into the uniform stream.
 void start(coupling::Solver& solver, const Problem& problem) {
   const std::vector<double> stream(flow::state_size(problem.parameters.flow, flow::StateField::velocity_z),
                                    speed);
-  solver.upload(flow::StateField::velocity_z, stream);
-  solver.upload_cloth(problem.positions, std::vector<fabric::Vector>(problem.positions.size()));
+  solver.flow().upload(flow::StateField::velocity_z, stream);
+  solver.fabric().upload(problem.positions, std::vector<fabric::Vector>(problem.positions.size()));
   solver.start();
 }
 
@@ -125,7 +128,7 @@ Sample flight(const Problem& problem, coupling::Solver& solver, double lead, lon
             save(solver, problem.parameters, *state);
           },
           [=, &solver] {
-            fly_to(solver, state->progress.time + 1e-3 * static_cast<double>(milliseconds));
+            fly_to(solver, state->progress.flow.time + 1e-3 * static_cast<double>(milliseconds));
             return milliseconds;
           }};
 }
@@ -151,7 +154,8 @@ Sample copied_steps(const Problem& problem, coupling::Solver& solver, double lea
             State& now = run->now;
             // The time never arrives: the number of steps ends the work.
             const auto step = [&] {
-              if (solver.advance(now.progress.time + 1e3, now.progress.step + steps, {}) != flow::Stop::pause)
+              if (solver.advance(now.progress.flow.time + 1e3, now.progress.flow.step + steps, {}) !=
+                  flow::Stop::pause)
                 throw Failure(ExitCode::numerical_failure, "a step of the parachute benchmark failed");
             };
             run->parts = timed_parts([&] { restore(solver, problem.parameters, now); }, step,
@@ -190,15 +194,15 @@ std::optional<Forces> forces(const Problem& problem, coupling::Solver& solver, d
     result.values.push_back(-solver.total_force_on_air()[2]);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  result.steps = solver.progress().step;
+  result.steps = solver.progress().flow.step;
   return result;
 }
 
 double imbalance(const coupling::Parameters& p, coupling::Solver& solver) {
-  const flow::Totals totals = solver.totals();
+  const flow::Totals totals = solver.flow().totals();
   const double spacing = (p.flow.high[0] - p.flow.low[0]) / p.flow.cells[0];
   std::vector<fabric::Vector> on_air(p.fabric.mass.size());
-  solver.forces(on_air);
+  solver.download("sheet_force", coupling::numbers(on_air));
   return std::max(totals.divergence_rms * spacing / totals.max_speed,
                   parachute_app::force_balance(solver.total_force_on_air(), on_air));
 }

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "kernels/coupling/sheet/solver.hpp"
@@ -87,7 +89,7 @@ struct CoupledCase {
   /// Solver on a backend at the start of the case.
   [[nodiscard]] std::unique_ptr<coupling::Solver> solver(device::Backend backend) const {
     auto solver = coupling::create_solver(backend, p);
-    solver->upload_cloth(x, v);
+    solver->fabric().upload(x, v);
     solver->start();
     return solver;
   }
@@ -112,20 +114,69 @@ inline CoupledCase taut_strip(int nx, int ny, double spacing, double dt, int wav
   return c;
 }
 
+/// State of cloth and of the air beside it on the host, by the list of its solver.
+struct ClothState {
+  std::map<std::string, std::vector<double>> arrays;  ///< by their names
+  std::vector<double> force;                          ///< of the vertices on the air, N
+  coupling::Progress progress;
+};
+
+inline ClothState cloth_state(coupling::Solver& solver) {
+  ClothState state{{}, {}, solver.progress()};
+  const auto read = [&](const std::string& name, std::size_t size, std::vector<double>& values) {
+    values.resize(size);
+    solver.download(name, values);
+  };
+  std::size_t numbers = 0;
+  for (const stepping::StateArray& array : solver.state()) {
+    read(array.name, array.size(), state.arrays[array.name]);
+    if (array.name == "sheet_position") numbers = array.size();
+  }
+  read("sheet_force", numbers, state.force);
+  return state;
+}
+
+/// Restores it, after the arrays of the flow.
+inline void restore_cloth(coupling::Solver& solver, const ClothState& state) {
+  for (const auto& [name, values] : state.arrays) solver.upload(name, values);
+  solver.restore(state.progress);
+}
+
+/// State of cloth and flow on the host.
+struct CoupledState : ClothState {
+  std::vector<std::vector<double>> flow;  ///< arrays of `flow::state_fields`
+};
+
+inline CoupledState coupled_state(const CoupledCase& c, coupling::Solver& solver) {
+  CoupledState state{cloth_state(solver), {}};
+  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
+    state.flow.emplace_back(flow::state_size(c.p.flow, field));
+    solver.flow().download(field, state.flow.back());
+  }
+  return state;
+}
+
+inline void restore(const CoupledCase& c, const CoupledState& state, coupling::Solver& solver) {
+  std::size_t k = 0;
+  for (const flow::StateField field : flow::state_fields(c.p.flow))
+    solver.flow().upload(field, state.flow[k++]);
+  restore_cloth(solver, state);
+}
+
 /// A case on the backend of the test program.
 struct CoupledRun {
   explicit CoupledRun(const CoupledCase& of) : vertices(of.x.size()), solver(of.solver(tested_backend)) {}
 
   /// Takes steps of the flow; false after a failure.
   bool advance(std::int64_t steps) {
-    const std::int64_t end = solver->progress().step + steps;
-    return solver->advance(1e9, end, {}) == flow::Stop::pause && solver->progress().step == end;
+    const std::int64_t end = solver->progress().flow.step + steps;
+    return solver->advance(1e9, end, {}) == flow::Stop::pause && solver->progress().flow.step == end;
   }
 
   /// Sum of the forces of the sheet on the air in the last step, N.
   [[nodiscard]] fabric::Vector force() const {
     std::vector<fabric::Vector> each(vertices);
-    solver->forces(each);
+    solver->download("sheet_force", coupling::numbers(each));
     fabric::Vector sum{};
     for (const fabric::Vector& of_vertex : each)
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += of_vertex[axis];

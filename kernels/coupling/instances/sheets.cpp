@@ -1,7 +1,9 @@
+#include "kernels/coupling/sharp/sharp_sheet.hpp"
 #include "kernels/coupling/sheet/immersed_sheet.hpp"
 
 namespace drogue::coupling {
 
+template class Sheet<DROGUE_INSTANCE_SPACE>;
 template class ImmersedSheet<DROGUE_INSTANCE_SPACE>;
 template class SharpSheet<DROGUE_INSTANCE_SPACE>;
 

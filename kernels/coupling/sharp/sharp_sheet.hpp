@@ -1,11 +1,10 @@
 #pragma once
 
-#include "kernels/coupling/grid_transfer.hpp"
+#include <optional>
+
 #include "kernels/coupling/sharp/crossings.hpp"
-#include "kernels/coupling/sheet/closing_sheets.hpp"
-#include "kernels/device/backend_list.hpp"
+#include "kernels/coupling/sheet/sheet.hpp"
 #include "kernels/device/relaxed_access.hpp"
-#include "kernels/fabric/surface/surface.hpp"
 #include "kernels/stepping/status.hpp"
 
 namespace drogue::coupling {
@@ -210,13 +209,13 @@ struct SaveFacesFunctor {
 };
 
 /// Updates the acceleration of the air at all faces without the force of the sheet, unless the flow failed.
-template <class ExecutionSpace, class Control>
+template <class ExecutionSpace>
 struct EndSharpStepFunctor {
   FaceArrays<const double> before, after, force_density;
   FaceArrays<double> acceleration;
   int faces[3][3];
   double inverse_dt, inverse_density, filter;
-  Control control;
+  flow::ControlView<ExecutionSpace> control;
   FaceArrays<double> foretold;  ///< force of closing sheets, N/m^3; reset
   ClosingSheetViews<ExecutionSpace> closing;
 
@@ -242,66 +241,72 @@ struct EndSharpStepFunctor {
 
 /// Sheet in prescribed motion as an internal boundary: a pressure jump between neighbouring cells that it
 /// separates, and no force elsewhere. In the difference of their pressures, and so on the right-hand side of
-/// the pressure equation, a jump is a force per volume on the face between them, which `exchange` adds.
+/// the pressure equation, a jump is a force per volume on the face between them, which `spread_forces` adds.
 ///
 /// Each crossing of a line between centres and the sheet obeys the porous law by itself: the fluid passes
 /// along the normal of the sheet, so that the component at the face gives the normal velocity. An impermeable
 /// sheet prescribes the velocity on a closed surface of faces and has no leak. As with `ImmersedSheet`, one
 /// projection per step suffices, since the filtered acceleration without the sheet foretells its change.
-///
-/// All functions are asynchronous on the given instance and allocate nothing unless stated otherwise.
 template <class ExecutionSpace>
-class SharpSheet {
+class SharpSheet final : public Sheet<ExecutionSpace> {
+  using Base = Sheet<ExecutionSpace>;
+  using Base::_air, Base::_closing, Base::_density, Base::_force, Base::_state, Base::_surface,
+      Base::_transfer;
+
  public:
+  using typename Base::Cloth;
+  using typename Base::Faces;
   using Views = SharpSheetViews<ExecutionSpace>;
-  using Vectors = typename Views::Vectors;
   using Memory = typename ExecutionSpace::memory_space;
   template <class T>
-  using Faces = FaceViews<Kokkos::View<T***, Kokkos::LayoutLeft, Memory>>;
+  using OwnFaces = FaceViews<Kokkos::View<T***, Kokkos::LayoutLeft, Memory>>;
 
-  /// For the points of a transfer, with their laws, in air of a density in kg/m^3. Allocates. Throws
-  /// std::runtime_error if memory runs out.
-  SharpSheet(const GridTransfer<ExecutionSpace>& transfer,
-             const fabric::SurfaceViews<ExecutionSpace>& surface, const Kokkos::View<PorousLaw*, Memory>& law,
-             double density, const ClosingSheets<ExecutionSpace>& closing)
-      : _transfer(transfer),
-        _surface(surface),
-        _law(law),
-        _density(density),
-        _corner_force("drogue::coupling::corner_force", static_cast<std::size_t>(surface.triangles())),
+  /// As the constructor of `Sheet`, on one rank.
+  SharpSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
+             const SheetParameters& parameters, double density, const linear::RankGroup& group = {},
+             const std::optional<FaceWindow>& own_faces = {})
+      : Base(space, grid, cloth, parameters, density, group, own_faces, cloth.mesh.triangles),
+        _corner_force("drogue::coupling::corner_force", static_cast<std::size_t>(_surface.triangles())),
         _count(faces_of<int>("drogue::coupling::crossings")),
         _before(faces_of<double>("drogue::coupling::velocity_before")),
-        _acceleration(faces_of<double>("drogue::coupling::face_acceleration")),
-        _foretold(faces_of<double>("drogue::coupling::foretold_force")),
-        _closing(closing) {}
+        _foretold(faces_of<double>("drogue::coupling::foretold_force")) {
+    _transfer.has_stencils = false;
+    std::size_t faces = 0;
+    for (const auto& component : _before.component) faces += component.size();
+    // All components are one list.
+    const StateView<ExecutionSpace> list("drogue::coupling::face_acceleration", faces, 1);
+    double* first = list.data();
+    for (int d = 0; d < 3; ++d) {
+      const auto& like = _before.component[d];
+      _face_acceleration.component[d] = Kokkos::View<double***, Kokkos::LayoutLeft, Memory>(
+          first, like.extent(0), like.extent(1), like.extent(2));
+      first += like.size();
+    }
+    // Not changed by failed steps. The list owns the faces.
+    _state.add("face_acceleration", "m/s^2", list, {.saved = false});
+  }
 
-  /// Filtered acceleration of the air without the sheet at all faces, m/s^2: a part of the state.
-  [[nodiscard]] const Faces<double>& acceleration() const { return _acceleration; }
+  void freeze(const ExecutionSpace& space, const Cloth& cloth, double dt) const override {
+    freeze_positions(space, _transfer, cloth.positions, cloth.velocities, 0.5 * dt);
+  }
 
-  /// Enqueues a copy of the velocity of the flow, m/s. Throws std::invalid_argument for Views of the wrong
-  /// extents.
-  template <class View>
-  void begin_step(const ExecutionSpace& space, const FaceViews<View>& velocity) const {
+  void interpolate_air(const ExecutionSpace& space, const Faces& velocity) const override {
     SaveFacesFunctor save{constant(velocity), face_arrays(_transfer.window, _before), {}};
     launch_faces(space, "drogue::coupling::save_faces", save);
   }
 
-  /// Enqueues the forces of the sheet during dt, s: adds them to `force_density`, N/m^3, and stores those of
-  /// the vertices in `force`, N. `velocities`: of the vertices at the end of the step, m/s. Throws as
-  /// `begin_step`.
-  template <class View>
-  void exchange(const ExecutionSpace& space, const Vectors& velocities, const FaceViews<View>& force_density,
-                const Vectors& force, double dt) const {
+  void spread_forces(const ExecutionSpace& space, const Cloth& cloth, const Faces& force_density,
+                     double dt) const override {
     const StaggeredGrid& grid = _transfer.grid;
     const int triangles = _surface.triangles();
     const Views views{.surface = _surface,
                       .positions = _transfer.positions,
-                      .velocities = velocities,
-                      .law = _law,
+                      .velocities = cloth.velocities,
+                      .law = _air.law,
                       .largest = _transfer.largest,
                       .corner_force = _corner_force,
                       .velocity = constant(_before),
-                      .acceleration = constant(_acceleration),
+                      .acceleration = constant(_face_acceleration),
                       .count = face_arrays(_transfer.window, _count),
                       .sums = face_arrays(_transfer.window, _transfer.sums),
                       .force_density = face_arrays(_transfer.window, force_density),
@@ -320,35 +325,34 @@ class SharpSheet {
     launch("drogue::coupling::add_crossings", AddCrossingsFunctor<ExecutionSpace>{views, _transfer.counts});
     launch("drogue::coupling::flush_sums", FlushSumsFunctor<ExecutionSpace>{views});
     device::launch_each(space, "drogue::coupling::gather_corners", _surface.vertices(),
-                        GatherCornersFunctor<ExecutionSpace>{views, force});
-  }
-
-  /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, with weight
-  /// `filter` in the mean. `force_density`, N/m^3, holds the forces of the sheet alone; `control`: of the
-  /// flow. Throws as `begin_step`.
-  template <class View, class Control>
-  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity,
-                const FaceViews<View>& force_density, double dt, double filter,
-                const Control& control) const {
-    EndSharpStepFunctor<ExecutionSpace, Control> end{
-        .before = constant(_before),
-        .after = constant(velocity),
-        .force_density = constant(force_density),
-        .acceleration = face_arrays(_transfer.window, _acceleration),
-        .faces = {},
-        .inverse_dt = 1.0 / dt,
-        .inverse_density = 1.0 / _density,
-        .filter = filter,
-        .control = control,
-        .foretold = face_arrays(_transfer.window, _foretold),
-        .closing = _closing.views()};
-    launch_faces(space, "drogue::coupling::end_sharp_step", end);
+                        GatherCornersFunctor<ExecutionSpace>{views, _force});
   }
 
  private:
+  void filter(const ExecutionSpace& space, const Faces& velocity, const Faces& force_density, double dt,
+              double weight, const flow::ControlView<ExecutionSpace>& control) const override {
+    EndSharpStepFunctor<ExecutionSpace> end{.before = constant(_before),
+                                            .after = constant(velocity),
+                                            .force_density = constant(force_density),
+                                            .acceleration = face_arrays(_transfer.window, _face_acceleration),
+                                            .faces = {},
+                                            .inverse_dt = 1.0 / dt,
+                                            .inverse_density = 1.0 / _density,
+                                            .filter = weight,
+                                            .control = control,
+                                            .foretold = face_arrays(_transfer.window, _foretold),
+                                            .closing = _closing.views()};
+    launch_faces(space, "drogue::coupling::end_sharp_step", end);
+  }
+
+  void set_driving(const ExecutionSpace& space, const ClosingSheet& sheet) const override {
+    Kokkos::deep_copy(space, _face_acceleration.component[sheet.axis], sheet.driving);
+    Base::set_driving(space, sheet);
+  }
+
   template <class T>
-  [[nodiscard]] Faces<T> faces_of(const std::string& label) const {
-    Faces<T> faces;
+  [[nodiscard]] OwnFaces<T> faces_of(const std::string& label) const {
+    OwnFaces<T> faces;
     for (int d = 0; d < 3; ++d) {
       const auto extent = [&](int axis) {
         return static_cast<std::size_t>(faces_along(_transfer.grid, d, axis));
@@ -381,14 +385,10 @@ class SharpSheet {
     device::launch_cells(space, label, extent, functor);
   }
 
-  GridTransfer<ExecutionSpace> _transfer;
-  fabric::SurfaceViews<ExecutionSpace> _surface;
-  Kokkos::View<PorousLaw*, Memory> _law;
-  double _density;  ///< kg/m^3
   Kokkos::View<double* [9], Memory> _corner_force;
-  Faces<int> _count;
-  Faces<double> _before, _acceleration, _foretold;
-  ClosingSheets<ExecutionSpace> _closing;
+  OwnFaces<int> _count;
+  OwnFaces<double> _before, _foretold;
+  OwnFaces<double> _face_acceleration;  ///< of the air without the sheet, filtered, m/s^2
 };
 
 DROGUE_EXTERN_INSTANCES(class SharpSheet)

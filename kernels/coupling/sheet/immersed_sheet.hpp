@@ -1,24 +1,12 @@
 #pragma once
 
-#include <algorithm>
 #include <optional>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "kernels/coupling/interpolate.hpp"
-#include "kernels/coupling/rank_sum.hpp"
-#include "kernels/coupling/sharp/sharp_sheet.hpp"
-#include "kernels/coupling/sheet/closing_sheets.hpp"
 #include "kernels/coupling/sheet/edge_inset.hpp"
 #include "kernels/coupling/sheet/explicit_exchange.hpp"
-#include "kernels/coupling/sheet/local_air.hpp"
-#include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/coupling/sheet/sheet.hpp"
 #include "kernels/coupling/spread.hpp"
-#include "kernels/device/backend_list.hpp"
-#include "kernels/fabric/state.hpp"
-#include "kernels/fabric/surface/surface.hpp"
 
 namespace drogue::coupling {
 
@@ -42,16 +30,6 @@ struct BeginSheetStepFunctor {
     spatial::store_vector(air.velocity, i, spatial::load_vector(air.before, i));
     air.impulse(i) = 0.0;
     if (air.is_no_slip(i)) spatial::store_vector(air.no_slip_impulse, i, spatial::Point{0.0, 0.0, 0.0});
-  }
-};
-
-/// Copies the rows of vertices; Views may have more.
-template <class ExecutionSpace>
-struct CopyRowsFunctor {
-  fabric::PointsView<ExecutionSpace> from, to;
-
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    spatial::store_vector(to, i, spatial::load_vector(from, i));
   }
 };
 
@@ -161,260 +139,104 @@ struct EndSheetStepFunctor {
 /// flow, however light the cloth. Each vertex holds a copy of the air velocity beside it whose mass is the
 /// row sum of interpolation after spreading. In the steps of the cloth, this copy and the vertex relax
 /// against each other by the porous law (`AirRelaxation`); at their end, the grid receives the sum of the
-/// impulses. Where `PorousLaw::no_slip` holds, impulses have all components.
+/// impulses. Where `PorousLaw::no_slip` holds, impulses have all components. With explicit coupling the cloth
+/// imposes its velocity on the air instead (`ImposeVelocityFunctor`).
 ///
 /// Without the filtered acceleration the energy cannot grow: a projection reduces energy, and the row sums
 /// exceed the masses that interpolation and spreading give any motion of the vertices (docs/coupling.md).
-///
-/// A step of the flow is `begin_step`, steps of the cloth with `relaxation`, `spread_forces`, a step of the
-/// flow with these forces, `end_step`. All functions are asynchronous on the given instance, allocate nothing
-/// and may be captured into a CUDA graph unless stated otherwise.
-///
-/// On several ranks each has the whole cloth, and its own faces of the flow. `begin_step` and `end_step` are
-/// then collective and block. All ranks find the same bits for everything at the vertices.
 template <class ExecutionSpace>
-class ImmersedSheet {
- public:
-  using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
-  using Scalars = typename LocalAir<ExecutionSpace>::Scalars;
+class ImmersedSheet final : public Sheet<ExecutionSpace> {
+  using Base = Sheet<ExecutionSpace>;
+  using Base::_acceleration, Base::_after, Base::_air, Base::_closing, Base::_density, Base::_force,
+      Base::_parameters, Base::_rank_sum, Base::_state, Base::_surface, Base::_transfer;
 
-  /// Sheet of the triangles of `cloth`; its other vertices, such as those of suspension lines, exchange no
-  /// force with the air, whose density is in kg/m^3. `own_faces`: those of this rank of the group, by default
-  /// all. Blocks. Throws std::invalid_argument for parameters out of range.
+ public:
+  using typename Base::Cloth;
+  using typename Base::Faces;
+  using typename Base::Vectors;
+
+  /// As the constructor of `Sheet`.
   ImmersedSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
                 const SheetParameters& parameters, double density, const linear::RankGroup& group = {},
                 const std::optional<FaceWindow>& own_faces = {})
-      : _parameters((check_parameters(parameters, density), parameters)),
-        _density(density),
-        _surface(space, cloth.mesh),
-        _transfer(space, grid, parameters.delta, _surface.vertices(), own_faces),
+      : Base(space, grid, cloth, parameters, density, group, own_faces, {}),
         _inset(space, cloth.mesh, grid, parameters.edge_inset),
-        _rank_sum(group, rows(), 2),
-        _air{.area = scalars("drogue::coupling::area"),
-             .normal = vectors("drogue::coupling::normal"),
-             .inverse_air_mass = vectors("drogue::coupling::inverse_air_mass"),
-             .before = vectors("drogue::coupling::velocity_before"),
-             .acceleration = vectors("drogue::coupling::acceleration"),
-             .inverse_cloth_mass = vectors("drogue::coupling::inverse_mass"),
-             .velocity = vectors("drogue::coupling::local_velocity"),
-             .impulse = scalars("drogue::coupling::impulse"),
-             .no_slip_impulse =
-                 Vectors("drogue::coupling::no_slip_impulse", has_no_slip(parameters) ? rows() : 0),
-             .law = Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>(
-                 "drogue::coupling::porosity", rows()),
-             .last_force = Vectors()},
-        _filtered{_air.acceleration, Vectors(), _air.acceleration},
-        _force(vectors("drogue::coupling::force")),
-        _after(vectors("drogue::coupling::velocity_after")),
-        _present("drogue::coupling::present_positions", _inset.size() > 0 ? rows() : 0),
-        _interpolated_force(vectors("drogue::coupling::interpolated_force")) {
-    if (parameters.method == CouplingMethod::explicit_) _air.last_force = _force;
-    if (parameters.defect_filter > 0.0) {
-      _filtered.mean = vectors("drogue::coupling::mean_acceleration");
-      _filtered.defect = vectors("drogue::coupling::defect");
-    }
-    copy_inverse_masses(space, cloth);
-    copy_laws(space);
-    const bool is_sharp = parameters.method == CouplingMethod::sharp;
-    _closing.emplace(space, parameters.closing, _air.law,
-                     is_sharp ? cloth.mesh.triangles : std::vector<std::array<int, 3>>());
-    if (parameters.method != CouplingMethod::sharp) return;
-    _transfer.has_stencils = false;
-    _sharp.emplace(_transfer, _surface, _air.law, density, *_closing);
+        _present("drogue::coupling::present_positions", _inset.size() > 0 ? Base::rows() : 0),
+        _interpolated_force(Base::vectors("interpolated_force")) {
+    if (!(parameters.defect_filter > 0.0)) return;
+    _defect = Base::vectors("defect");
+    _state.add("defect", "m/s^2", _defect);
   }
 
-  /// VertexForce of the fabric solver.
-  [[nodiscard]] AirRelaxation<ExecutionSpace> relaxation() const { return {_air}; }
-  /// Force of each vertex on the air in the last step of the flow, (vertices, 3), N. Does not throw.
-  [[nodiscard]] const Vectors& force() const { return _force; }
-  /// Filtered acceleration of the air at each vertex, (vertices, 3), m/s^2; with the state of cloth and flow,
-  /// and `defect`, it continues a run. Does not throw.
-  [[nodiscard]] const Vectors& acceleration() const { return _filtered.mean; }
-  /// Filtered defect at each vertex, (vertices, 3), m/s^2; empty without `SheetParameters::defect_filter`.
-  /// Does not throw.
-  [[nodiscard]] const Vectors& defect() const { return _filtered.defect; }
-  /// The sheet as an internal boundary; none unless the method is `CouplingMethod::sharp`. Does not throw.
-  [[nodiscard]] const std::optional<SharpSheet<ExecutionSpace>>& sharp() const { return _sharp; }
-  /// Weights of both directions. Does not throw.
-  [[nodiscard]] const GridTransfer<ExecutionSpace>& transfer() const { return _transfer; }
-
-  /// Sets the force and the acceleration of the air to zero, as before the first step, but beside closing
-  /// sheets to that of what drives the air. Asynchronous. Does not throw.
-  void forget_steps(const ExecutionSpace& space) const {
-    Kokkos::deep_copy(space, _filtered.mean, 0.0);
-    Kokkos::deep_copy(space, _filtered.defect, 0.0);
-    Kokkos::deep_copy(space, _filtered.sum, 0.0);
-    Kokkos::deep_copy(space, _force, 0.0);
-    if (_sharp)
-      for (const auto& faces : _sharp->acceleration().component) Kokkos::deep_copy(space, faces, 0.0);
-    for (const ClosingSheet& sheet : _parameters.closing) {
-      const auto axis = static_cast<std::size_t>(sheet.axis);
-      if (_sharp) Kokkos::deep_copy(space, _sharp->acceleration().component[axis], sheet.driving);
-      const auto vertices = std::pair(sheet.begin, sheet.end);
-      Kokkos::deep_copy(space, Kokkos::subview(_filtered.mean, vertices, axis), sheet.driving);
-    }
-    update_acceleration(space);
+  void update_acceleration(const ExecutionSpace& space) const override {
+    if (_defect.extent(0) > 0)
+      device::launch_each(space, "drogue::coupling::add_defect", _transfer.points, filtered());
   }
 
-  /// Enqueues what a change of `acceleration` or `defect` makes necessary. Throws only after a failed kernel.
-  void update_acceleration(const ExecutionSpace& space) const {
-    if (_filtered.defect.extent(0) > 0)
-      device::launch_each(space, "drogue::coupling::add_defect", _transfer.points, _filtered);
-  }
-
-  /// Enqueues the geometry of the sheet in the middle of a step of dt, s, and the air at its vertices.
-  /// `velocity`: of the flow at the faces, m/s. Throws std::invalid_argument for Views of the wrong extents.
-  template <class View>
-  void begin_step(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
-                  const FaceViews<View>& velocity, double dt) const {
+  void freeze(const ExecutionSpace& space, const Cloth& cloth, double dt) const override {
     freeze_positions(space, _transfer, cloth.positions, cloth.velocities, 0.5 * dt);
-    if (_sharp) return _sharp->begin_step(space, velocity);
     fabric::vertex_geometry(space, _surface, _transfer.positions, _air.area, _air.normal);
     _inset(space, cloth, 0.5 * dt, _transfer.positions);
     spread_row_sums(space, _transfer, _air.area, _density, _air.inverse_air_mass);
+  }
+
+  void interpolate_air(const ExecutionSpace& space, const Faces& velocity) const override {
     interpolate(space, _transfer, velocity, _air.before);
     _rank_sum(space, {_air.inverse_air_mass, _air.before});
     device::launch_each(space, "drogue::coupling::begin_sheet_step", _transfer.points,
                         BeginSheetStepFunctor<ExecutionSpace>{_air});
   }
 
-  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `force_density`, N/m^3.
-  /// `cloth`: after its steps. Throws as `begin_step`.
-  template <class View>
-  void spread_forces(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
-                     const FaceViews<View>& force_density, double dt) const {
-    if (_sharp) return _sharp->exchange(space, cloth.velocities, force_density, _force, dt);
+  void spread_forces(const ExecutionSpace& space, const Cloth& cloth, const Faces& force_density,
+                     double dt) const override {
     if (_air.is_explicit())
       device::launch_each(space, "drogue::coupling::impose_velocity", _transfer.points,
                           ImposeVelocityFunctor<ExecutionSpace>{_air, cloth.velocities, dt});
-    if (!_closing->empty()) {
+    if (!_closing.empty()) {
       const ClosingVelocity<ExecutionSpace> velocity{_air, cloth.velocities, dt};
-      _closing->foretell(space, velocity, dt);
+      _closing.foretell(space, velocity, dt);
       device::launch_each(space, "drogue::coupling::closing_impulse", _transfer.points,
-                          ClosingImpulseFunctor<ExecutionSpace>{velocity, _closing->views()});
+                          ClosingImpulseFunctor<ExecutionSpace>{velocity, _closing.views()});
     }
     device::launch_each(space, "drogue::coupling::sheet_force", _transfer.points,
                         SheetForceFunctor<ExecutionSpace>{_air, _force, 1.0 / dt});
     spread(space, _transfer, _force, force_density);
   }
 
-  /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, under the forces
-  /// of the sheet alone in `force_density`, N/m^3. `is_first`: no step precedes this one; `control`: of the
-  /// flow. Throws as `begin_step`.
-  template <class View, class Control>
-  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity,
-                const FaceViews<View>& force_density, double dt, bool is_first,
-                const Control& control) const {
-    const double filter = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
-    if (_sharp) return _sharp->end_step(space, velocity, force_density, dt, filter, control);
+ private:
+  void filter(const ExecutionSpace& space, const Faces& velocity, const Faces& force_density, double dt,
+              double weight, const flow::ControlView<ExecutionSpace>&) const override {
     interpolate(space, _transfer, velocity, _after);
     interpolate(space, _transfer, force_density, _interpolated_force);
     _rank_sum(space, {_after, _interpolated_force});
     device::launch_each(space, "drogue::coupling::end_sheet_step", _transfer.points,
                         EndSheetStepFunctor<ExecutionSpace>{.air = _air,
-                                                            .filtered = _filtered,
+                                                            .filtered = filtered(),
                                                             .after = _after,
                                                             .interpolated_force = _interpolated_force,
-                                                            .closing = _closing->views(),
+                                                            .closing = _closing.views(),
                                                             .inverse_dt = 1.0 / dt,
                                                             .inverse_density = 1.0 / _density,
-                                                            .filter = filter,
+                                                            .filter = weight,
                                                             .defect_filter = _parameters.defect_filter});
   }
 
-  /// Enqueues the velocity of the flow, m/s, interpolated to where the vertices at their present positions
-  /// exchange forces with it, and returns it, (vertices, 3), valid until the next step. `velocity`: as in
-  /// `begin_step`. The frozen positions stay. On several ranks collective; blocks there. Throws as
-  /// `begin_step`.
-  template <class View>
-  [[nodiscard]] const Vectors& air_velocity(const ExecutionSpace& space,
-                                            const fabric::State<ExecutionSpace>& cloth,
-                                            const FaceViews<View>& velocity) const {
-    GridTransfer<ExecutionSpace> present = _transfer;
-    present.positions = cloth.positions;
-    if (_inset.size() > 0) {
-      device::launch_each(space, "drogue::coupling::present_positions", _transfer.points,
-                          CopyRowsFunctor<ExecutionSpace>{cloth.positions, _present});
-      _inset(space, cloth, 0.0, _present);
-      present.positions = _present;
-    }
-    interpolate(space, present, velocity, _after);
-    _rank_sum(space, {_after});
-    return _after;
+  [[nodiscard]] Vectors exchange_points(const ExecutionSpace& space, const Cloth& cloth) const override {
+    if (_inset.size() == 0) return cloth.positions;
+    device::launch_each(space, "drogue::coupling::present_positions", _transfer.points,
+                        CopyRowsFunctor<ExecutionSpace>{1, {cloth.positions}, {_present}});
+    _inset(space, cloth, 0.0, _present);
+    return _present;
   }
 
- private:
-  static void check_parameters(const SheetParameters& p, double density) {
-    const auto is_valid = [](double value) { return value >= 0.0 && value <= 1e100; };
-    std::vector<PorousLaw> laws = p.law_of_vertex;
-    laws.push_back(p.law);
-    for (const PorousLaw& law : laws)
-      if (!is_valid(law.alpha) || !is_valid(law.beta))
-        throw std::invalid_argument("immersed sheet: alpha and beta must be finite and not negative");
-    if (!(density > 0.0) || !is_valid(density))
-      throw std::invalid_argument("immersed sheet: the density must be positive");
-    if (!(p.filter >= 0.0 && p.filter <= 1.0))
-      throw std::invalid_argument("immersed sheet: the weight of the filter must be 0 to 1");
-    if (!(p.defect_filter >= 0.0 && p.defect_filter <= 0.2))
-      throw std::invalid_argument("immersed sheet: the weight of the defect must be 0 to 0.2");
-    if (p.defect_filter > 0.0 && p.method != CouplingMethod::spread)
-      throw std::invalid_argument("immersed sheet: the defect is filtered with CouplingMethod::spread alone");
-    if (!(p.edge_inset >= 0.0 && p.edge_inset <= 1.0))
-      throw std::invalid_argument("immersed sheet: the inset of edges must be 0 to 1 cells");
-    if (p.edge_inset > 0.0 && p.method == CouplingMethod::sharp)
-      throw std::invalid_argument("immersed sheet: a sharp sheet has no inset of edges");
+  [[nodiscard]] FilteredAcceleration<ExecutionSpace> filtered() const {
+    return {_acceleration, _defect, _air.acceleration};
   }
 
-  static bool has_no_slip(const SheetParameters& p) {
-    const auto holds = [](const PorousLaw& law) { return law.no_slip; };
-    return p.law_of_vertex.empty() ? p.law.no_slip : std::ranges::any_of(p.law_of_vertex, holds);
-  }
-
-  [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_surface.vertices()); }
-  [[nodiscard]] Scalars scalars(const std::string& label) const { return Scalars(label, rows()); }
-  [[nodiscard]] Vectors vectors(const std::string& label) const { return Vectors(label, rows()); }
-
-  void copy_inverse_masses(const ExecutionSpace& space, const fabric::Parameters& cloth) const {
-    const auto mirror = Kokkos::create_mirror_view(_air.inverse_cloth_mass);
-    for (std::size_t i = 0; i < rows(); ++i)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const bool is_pinned = !cloth.pinned.empty() && (cloth.pinned[i] >> axis & 1U) != 0U;
-        mirror(i, axis) = is_pinned ? 0.0 : 1.0 / cloth.mass[i];
-      }
-    for (const fabric::Motion& motion : cloth.motions)
-      for (const int i : motion.vertices) mirror(i, motion.axis) = 0.0;
-    for (const auto& corners : cloth.mesh.triangles)
-      for (const int i : corners)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          if (_parameters.method == CouplingMethod::sharp && mirror(static_cast<std::size_t>(i), axis) > 0.0)
-            throw std::invalid_argument("immersed sheet: a sharp sheet needs prescribed motion");
-    Kokkos::deep_copy(space, _air.inverse_cloth_mass, mirror);
-    space.fence("drogue::coupling::immersed_sheet");
-  }
-
-  void copy_laws(const ExecutionSpace& space) const {
-    const std::vector<PorousLaw>& laws = _parameters.law_of_vertex;
-    if (!laws.empty() && laws.size() != rows())
-      throw std::invalid_argument("immersed sheet: there must be one porous law per vertex, or none");
-    const auto mirror = Kokkos::create_mirror_view(_air.law);
-    for (std::size_t i = 0; i < rows(); ++i) mirror(i) = laws.empty() ? _parameters.law : laws[i];
-    Kokkos::deep_copy(space, _air.law, mirror);
-    space.fence("drogue::coupling::immersed_sheet: porosity");
-  }
-
-  SheetParameters _parameters;
-  double _density;  ///< kg/m^3
-  fabric::SurfaceViews<ExecutionSpace> _surface;
-  GridTransfer<ExecutionSpace> _transfer;
   EdgeInset<ExecutionSpace> _inset;
-  RankSum<ExecutionSpace> _rank_sum;
-  LocalAir<ExecutionSpace> _air;
-  FilteredAcceleration<ExecutionSpace> _filtered;
-  Vectors _force, _after;
   Vectors _present;  ///< positions with the inset, m; empty without it
   Vectors _interpolated_force;
-  std::optional<ClosingSheets<ExecutionSpace>> _closing;  ///< never empty
-  std::optional<SharpSheet<ExecutionSpace>> _sharp;
+  Vectors _defect;  ///< filtered, m/s^2; empty without `SheetParameters::defect_filter`
 };
 
 DROGUE_EXTERN_INSTANCES(class ImmersedSheet)

@@ -5,7 +5,7 @@
 
 namespace drogue::coupling {
 
-// Defined in solver_adapter.hpp, instantiated for each backend in instances/.
+// Solver on an execution-space instance of its own: instances/solver.cpp, for each backend.
 template <class ExecutionSpace>
 std::unique_ptr<Solver> make_solver(const Parameters& parameters, const linear::RankGroup& group);
 

@@ -4,22 +4,24 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "kernels/coupling/sheet/parameters.hpp"
-#include "kernels/fabric/results.hpp"
+#include "kernels/fabric/solver.hpp"
 #include "kernels/flow/solver.hpp"
+#include "kernels/stepping/state_array.hpp"
 
 namespace drogue::coupling {
 
 /// Reason why a step of cloth in air failed.
 enum class FailureReason {
-  flow,         ///< the flow failed: `flow::Solver::failure` has the reason
+  flow,         ///< the flow failed: its `failure` has the reason
   cloth,        ///< the state of the cloth is not finite, or its contact failed
   left_domain,  ///< the air around a vertex extends beyond a side of the domain
   not_spread,   ///< a force on the air is not finite or larger than 1e270 N
   too_stiff,    ///< the cloth needs more than `most_substeps` steps in a step of the flow
-  line,         ///< a line carries more than its strength: `Solver::failed_line` has its number
+  line,         ///< a line carries more than its strength
 };
 
 /// Division of a run into blocks of steps with constant dt, which end at targets too. A restart that restores
@@ -52,90 +54,84 @@ struct FrameMotion {
   }
 };
 
+/// Numbers of vectors, as an array of a state has them. Does not throw.
+[[nodiscard]] inline std::span<double> numbers(std::vector<fabric::Vector>& rows) {
+  return {rows.empty() ? nullptr : rows.front().data(), 3 * rows.size()};
+}
+
+/// Progress of cloth in air. A restart that restores it with the arrays of the state continues bit for bit.
+struct Progress {
+  flow::Progress flow;
+  BlockProgress block;
+  FrameMotion frame;  ///< at rest unless `Parameters::follow` has a vertex
+};
+
+/// Failure that ended an `advance` with `flow::Stop::failed`.
+struct StepFailure {
+  FailureReason reason = FailureReason::flow;
+  int line = -1;  ///< first one in the mesh that carries more than its strength; -1 for other reasons
+  std::optional<fabric::StepFailure> cloth;  ///< step of the cloth with its own reason and vertex
+};
+
 /// Cloth in incompressible flow on a backend that a program chooses at run time. Needs an initialised
-/// runtime. To couple other kernels on the device, use `CoupledSolver`.
+/// runtime. To couple other kernels on the device, use `CoupledSolver`, which is this class with the
+/// functions that they need.
 ///
-/// The functions of the base class refer to the flow; `advance` moves both. With `Parameters::follow`, all
-/// velocities and positions are relative to a moving frame. Call `upload_cloth` and `upload`,
-/// then `start`; or restore all arrays of both, then `restore`. After a failed step, the state of both is
-/// that before the step of the flow.
+/// Upload the velocity to `flow` and positions and velocities to `fabric`, then call `start`; or restore all
+/// arrays of the state of `flow` and of `state`, then call `restore`; then `advance`, which moves both. Steps
+/// are those of this class alone: `start`, `restore`, `advance` and `enqueue_steps` of the parts are not to
+/// be called. With `Parameters::follow`, all velocities and positions are relative to a moving frame. After a
+/// failed step, the state of both is that before the step of the flow.
 ///
 /// On a group of several ranks each holds a part of the cells, as those of `flow::create_solver`, and the
 /// whole cloth, which is the same on all: each rank gives the same positions, velocities and accelerations,
 /// and reads those of all vertices.
-class Solver : public flow::Solver {
+class Solver {
  public:
-  /// Sets positions, m, and velocities, m/s, of all vertices. Throws std::invalid_argument for values that
-  /// are not finite and spans of the wrong length.
-  virtual void upload_cloth(std::span<const fabric::Vector> positions,
-                            std::span<const fabric::Vector> velocities) = 0;
+  virtual ~Solver() = default;
 
-  /// Copies positions, m, and velocities, m/s. Throws std::invalid_argument for spans of the wrong length.
-  virtual void download_cloth(std::span<fabric::Vector> positions, std::span<fabric::Vector> velocities) = 0;
+  /// The parts, for their states, fields, totals and failures. Does not throw.
+  [[nodiscard]] virtual flow::Solver& flow() = 0;
+  [[nodiscard]] virtual fabric::Solver& fabric() = 0;
 
-  /// Forces of the vertices on the air, N: mean over the last step of the flow. Throws std::invalid_argument
-  /// for a span of the wrong length.
-  virtual void forces(std::span<fabric::Vector> on_air) = 0;
+  /// Makes the uploaded velocities and positions the initial state at time 0 s and step 0, as
+  /// `flow::Solver::start`.
+  virtual void start() = 0;
 
-  /// Restores the forces on the air, N, after `restore`: a part of the state with explicit coupling. Throws
-  /// std::invalid_argument for a span of the wrong length.
-  virtual void upload_forces(std::span<const fabric::Vector> on_air) = 0;
+  /// Continues from uploaded arrays with the progress of an equal solver. Throws std::invalid_argument for
+  /// positions and velocities that are not finite, and for a velocity of the frame along an axis that it does
+  /// not follow.
+  virtual void restore(const Progress& progress) = 0;
 
-  /// Filtered acceleration of the air at the vertices, m/s^2, a part of the state. Throws
-  /// std::invalid_argument for a span of the wrong length.
-  virtual void download_air_acceleration(std::span<fabric::Vector> values) = 0;
+  /// As `flow::Solver::advance`.
+  virtual flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll) = 0;
 
-  /// Restores the filtered acceleration of the air, m/s^2, after `restore`. Throws std::invalid_argument for
-  /// a span of the wrong length.
-  virtual void upload_air_acceleration(std::span<const fabric::Vector> values) = 0;
+  /// Progress after the last step.
+  [[nodiscard]] virtual Progress progress() = 0;
 
-  /// Filtered defect at the vertices, m/s^2, a part of the state with `SheetParameters::defect_filter`; else
-  /// empty. Throws only std::bad_alloc and after a failed kernel.
-  [[nodiscard]] virtual std::vector<fabric::Vector> download_defect() = 0;
+  /// Failure that ended the last `advance`. Throws only after a failed kernel.
+  [[nodiscard]] virtual StepFailure failure() = 0;
 
-  /// Restores the filtered defect, m/s^2, after `restore`. Throws std::invalid_argument for a span of the
-  /// wrong length.
-  virtual void upload_defect(std::span<const fabric::Vector> values) = 0;
+  /// Arrays of the state of the cloth and of the air beside it, with which, with those of the flow and with
+  /// the progress an equal solver continues bit for bit.
+  [[nodiscard]] virtual std::vector<stepping::StateArray> state() const = 0;
 
-  /// Filtered acceleration of the air at all faces, m/s^2, a part of the state with a sharp sheet; else
-  /// empty. Throws only std::bad_alloc and after a failed kernel.
-  [[nodiscard]] virtual std::vector<double> download_face_acceleration() = 0;
+  /// Sets an array of `state`, in its unit, for `restore`. Throws std::invalid_argument for an unknown name
+  /// and a span of the wrong length.
+  virtual void upload(std::string_view name, std::span<const double> values) = 0;
 
-  /// Restores the acceleration of the air at all faces, m/s^2, after `restore`. Throws std::invalid_argument
-  /// for a span of the wrong length.
-  virtual void upload_face_acceleration(std::span<const double> values) = 0;
+  /// Copies an array of `state`, or "sheet_force": the forces of the vertices on the air, N, mean over the
+  /// last step of the flow, which is a part of the state with explicit coupling alone. Throws
+  /// std::invalid_argument for an unknown name and a span of the wrong length.
+  virtual void download(std::string_view name, std::span<double> values) = 0;
 
-  /// Block of the present step. Does not throw.
-  [[nodiscard]] virtual BlockProgress block() const = 0;
-
-  /// Restores the block, after `restore`. Does not throw.
-  virtual void set_block(const BlockProgress& block) = 0;
-
-  /// Motion of the frame of reference; at rest unless `Parameters::follow` has a vertex. Does not throw.
-  [[nodiscard]] virtual FrameMotion frame() const = 0;
-
-  /// Restores the motion of the frame of reference, after `restore`. Throws std::invalid_argument for a
-  /// velocity along an axis that the frame does not follow.
-  virtual void set_frame(const FrameMotion& frame) = 0;
-
-  /// Total of the force densities that act on the air in the last step of the flow, N: the sum of `forces` to
-  /// round-off. Throws only after a failed kernel.
+  /// Total of the force densities that act on the air in the last step of the flow, N: the sum of
+  /// "sheet_force" to round-off. Throws only after a failed kernel.
   [[nodiscard]] virtual std::array<double, 3> total_force_on_air() = 0;
 
   /// Velocity of the air, m/s, interpolated to the present positions of all vertices. Throws
   /// std::invalid_argument for a span of the wrong length.
   virtual void air_velocity(std::span<fabric::Vector> at_vertices) = 0;
-
-  /// Elastic forces on the vertices at the present positions, N, without those of the air and gravity. Throws
-  /// std::invalid_argument for a span of the wrong length.
-  virtual void elastic_forces(std::span<fabric::Vector> on_vertices) = 0;
-
-  /// Stress of every triangle at the present positions, N/m. Throws std::invalid_argument for a span of the
-  /// wrong length.
-  virtual void cloth_stress(fabric::StressMeasure measure, std::span<fabric::Stress> of_triangles) = 0;
-
-  /// Energies and momenta of the cloth. Throws only after a failed kernel.
-  [[nodiscard]] virtual fabric::Totals cloth_totals() = 0;
 
   /// Records the largest forces of lines on vertices, N, at the start and the end of every step of the flow,
   /// on the device. Call it before `start`, or before `restore` and `set_peak_pulls`. Replaces former pulls.
@@ -147,24 +143,13 @@ class Solver : public flow::Solver {
 
   /// Restores the peaks, N and s. Throws std::invalid_argument for another number than that of the pulls.
   virtual void set_peak_pulls(std::span<const fabric::PeakPull> peaks) = 0;
-
-  /// Reason of the failure that ended the last `advance` with `Stop::failed`. Throws only after a failed
-  /// kernel.
-  [[nodiscard]] virtual FailureReason failure_reason() = 0;
-
-  /// Number of the line whose tension has ended `advance`: the first one in the mesh. Throws only after a
-  /// failed kernel.
-  [[nodiscard]] virtual int failed_line() = 0;
-
-  /// Step of the cloth that has ended `advance`, if its cloth did, with reason and vertex. Does not throw.
-  [[nodiscard]] virtual std::optional<fabric::StepFailure> cloth_failure() = 0;
 };
 
 /// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters out of
 /// range, and std::bad_alloc if memory runs out.
 ///
-/// On a group of several ranks `total_force_on_air`, `air_velocity` and `set_frame` are collective, as are
-/// the functions of the flow; `create_solver` throws std::invalid_argument also if the ranks cannot share the
+/// On a group of several ranks all functions are collective but those of the cloth, `state` and `download`;
+/// `create_solver` throws std::invalid_argument also if the ranks cannot share the
 /// grid.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
                                                     const linear::RankGroup& group = {});

@@ -84,11 +84,11 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
     throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
   with_usage_error([&] {  // for ranks that cannot share the grid
     if (scene.has_sheets()) {
-      auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene, _sheets), group);
-      _coupled = coupled.get();
-      _solver = std::move(coupled);
+      _coupled = coupling::create_solver(settings.backend, coupled_parameters(scene, _sheets), group);
+      _solver = &_coupled->flow();
     } else {
-      _solver = flow::create_solver(settings.backend, scene.parameters, group);
+      _alone = flow::create_solver(settings.backend, scene.parameters, group);
+      _solver = _alone.get();
     }
   });
   for (const Body& body : scene.bodies) _inside.emplace_back(body, scene.parameters);
@@ -105,9 +105,12 @@ void Simulation::start() {
     const flow::StateField field = velocity_field(axis);
     _solver->upload(field, evaluate(SpaceTimeFunction(velocity), _parts.lattice(field), 0.0));
   }
-  if (_coupled != nullptr)
-    _coupled->upload_cloth(_sheets.positions, std::vector<fabric::Vector>(_sheets.positions.size()));
-  _solver->start();
+  if (_coupled != nullptr) {
+    _coupled->fabric().upload(_sheets.positions, std::vector<fabric::Vector>(_sheets.positions.size()));
+    _coupled->start();
+  } else {
+    _solver->start();
+  }
   _statistics.begin(_solver->totals());
   sample_fields(_snapshots[0]);  // allocates what all outputs need
 }
@@ -138,7 +141,8 @@ framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits
       const std::int64_t next_row = (before / limits.row_every + 1) * limits.row_every;
       if (pause < 0 || next_row < pause) pause = next_row;
     }
-    _stop = _solver->advance(limits.target_time, pause, forward);
+    _stop = _coupled != nullptr ? _coupled->advance(limits.target_time, pause, forward)
+                                : _solver->advance(limits.target_time, pause, forward);
     const std::int64_t step = _solver->progress().step;
     const bool failed = _stop == flow::Stop::failed || _stop == flow::Stop::max_steps;
     // The last good state of a failed run ends its history.
@@ -162,9 +166,11 @@ framework::HistoryRow Simulation::row() {
     if (!is_periodic(_scene.parameters, side)) row.values.push_back(now.outflow[side]);
   const std::vector<fabric::Vector> forces = body_forces();
   for (const fabric::Vector& force : forces) row.values.insert(row.values.end(), force.begin(), force.end());
-  append_outside_forces(forces, _solver->progress().last_dt, row);
+  const coupling::Progress progress =
+      _coupled != nullptr ? _coupled->progress() : coupling::Progress{_solver->progress(), {}, {}};
+  append_outside_forces(forces, progress.flow.last_dt, row);
   append_displacements(row);
-  append_canopy_values(row);
+  append_canopy_values(progress.frame, row);
   append_flag_values(row);
   return row;
 }
@@ -262,7 +268,7 @@ void Simulation::describe(run::ResultDocument& result) {
   if (!_scene.canopies.empty()) {
     result.metrics.set("canopies", "vertices",
                        static_cast<std::int64_t>(_sheets.positions.size() - vertices_of(_scene.bodies)));
-    result.metrics.set("canopies", "substeps", _coupled->block().substeps);
+    result.metrics.set("canopies", "substeps", _coupled->progress().block.substeps);
     if (_scene.is_explicit())
       result.metrics.set("canopies", "added_mass_ratio", _scene.largest_added_mass_ratio());
   }

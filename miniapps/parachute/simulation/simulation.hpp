@@ -70,7 +70,7 @@ class Simulation final : public framework::Simulation {
                              framework::HistoryRow& row);
   void append_displacements(framework::HistoryRow& row);
   void append_flag_values(framework::HistoryRow& row);
-  void append_canopy_values(framework::HistoryRow& row);
+  void append_canopy_values(const coupling::FrameMotion& frame, framework::HistoryRow& row);
   void sample_flow_field(flow::CellField field, std::span<double> values);
   void require_converged_pressure(flow::CellField field);
   [[nodiscard]] std::string residual_text(double residual) const;
@@ -89,7 +89,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] const char* step_key() const;
   [[nodiscard]] std::string light_cloth_text() const;
   void write_coupling(run::RestartWriter& writer);
-  void read_coupling(const run::RestartReader& reader);
+  void read_coupling(const run::RestartReader& reader, coupling::Progress& progress);
 
   const FlowScene& _scene;
   Communicator& _communicator;
@@ -97,11 +97,12 @@ class Simulation final : public framework::Simulation {
   Sheets _sheets;
   Airstream _airstream;
   ImageWatch _images;
-  std::optional<std::string> _met_image;  ///< what has ended the run
-  std::vector<InsideFluid> _inside;       ///< of each body
-  std::vector<SheetGrid> _grids;          ///< in fields.h5, beside flow and canopies
-  coupling::Solver* _coupled = nullptr;   ///< `_solver` with bodies or canopies
-  std::unique_ptr<flow::Solver> _solver;
+  std::optional<std::string> _met_image;       ///< what has ended the run
+  std::vector<InsideFluid> _inside;            ///< of each body
+  std::vector<SheetGrid> _grids;               ///< in fields.h5, beside flow and canopies
+  std::unique_ptr<coupling::Solver> _coupled;  ///< with bodies, canopies or flags
+  std::unique_ptr<flow::Solver> _alone;        ///< without
+  flow::Solver* _solver = nullptr;             ///< the flow of either, for all but its steps
   RunStatistics _statistics;
   PeakPulls _peaks;
   /// Used in turn: one is written while the other is filled. Empty on several ranks.

@@ -145,9 +145,9 @@ std::string Simulation::stiff_cloth_text() {
 std::string Simulation::broken_line_text() {
   std::ostringstream text;
   text.precision(9);
-  const int line = _coupled->failed_line();
+  const int line = _coupled->failure().line;
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-  _coupled->download_cloth(positions, velocities);
+  _coupled->fabric().download(positions, velocities);
   const Vector& skirt =
       positions[static_cast<std::size_t>(_sheets.fabric.mesh.lines[static_cast<std::size_t>(line)][0])];
   for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
@@ -184,7 +184,7 @@ std::string Simulation::leaving_part_text(std::size_t vertex) const {
 /// Vertex that is closest to a side, in cells.
 std::string Simulation::leaving_vertex_text() {
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-  _coupled->download_cloth(positions, velocities);
+  _coupled->fabric().download(positions, velocities);
   const flow::Parameters& p = _scene.parameters;
   const auto spacing = lattice_of(p, flow::StateField::pressure).spacing;
   double least = std::numeric_limits<double>::infinity();
@@ -243,7 +243,7 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
       text << "a force on a sheet is not finite after " << now_text();
       return text.str();
     case coupling::FailureReason::cloth: {
-      const auto failure = _coupled->cloth_failure().value_or(fabric::StepFailure{});
+      const auto failure = _coupled->failure().cloth.value_or(fabric::StepFailure{});
       if (const std::string motion = lost_motion_text(failure); !motion.empty()) return motion;
       text << cloth_failure_text(failure.reason) << " at " << vertex_text(failure.index) << " after "
            << now_text() << "; a smaller " << step_key() << " may save the run";
@@ -263,7 +263,7 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
 
 bool Simulation::meets_image() {
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-  _coupled->download_cloth(positions, velocities);
+  _coupled->fabric().download(positions, velocities);
   const flow::Progress now = _solver->progress();
   _met_image = _images.look({.step = now.step,
                              .time = now.time,
@@ -278,7 +278,7 @@ std::string Simulation::failure_cause() {
     return *_met_image + " after " + now_text() +
            "; a larger grid.domain or a shorter run.end_time may save the run";
   if (_stop == flow::Stop::max_steps) return step_limit_text(_scene, now().time);
-  const auto reason = _coupled != nullptr ? _coupled->failure_reason() : coupling::FailureReason::flow;
+  const auto reason = _coupled != nullptr ? _coupled->failure().reason : coupling::FailureReason::flow;
   return reason == coupling::FailureReason::flow ? flow_failure_text() : sheet_failure_text(reason);
 }
 

@@ -2,7 +2,6 @@
 #include <string>
 
 #include "common/program/stopwatch.hpp"
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
@@ -31,23 +30,15 @@ void visit(Progress& progress, const Number& number, const Integer& integer) {
 }  // namespace
 
 void Simulation::write_coupling(run::RestartWriter& writer) {
-  const std::size_t vertices = _sheets.positions.size();
-  const coupling::RestartState state = coupling::download_restart_state(*_coupled, vertices);
-  const auto write = [&](const char* name, const std::vector<fabric::Vector>& values) {
-    writer.array(name, 3 * vertices);
-    writer.write(name, 0, {values.front().data(), 3 * vertices});
-  };
-  write("air_acceleration", state.air_acceleration);
-  if (!state.defect.empty()) write("defect", state.defect);
-  if (_scene.is_explicit()) write("sheet_force", state.forces);
-  write("sheet_position", state.positions);
-  write("sheet_velocity", state.velocities);
-  if (const std::vector<double>& faces = state.face_acceleration; !faces.empty()) {
-    writer.array("face_acceleration", faces.size());
-    writer.write("face_acceleration", 0, faces);
+  std::vector<double> values;
+  for (const stepping::StateArray& array : _coupled->state()) {
+    values.resize(array.size());
+    _coupled->download(array.name, values);
+    writer.array(array.name, values.size());
+    writer.write(array.name, 0, values);
   }
   _peaks.write(writer, *_coupled);
-  const coupling::BlockProgress& block = state.block;
+  const auto [flow, block, frame] = _coupled->progress();
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
   writer.integer("block_end", block.end);
@@ -55,7 +46,6 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   writer.integer("block_since", block.since);
   writer.number("block_start", block.start);
   if (_scene.frame != Frame::follow) return;
-  const coupling::FrameMotion& frame = state.frame;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     writer.number(std::string("frame_velocity_") + axis_names[axis], frame.velocity[axis]);
     writer.number(std::string("frame_start_") + axis_names[axis], frame.start[axis]);
@@ -63,32 +53,26 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   writer.number("frame_since", frame.since);
 }
 
-void Simulation::read_coupling(const run::RestartReader& reader) {
-  coupling::RestartState state = coupling::download_restart_state(*_coupled, _sheets.positions.size());
-  const auto read = [&](const char* name, std::vector<fabric::Vector>& values) {
-    reader.read(name, 0, {values.front().data(), 3 * values.size()});
-  };
-  read("sheet_position", state.positions);
-  read("sheet_velocity", state.velocities);
-  read("air_acceleration", state.air_acceleration);
-  if (!state.defect.empty()) read("defect", state.defect);
-  if (_scene.is_explicit()) read("sheet_force", state.forces);
-  if (!state.face_acceleration.empty()) reader.read("face_acceleration", 0, state.face_acceleration);
-  _peaks.read(reader, *_coupled);
-  state.block = {.dt = reader.number("block_dt"),
-                 .substeps = reader.integer("block_substeps"),
-                 .end = reader.integer("block_end"),
-                 .cloth_step = reader.integer("block_cloth_step"),
-                 .since = reader.integer("block_since"),
-                 .start = reader.number("block_start")};
-  if (_scene.frame == Frame::follow) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      state.frame.velocity[axis] = reader.number(std::string("frame_velocity_") + axis_names[axis]);
-      state.frame.start[axis] = reader.number(std::string("frame_start_") + axis_names[axis]);
-    }
-    state.frame.since = reader.number("frame_since");
+void Simulation::read_coupling(const run::RestartReader& reader, coupling::Progress& progress) {
+  std::vector<double> values;
+  for (const stepping::StateArray& array : _coupled->state()) {
+    values.resize(array.size());
+    reader.read(array.name, 0, values);
+    _coupled->upload(array.name, values);
   }
-  coupling::upload_restart_state(*_coupled, state);
+  progress.block = {.dt = reader.number("block_dt"),
+                    .substeps = reader.integer("block_substeps"),
+                    .end = reader.integer("block_end"),
+                    .cloth_step = reader.integer("block_cloth_step"),
+                    .since = reader.integer("block_since"),
+                    .start = reader.number("block_start")};
+  if (_scene.frame != Frame::follow) return;
+  coupling::FrameMotion& frame = progress.frame;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    frame.velocity[axis] = reader.number(std::string("frame_velocity_") + axis_names[axis]);
+    frame.start[axis] = reader.number(std::string("frame_start_") + axis_names[axis]);
+  }
+  frame.since = reader.number("frame_since");
 }
 
 void Simulation::write_restart(run::RestartWriter& writer) {
@@ -111,9 +95,9 @@ void Simulation::write_restart(run::RestartWriter& writer) {
 
 void Simulation::restore(const run::RestartReader& reader) {
   const ScopedStopwatch stopwatch(_h2d_s);
-  flow::Progress progress;
+  coupling::Progress progress;
   visit(
-      progress, [&](const std::string& name, double& value) { value = reader.number(name); },
+      progress.flow, [&](const std::string& name, double& value) { value = reader.number(name); },
       [&](const std::string& name, auto& value) {
         value = std::bit_cast<std::remove_reference_t<decltype(value)>>(reader.integer(name));
       });
@@ -123,9 +107,14 @@ void Simulation::restore(const run::RestartReader& reader) {
     reader.read(array_name(field), _parts.blocks(field), values);
     _solver->upload(field, values);
   }
-  _solver->restore(progress);
+  if (_coupled != nullptr) {
+    read_coupling(reader, progress);
+    _coupled->restore(progress);
+    _peaks.read(reader, *_coupled);
+  } else {
+    _solver->restore(progress.flow);
+  }
   _statistics.read(reader, *_solver);
-  if (_coupled != nullptr) read_coupling(reader);
   static_cast<void>(_solver->totals());
   sample_fields(_snapshots[0]);
 }

@@ -31,9 +31,9 @@ SheetState Simulation::sheet_state() {
   SheetState state;
   for (auto* values : {&state.positions, &state.velocities, &state.on_air, &state.elastic})
     values->resize(vertices);
-  _coupled->download_cloth(state.positions, state.velocities);
-  _coupled->forces(state.on_air);
-  _coupled->elastic_forces(state.elastic);
+  _coupled->fabric().download(state.positions, state.velocities);
+  _coupled->download("sheet_force", coupling::numbers(state.on_air));
+  _coupled->fabric().forces(state.elastic);
   return state;
 }
 
@@ -42,7 +42,7 @@ std::vector<Vector> Simulation::body_forces() {
   std::vector<Vector> sums(_scene.bodies.size(), Vector{});
   if (sums.empty()) return sums;
   std::vector<Vector> on_fluid(_sheets.positions.size());
-  _coupled->forces(on_fluid);
+  _coupled->download("sheet_force", coupling::numbers(on_fluid));
   auto force = on_fluid.begin();
   for (std::size_t i = 0; i < sums.size(); ++i)
     for (std::size_t k = 0; k < static_cast<std::size_t>(_scene.bodies[i].vertices()); ++k, ++force)
@@ -66,7 +66,7 @@ void Simulation::append_displacements(framework::HistoryRow& row) {
   const auto has_mount = [](const Body& body) { return body.mount.has_value(); };
   if (std::ranges::none_of(_scene.bodies, has_mount)) return;
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-  _coupled->download_cloth(positions, velocities);
+  _coupled->fabric().download(positions, velocities);
   std::size_t vertex = 0;
   for (const Body& body : _scene.bodies) {
     const auto vertices = static_cast<std::size_t>(body.vertices()),
@@ -78,16 +78,15 @@ void Simulation::append_displacements(framework::HistoryRow& row) {
   }
 }
 
-void Simulation::append_canopy_values(framework::HistoryRow& row) {
+void Simulation::append_canopy_values(const coupling::FrameMotion& frame, framework::HistoryRow& row) {
   if (_scene.canopies.empty()) return;
   SheetState state = sheet_state();
   state.air.resize(state.positions.size());
   _coupled->air_velocity(state.air);
-  const coupling::FrameMotion frame = _coupled->frame();
   const Vector origin = frame.position(row.time);
   append_measures(_scene, _airstream, _sheets, state, origin, frame.velocity, row);
   const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
-  fabric::Totals totals = _coupled->cloth_totals();
+  fabric::Totals totals = _coupled->fabric().totals();
   // The vertices of moving bodies have a mass without meaning.
   for (std::size_t i = 0; i < vertices_of(_scene.bodies); ++i)
     for (const double v : state.velocities[i]) totals.kinetic -= 0.5 * _sheets.fabric.mass[i] * v * v;
@@ -117,18 +116,18 @@ void Simulation::append_flag_values(framework::HistoryRow& row) {
 void Simulation::sample_canopy_field(const std::string& name, std::vector<double>& values) {
   if (name == "position") {
     std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-    _coupled->download_cloth(positions, velocities);
+    _coupled->fabric().download(positions, velocities);
     copy_canopy_positions(_sheets, positions, values);
     return;
   }
   std::vector<fabric::Stress> stress(_sheets.fabric.mesh.triangles.size());
-  _coupled->cloth_stress(fabric::StressMeasure::cauchy, stress);
+  _coupled->fabric().stress(fabric::StressMeasure::cauchy, stress);
   copy_canopy_stress(_sheets, stress, values);
 }
 
 void Simulation::sample_positions(const SheetGrid& grid, std::vector<double>& values) {
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
-  _coupled->download_cloth(positions, velocities);
+  _coupled->fabric().download(positions, velocities);
   copy_positions(grid.begin, positions, values);
 }
 

@@ -37,7 +37,7 @@ std::vector<double> values(const CoupledCase& c, CoupledRun& run, StateField fie
   const std::array<int, 3> n = extents(c.p.flow, field);
   std::vector<double> result(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) *
                              static_cast<std::size_t>(n[2]));
-  run.solver->download(field, result);
+  run.solver->flow().download(field, result);
   return result;
 }
 
@@ -65,9 +65,9 @@ TEST(MovingSheet, CarriesTheFluidOfAChannelWithIt) {
     CoupledRun run(c);
     ASSERT_TRUE(run.advance(steps));
     const double mass = c.p.flow.density * c.volume(), speed = amplitude * omega * std::cos(omega * end);
-    error[level] = std::abs(run.solver->totals().momentum[0] / mass - speed) / (amplitude * omega);
+    error[level] = std::abs(run.solver->flow().totals().momentum[0] / mass - speed) / (amplitude * omega);
     std::vector<Vector> x(c.x.size()), v(c.x.size());
-    run.solver->download_cloth(x, v);
+    run.solver->fabric().download(x, v);
     EXPECT_NEAR(x[0][0] - c.x[0][0], amplitude * std::sin(omega * end), 1e-12);
   }
   EXPECT_LT(error[1], 4e-3);
@@ -84,7 +84,7 @@ TEST(MovingSheet, IsWhereItsMotionIsDefined) {
     CoupledRun run(c);
     ASSERT_TRUE(run.advance(10)) << defined_until;
     std::vector<Vector> x(c.x.size()), v(c.x.size());
-    run.solver->download_cloth(x, v);
+    run.solver->fabric().download(x, v);
     EXPECT_NEAR(x[0][0] - c.x[0][0], 0.1 * std::pow(defined_until - 0.05, 1.5), 1e-9);
     EXPECT_GT(std::abs(run.force()[0]), 1e-4) << "the air feels it";
   }
@@ -105,9 +105,9 @@ TEST(MovingSheet, MotionThatIsNotFiniteFails) {
     move(c, 0, each.motion);
     CoupledRun run(c);
     EXPECT_FALSE(run.advance(10)) << each.what;
-    EXPECT_EQ(run.solver->failure_reason(), FailureReason::cloth) << each.what;
-    ASSERT_TRUE(run.solver->cloth_failure()) << each.what;
-    EXPECT_EQ(run.solver->progress().step, each.steps) << each.what;
+    EXPECT_EQ(run.solver->failure().reason, FailureReason::cloth) << each.what;
+    ASSERT_TRUE(run.solver->failure().cloth) << each.what;
+    EXPECT_EQ(run.solver->progress().flow.step, each.steps) << each.what;
   }
 }
 
@@ -219,8 +219,8 @@ TEST(NoSlipSheet, MovesThroughFluidAtRestAsItStandsInAStream) {
   add_circle(c, 2.4, 1.6, 0.4, 50);
   CoupledRun fixed(c);
   const std::array<int, 3> n = extents(c.p.flow, StateField::velocity_x);
-  fixed.solver->upload(StateField::velocity_x,
-                       std::vector<double>(static_cast<std::size_t>(n[0] * n[1]), speed));
+  fixed.solver->flow().upload(StateField::velocity_x,
+                              std::vector<double>(static_cast<std::size_t>(n[0] * n[1]), speed));
   fixed.solver->start();
   move(c, 0, postfix({-speed, "t", "*"}));
   CoupledRun moving(c);
@@ -245,8 +245,8 @@ struct CircleInStream {
     add_circle(c, 2.4, 1.6, 0.4, 50);
     CoupledRun run(c);
     const std::array<int, 3> n = extents(c.p.flow, StateField::velocity_x);
-    run.solver->upload(StateField::velocity_x,
-                       std::vector<double>(static_cast<std::size_t>(n[0] * n[1]), speed));
+    run.solver->flow().upload(StateField::velocity_x,
+                              std::vector<double>(static_cast<std::size_t>(n[0] * n[1]), speed));
     run.solver->start();
     EXPECT_TRUE(run.advance(200));
     std::vector<Vector> air(c.x.size());
@@ -272,7 +272,7 @@ TEST(NoSlipSheet, TakesTheMomentumThatThePeriodicFluidLoses) {
   c.p.sheet.defect_filter = 0.1;
   add_circle(c, 1.33, 0.81, 0.4, 50);
   CoupledRun run(c);
-  const auto momentum = [&] { return run.solver->totals().momentum[0]; };
+  const auto momentum = [&] { return run.solver->flow().totals().momentum[0]; };
   double before = momentum();
   for (int step = 0; step < 100; ++step) {
     ASSERT_TRUE(run.advance(1));

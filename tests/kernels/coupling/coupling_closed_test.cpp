@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/device/backend.hpp"
 #include "kernels/reference/coupling/closed_channel.hpp"
 #include "tests/support/coupled_case.hpp"
@@ -52,7 +51,7 @@ void move_along_x(CoupledCase& c, const device::ExpressionProgram& displacement)
 }
 
 double mean_velocity(const CoupledCase& c, CoupledRun& run) {
-  return run.solver->totals().momentum[0] / (mass(c) * section(c));
+  return run.solver->flow().totals().momentum[0] / (mass(c) * section(c));
 }
 
 TEST(ClosingSheets, TakeTheStepsOfTheWholeChannel) {
@@ -77,7 +76,7 @@ TEST(ClosingSheets, TakeTheStepsOfTheWholeChannel) {
           velocity = expected.velocity;
           ASSERT_NEAR(mean_velocity(c, run), velocity, 1e-10) << nx << ' ' << laws.size() << ' ' << step;
           std::vector<Vector> forces(c.x.size());
-          run.solver->forces(forces);
+          run.solver->download("sheet_force", numbers(forces));
           for (std::size_t k = 0; k < sheets.size(); ++k) {
             const ClosingSheet& sheet = c.p.sheet.closing[k];
             double sum = 0.0;
@@ -100,7 +99,7 @@ TEST(ClosingSheets, CarryTheFluidOfALongChannel) {
     for (int step = 1; step <= 60; ++step) {
       ASSERT_TRUE(run.advance(1));
       std::vector<Vector> x(c.x.size()), v(c.x.size());
-      run.solver->download_cloth(x, v);
+      run.solver->fabric().download(x, v);
       const double dt = c.p.flow.fixed_dt, velocity = v[0][0];
       EXPECT_NEAR(velocity, amplitude * omega * std::cos(omega * step * dt), 1e-6) << step;
       EXPECT_NEAR(mean_velocity(c, run), velocity, 1e-12) << step;
@@ -123,7 +122,7 @@ TEST(ClosingSheets, ObeyTheLawAtOnceWhereTheFlowRateIsPrescribed) {
       c.p.flow.boundary[1].velocity = {1.0, 0.0, 0.0};
       CoupledRun run(c);
       std::vector<double> one(flow::state_size(c.p.flow, flow::StateField::velocity_x), 1.0);
-      run.solver->upload(flow::StateField::velocity_x, one);
+      run.solver->flow().upload(flow::StateField::velocity_x, one);
       run.solver->start();
       for (int step = 0; step < 10; ++step) {
         ASSERT_TRUE(run.advance(1));
@@ -141,21 +140,15 @@ TEST(ClosingSheets, ContinueBitForBitAndBackendsAgree) {
     CoupledRun whole(c), first(c), second(c);
     ASSERT_TRUE(whole.advance(20));
     ASSERT_TRUE(first.advance(8));
-    for (const flow::StateField field : flow::state_fields(c.p.flow)) {
-      std::vector<double> values(flow::state_size(c.p.flow, field));
-      first.solver->download(field, values);
-      second.solver->upload(field, values);
-    }
-    second.solver->restore(first.solver->progress());
-    upload_restart_state(*second.solver, download_restart_state(*first.solver, c.x.size()));
+    restore(c, coupled_state(c, *first.solver), *second.solver);
     ASSERT_TRUE(second.advance(12));
     EXPECT_EQ(second.force(), whole.force());
     std::vector<Vector> here(c.x.size()), there(c.x.size());
-    whole.solver->forces(here);
+    whole.solver->download("sheet_force", numbers(here));
     for (const device::Backend backend : device::compiled_backends()) {
       const auto other = c.solver(backend);
       ASSERT_EQ(other->advance(1e9, 20, {}), flow::Stop::pause);
-      other->forces(there);
+      other->download("sheet_force", numbers(there));
       for (std::size_t i = 0; i < here.size(); ++i)
         EXPECT_NEAR(there[i][0], here[i][0], drogue::testing::run_tolerance) << i;
     }

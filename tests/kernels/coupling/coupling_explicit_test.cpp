@@ -53,7 +53,7 @@ reference::PistonParameters reference_of(const CoupledCase& c, double mass) {
 /// Velocity of a vertex, m/s.
 double velocity_of_piston(CoupledRun& run) {
   std::vector<Vector> x(run.vertices), v(run.vertices);
-  run.solver->download_cloth(x, v);
+  run.solver->fabric().download(x, v);
   return v[8][0];
 }
 
@@ -126,7 +126,7 @@ TEST(ExplicitCoupling, ClothTakesTheMomentumThatTheAirTookInTheLastStep) {
     c.p.sheet.method = CouplingMethod::explicit_;
     c.p.substeps = 10;
     CoupledRun run(c);
-    const double scale = run.solver->cloth_totals().momentum[0];
+    const double scale = run.solver->fabric().totals().momentum[0];
     Vector air{}, cloth{}, gained{};
     const auto update = [](Vector& old, const auto& now) {
       Vector change{};
@@ -134,13 +134,13 @@ TEST(ExplicitCoupling, ClothTakesTheMomentumThatTheAirTookInTheLastStep) {
         change[axis] = now[axis] - old[axis], old[axis] = now[axis];
       return change;
     };
-    update(air, run.solver->totals().momentum);
-    update(cloth, run.solver->cloth_totals().momentum);
+    update(air, run.solver->flow().totals().momentum);
+    update(cloth, run.solver->fabric().totals().momentum);
     for (int step = 0; step < 20; ++step) {
       ASSERT_TRUE(run.advance(1));
-      const Vector lost = update(cloth, run.solver->cloth_totals().momentum);
+      const Vector lost = update(cloth, run.solver->fabric().totals().momentum);
       for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(lost[axis], -gained[axis], 1e-14 * scale);
-      gained = update(air, run.solver->totals().momentum);
+      gained = update(air, run.solver->flow().totals().momentum);
     }
     EXPECT_GT(air[0], 0.01 * scale);
   }

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/expression_program.hpp"
 
@@ -37,7 +36,7 @@ void follow_first_vertex(CoupledCase& c) {
 std::vector<double> array_of(const CoupledCase& c, Solver& solver, StateField field) {
   const std::array<int, 3> n = extents(c.p.flow, field);
   std::vector<double> values(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]));
-  solver.download(field, values);
+  solver.flow().download(field, values);
   return values;
 }
 
@@ -47,7 +46,7 @@ struct FabricState {
 
 FabricState fabric_of(const CoupledCase& c, Solver& solver) {
   FabricState cloth{std::vector<Vector>(c.x.size()), std::vector<Vector>(c.x.size())};
-  solver.download_cloth(cloth.x, cloth.v);
+  solver.fabric().download(cloth.x, cloth.v);
   return cloth;
 }
 
@@ -73,12 +72,12 @@ double vortex_error(int n, flow::TimeScheme time) {
       u.push_back(exact(i * h, (j + 0.5) * h, 0.0));
       v.push_back(-exact(j * h, (i + 0.5) * h, 0.0));
     }
-  run->upload(StateField::velocity_x, u);
-  run->upload(StateField::velocity_y, v);
-  run->upload_cloth(c.x, c.v);
+  run->flow().upload(StateField::velocity_x, u);
+  run->flow().upload(StateField::velocity_y, v);
+  run->fabric().upload(c.x, c.v);
   run->start();
   EXPECT_EQ(run->advance(end, -1, {}), flow::Stop::target);
-  const FrameMotion frame = run->frame();
+  const FrameMotion frame = run->progress().frame;
   EXPECT_GT(frame.velocity[0], 0.8 * fall * end);
   const double moved = frame.position(end)[0];
   EXPECT_GT(moved, 0.3 * fall * end * end);
@@ -123,20 +122,20 @@ TEST(MovingFrame, KeepsTheMomentumOfClothAndAirInTheFixedFrame) {
   const double air = c.p.flow.density * c.volume(),
                cloth = std::accumulate(c.p.fabric.mass.begin(), c.p.fabric.mass.end(), 0.0);
   const auto momentum = [&] {
-    return run.solver->totals().momentum[0] + run.solver->cloth_totals().momentum[0] +
-           (air + cloth) * run.solver->frame().velocity[0];
+    return run.solver->flow().totals().momentum[0] + run.solver->fabric().totals().momentum[0] +
+           (air + cloth) * run.solver->progress().frame.velocity[0];
   };
   const double initial = momentum();
   EXPECT_NEAR(initial, 6.0 * cloth, 1e-12);
   double fastest = 0.0;
   for (int block = 0; block < 12; ++block) {
     ASSERT_TRUE(run.advance(16));
-    fastest = std::max(fastest, run.solver->frame().velocity[0]);
+    fastest = std::max(fastest, run.solver->progress().frame.velocity[0]);
     EXPECT_NEAR(momentum(), initial, 1e-11 * air * fastest);
-    EXPECT_LT(run.solver->totals().divergence_max, 1e-9);
+    EXPECT_LT(run.solver->flow().totals().divergence_max, 1e-9);
   }
   EXPECT_GT(fastest, 5.9);
-  EXPECT_LT(run.solver->frame().velocity[0], 3.0);
+  EXPECT_LT(run.solver->progress().frame.velocity[0], 3.0);
 }
 
 TEST(MovingFrame, ContinuesBitForBit) {
@@ -149,19 +148,17 @@ TEST(MovingFrame, ContinuesBitForBit) {
     ASSERT_TRUE(first.advance(48));
     const auto second = create_solver(tested_backend, c.p);
     const std::vector<StateField> fields = flow::state_fields(c.p.flow);
-    for (const StateField field : fields) second->upload(field, array_of(c, *first.solver, field));
-    second->restore(first.solver->progress());
-    upload_restart_state(*second, download_restart_state(*first.solver, c.x.size()));
+    drogue::testing::restore(c, coupled_state(c, *first.solver), *second);
     ASSERT_EQ(second->advance(1e9, 71, {}), flow::Stop::pause);
     for (const StateField field : fields)
       EXPECT_EQ(array_of(c, *second, field), array_of(c, *whole.solver, field));
     const FabricState one = fabric_of(c, *second), other = fabric_of(c, *whole.solver);
     EXPECT_EQ(one.x, other.x);
     EXPECT_EQ(one.v, other.v);
-    EXPECT_EQ(second->frame().velocity, whole.solver->frame().velocity);
-    EXPECT_EQ(second->frame().start, whole.solver->frame().start);
-    EXPECT_EQ(second->frame().since, whole.solver->frame().since);
-    EXPECT_NE(second->frame().velocity[0], first.solver->frame().velocity[0]);
+    EXPECT_EQ(second->progress().frame.velocity, whole.solver->progress().frame.velocity);
+    EXPECT_EQ(second->progress().frame.start, whole.solver->progress().frame.start);
+    EXPECT_EQ(second->progress().frame.since, whole.solver->progress().frame.since);
+    EXPECT_NE(second->progress().frame.velocity[0], first.solver->progress().frame.velocity[0]);
   }
 }
 
@@ -185,7 +182,7 @@ TEST(MovingFrame, KeepsTheFallOfAStrip) {
     CoupledRun run(c);
     ASSERT_EQ(run.solver->advance(end, -1, {}), flow::Stop::target);
     const FabricState cloth = fabric_of(c, *run.solver);
-    const FrameMotion frame = run.solver->frame();
+    const FrameMotion frame = run.solver->progress().frame;
     EXPECT_EQ(frame.velocity[0] != 0.0, follows == 1);
     EXPECT_EQ(frame.velocity[1], 0.0);
     velocity[follows] = place[follows] = 0.0;
@@ -218,12 +215,12 @@ TEST(MovingFrame, MovesAnInflowAndKeepsAUniformStreamUniform) {
   for (const StateField field : {StateField::velocity_x, StateField::velocity_y}) {
     std::vector<double> stream = array_of(c, *solver, field);
     std::ranges::fill(stream, field == StateField::velocity_x ? 5.0 : 0.3);
-    solver->upload(field, stream);
+    solver->flow().upload(field, stream);
   }
-  solver->upload_cloth(c.x, c.v);
+  solver->fabric().upload(c.x, c.v);
   solver->start();
   ASSERT_EQ(solver->advance(1e9, 100, {}), flow::Stop::pause);
-  const double w = solver->frame().velocity[0];
+  const double w = solver->progress().frame.velocity[0];
   EXPECT_LT(w, -5.0);
   for (const double u : array_of(c, *solver, StateField::velocity_x)) EXPECT_NEAR(u, 5.0 - w, 1e-12);
   for (const double v : array_of(c, *solver, StateField::velocity_y)) EXPECT_NEAR(v, 0.3, 1e-12);
@@ -249,13 +246,18 @@ TEST(MovingFrame, RejectsInvalidParameters) {
     p.flow.boundary[0].velocity_expressions.assign(3, postfix({"t"}));
     p.flow.boundary[1].kind = BoundaryKind::outflow;
   });
+  const auto set_frame = [](CoupledRun& run, const Vector& velocity) {
+    Progress progress = run.solver->progress();
+    progress.frame = {velocity, {}, 0.0};
+    run.solver->restore(progress);
+  };
   const CoupledCase c = coasting_strip();
   CoupledRun run(c);
-  EXPECT_THROW(run.solver->set_frame({{0.0, 1.0, 0.0}, {}, 0.0}), std::invalid_argument);
+  EXPECT_THROW(set_frame(run, {0.0, 1.0, 0.0}), std::invalid_argument);
   CoupledCase still = coasting_strip();
   still.p.follow = {};
   CoupledRun at_rest(still);
-  EXPECT_THROW(at_rest.solver->set_frame({{1.0, 0.0, 0.0}, {}, 0.0}), std::invalid_argument);
+  EXPECT_THROW(set_frame(at_rest, {1.0, 0.0, 0.0}), std::invalid_argument);
 }
 
 TEST(MovingFrameCounters, CostsNothingWithinABlock) {

@@ -80,7 +80,7 @@ struct Motion {
 
 Motion motion_of(const CoupledCase& c, CoupledRun& run, std::size_t vertex) {
   std::vector<Vector> x(run.vertices), v(run.vertices);
-  run.solver->download_cloth(x, v);
+  run.solver->fabric().download(x, v);
   return {x[vertex][0] - c.x[vertex][0], v[vertex][0]};
 }
 
@@ -178,14 +178,14 @@ struct SineSheet {
     for (std::size_t i = 0; i < c.x.size(); ++i) c.x[i][0] += displacement * shape[i];
     CoupledRun run(c);
     std::vector<Vector> forces(c.x.size());
-    run.solver->elastic_forces(forces);
+    run.solver->fabric().forces(forces);
     p.stiffness = -0.5 * (forces[antinode][0] + forces[antinode + 1][0]) / (area() * displacement);
   }
 
   /// Amplitude of the sine in the displacements of a run, m.
   [[nodiscard]] double amplitude(CoupledRun& run) const {
     std::vector<Vector> x(run.vertices), v(run.vertices);
-    run.solver->download_cloth(x, v);
+    run.solver->fabric().download(x, v);
     double sum = 0.0, norm = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i)
       sum += shape[i] * (x[i][0] - at_rest.x[i][0]), norm += shape[i] * shape[i];

@@ -40,7 +40,7 @@ TEST(FixedSheet, LeaksInProportionToTheStepWithoutTheFilteredAcceleration) {
     CoupledRun run(c);
     ASSERT_TRUE(run.advance(400 << level));
     const double law = CoupledCase::law_velocity(dp);
-    leak[level] = run.solver->totals().momentum[0] / (c.p.flow.density * c.volume()) - law;
+    leak[level] = run.solver->flow().totals().momentum[0] / (c.p.flow.density * c.volume()) - law;
     EXPECT_NEAR(leak[level], dp * c.p.flow.fixed_dt * row_sum, 1e-3 * leak[level]);
     EXPECT_GT(leak[level], law) << "more than the law";
   }
@@ -74,8 +74,8 @@ struct Balloon {
   /// Pressure that balances the tension, Pa, from the elastic forces.
   static double pressure(CoupledRun& run) {
     std::vector<Vector> x(run.vertices), v(run.vertices), forces(run.vertices);
-    run.solver->download_cloth(x, v);
-    run.solver->elastic_forces(forces);
+    run.solver->fabric().download(x, v);
+    run.solver->fabric().forces(forces);
     double inwards = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i)
       for (std::size_t axis = 0; axis < 2; ++axis)
@@ -86,7 +86,7 @@ struct Balloon {
   /// Area of the polygon of the vertices, m^2.
   static double enclosed(CoupledRun& run) {
     std::vector<Vector> x(run.vertices), v(run.vertices);
-    run.solver->download_cloth(x, v);
+    run.solver->fabric().download(x, v);
     double doubled = 0.0;
     for (std::size_t k = 0; k < columns; ++k) {
       const Vector &a = x[k], &b = x[(k + 1) % columns];
@@ -112,7 +112,7 @@ TEST(Balloon, KeepsItsPressureAndLeaksInProportionToTheStep) {
     leak[level] = lost / (2.0 * std::numbers::pi * Balloon::radius * 0.4);
     EXPECT_NEAR(expected, 125.0, 15.0);
     std::vector<double> pressure(Balloon::cells * Balloon::cells);
-    run.solver->sample(flow::CellField::pressure, pressure);
+    run.solver->flow().sample(flow::CellField::pressure, pressure);
     const double jump = pressure[pressure.size() / 2 + Balloon::cells / 2] - pressure[0];
     EXPECT_NEAR(jump / expected, 1.0, 0.03 / (1 << level)) << dt;
   }
@@ -150,7 +150,7 @@ double frequency_deviation(double dt) {
   for (int found = 0, step = first + 1; found < 2 && step * dt < 1.0; ++step) {
     EXPECT_TRUE(run.advance(1));
     std::vector<Vector> x(run.vertices), v(run.vertices);
-    run.solver->download_cloth(x, v);
+    run.solver->fabric().download(x, v);
     double now = 0.0;
     for (const Vector& place : x) {
       const double a = place[0] - Balloon::centre, b = place[1] - Balloon::centre;
@@ -183,7 +183,7 @@ void set_stream(CoupledCase& c, double speed) {
 CoupledRun started(const CoupledCase& c, double speed) {
   CoupledRun run(c);
   const std::array<int, 3> n = extents(c.p.flow, StateField::velocity_x);
-  run.solver->upload(
+  run.solver->flow().upload(
       StateField::velocity_x,
       std::vector<double>(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]), speed));
   run.solver->start();
@@ -312,8 +312,8 @@ Inflation inflate(double speed, double areal, bool impermeable, double defect_fi
       return mean;
     }
     std::vector<Vector> forces(run.vertices), x(run.vertices), v(run.vertices);
-    run.solver->forces(forces);
-    run.solver->download_cloth(x, v);
+    run.solver->download("sheet_force", numbers(forces));
+    run.solver->fabric().download(x, v);
     double square = 0.0, sum = 0.0;
     std::vector<double> strength;
     for (std::size_t i = 2; i < 120; i += 2)

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/flow/halo/decomposition.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/ranks.hpp"
@@ -33,11 +32,10 @@ struct Case {
   std::vector<Vector> x, v;
 };
 
-struct State : RestartState {
+struct State : drogue::testing::ClothState {
   std::vector<std::vector<double>> flow;
   std::array<double, 3> total_force{};
-  flow::Progress progress;
-  std::vector<Vector> air = {};  ///< velocities of the air at the vertices, m/s
+  std::vector<double> air = {};  ///< velocities of the air at the vertices, m/s
 };
 
 /// A case on the ranks of a group, with whole arrays of the flow.
@@ -53,7 +51,7 @@ class SharedRun {
   Solver* operator->() { return _solver.get(); }
 
   void start(const Case& from) {
-    _solver->upload_cloth(from.x, from.v);
+    _solver->fabric().upload(from.x, from.v);
     for (const StateField field : {StateField::velocity_x, StateField::velocity_y, StateField::velocity_z}) {
       // The stream of the inflow, with a wave.
       const linear::CellBox part = flow::part_of(_p, _ranks, field);
@@ -62,26 +60,26 @@ class SharedRun {
       drogue::testing::for_each_entry(extents(_p, field), part, [&](std::size_t whole, std::size_t at) {
         own[at] = _p.boundary[0].velocity[axis] + 0.3 * std::sin(0.7 * static_cast<double>(whole + axis));
       });
-      _solver->upload(field, own);
+      _solver->flow().upload(field, own);
     }
     _solver->start();
   }
   void restore(const State& state) {
     std::size_t k = 0;
     for (const StateField field : flow::state_fields(_p))
-      _solver->upload(field, cut(state.flow[k++], extents(_p, field), flow::part_of(_p, _ranks, field)));
-    _solver->restore(state.progress);
-    upload_restart_state(*_solver, state);
+      _solver->flow().upload(field,
+                             cut(state.flow[k++], extents(_p, field), flow::part_of(_p, _ranks, field)));
+    drogue::testing::restore_cloth(*_solver, state);
   }
   [[nodiscard]] State state() {
-    State s{
-        download_restart_state(*_solver, _vertices), {}, _solver->total_force_on_air(), _solver->progress()};
-    s.air.resize(_vertices);
-    _solver->air_velocity(s.air);
+    State s{drogue::testing::cloth_state(*_solver), {}, _solver->total_force_on_air()};
+    std::vector<Vector> air(_vertices);
+    _solver->air_velocity(air);
+    s.air.assign(numbers(air).begin(), numbers(air).end());
     for (const StateField field : flow::state_fields(_p)) {
       const linear::CellBox part = flow::part_of(_p, _ranks, field);
       std::vector<double> own(part.size());
-      _solver->download(field, own);
+      _solver->flow().download(field, own);
       s.flow.push_back(joined(_group, own, extents(_p, field), part));
     }
     return s;
@@ -89,7 +87,7 @@ class SharedRun {
   /// Numbers of the cloth as the ranks have them, one row per rank.
   [[nodiscard]] std::vector<std::vector<double>> cloth_of_ranks() {
     std::vector<Vector> x(_vertices), v(_vertices);
-    _solver->download_cloth(x, v);
+    _solver->fabric().download(x, v);
     x.insert(x.end(), v.begin(), v.end());
     const std::vector<double> all = _group.gather({x.front().data(), 3 * x.size()});
     std::vector<std::vector<double>> rows;
@@ -182,45 +180,30 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
   return difference / scale;
 }
 
-std::vector<double> numbers(const std::vector<Vector>& rows) {
-  std::vector<double> all;
-  for (const Vector& row : rows) all.insert(all.end(), row.begin(), row.end());
-  return all;
-}
-
 void expect_near(const State& a, const State& b, const std::string& what) {
-  EXPECT_EQ(a.progress.step, b.progress.step) << what;
-  EXPECT_EQ(a.block.substeps, b.block.substeps) << what;
-  EXPECT_EQ(a.block.end, b.block.end) << what;
-  EXPECT_NEAR(a.progress.time, b.progress.time, tolerance) << what;
+  EXPECT_EQ(a.progress.flow.step, b.progress.flow.step) << what;
+  EXPECT_EQ(a.progress.block.substeps, b.progress.block.substeps) << what;
+  EXPECT_EQ(a.progress.block.end, b.progress.block.end) << what;
+  EXPECT_NEAR(a.progress.flow.time, b.progress.flow.time, tolerance) << what;
   for (std::size_t k = 0; k < a.flow.size(); ++k)
     EXPECT_LT(relative_difference(a.flow[k], b.flow[k]), tolerance) << what << ", array " << k;
-  const auto compare = [&](const std::vector<Vector>& one, const std::vector<Vector>& other,
-                           const char* rows) {
-    EXPECT_LT(relative_difference(numbers(one), numbers(other)), tolerance) << what << ", " << rows;
-  };
-  compare(a.positions, b.positions, "positions");
-  compare(a.velocities, b.velocities, "velocities");
-  compare(a.air_acceleration, b.air_acceleration, "acceleration");
-  compare(a.defect, b.defect, "defect");
-  compare(a.forces, b.forces, "forces");
-  compare(a.air, b.air, "velocities of the air");
+  for (const auto& [name, values] : a.arrays)
+    EXPECT_LT(relative_difference(values, b.arrays.at(name)), tolerance) << what << ", " << name;
+  EXPECT_LT(relative_difference(a.force, b.force), tolerance) << what << ", forces";
+  EXPECT_LT(relative_difference(a.air, b.air), tolerance) << what << ", velocities of the air";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(a.total_force[axis], b.total_force[axis], tolerance) << what;
-    EXPECT_NEAR(a.frame.velocity[axis], b.frame.velocity[axis], tolerance) << what;
+    EXPECT_NEAR(a.progress.frame.velocity[axis], b.progress.frame.velocity[axis], tolerance) << what;
   }
 }
 
 void expect_equal(const State& a, const State& b, const std::string& what) {
   EXPECT_EQ(a.flow, b.flow) << what;
-  EXPECT_EQ(a.positions, b.positions) << what;
-  EXPECT_EQ(a.velocities, b.velocities) << what;
-  EXPECT_EQ(a.air_acceleration, b.air_acceleration) << what;
-  EXPECT_EQ(a.defect, b.defect) << what;
-  EXPECT_EQ(a.forces, b.forces) << what;
+  EXPECT_EQ(a.arrays, b.arrays) << what;
+  EXPECT_EQ(a.force, b.force) << what;
   EXPECT_EQ(a.air, b.air) << what;
   EXPECT_EQ(a.total_force, b.total_force) << what;
-  EXPECT_EQ(a.progress.time, b.progress.time) << what;
+  EXPECT_EQ(a.progress.flow.time, b.progress.flow.time) << what;
 }
 
 /// Whether the whole cloth has the same bits on all ranks.
@@ -252,7 +235,7 @@ TEST_F(CoupledRanks, TakeTheStepsOfOneRank) {
         const State expected = single.state();
         expect_near(expected, shared.state(), what + " after step " + std::to_string(step));
         double force = 0.0;
-        for (const double f : numbers(expected.forces)) force = std::max(force, std::abs(f));
+        for (const double f : expected.force) force = std::max(force, std::abs(f));
         EXPECT_GT(force, 1e-5) << what;
       }
       expect_one_cloth(shared, what);
@@ -292,7 +275,7 @@ TEST_F(CoupledRanks, FollowAVertexAsOneRank) {
   EXPECT_EQ(Stop::pause, single->advance(endless, 20, {}));
   EXPECT_EQ(Stop::pause, shared->advance(endless, 20, {}));
   const State expected = single.state();
-  EXPECT_GT(std::abs(expected.frame.velocity[2]), 0.1);
+  EXPECT_GT(std::abs(expected.progress.frame.velocity[2]), 0.1);
   expect_near(expected, shared.state(), each.name);
 }
 
@@ -303,12 +286,12 @@ void expect_failure(const Case& each, FailureReason reason) {
   for (SharedRun* run : {&single, &shared, &again}) run->start(each);
   ASSERT_EQ(Stop::failed, single->advance(endless, -1, {})) << each.name;
   ASSERT_EQ(Stop::failed, shared->advance(endless, -1, {})) << each.name;
-  EXPECT_EQ(reason, single->failure_reason()) << each.name;
-  EXPECT_EQ(reason, shared->failure_reason()) << each.name;
+  EXPECT_EQ(reason, single->failure().reason) << each.name;
+  EXPECT_EQ(reason, shared->failure().reason) << each.name;
   const State last = shared.state();
-  EXPECT_EQ(single->progress().step, last.progress.step) << each.name;
-  if (last.progress.step > 0) {
-    ASSERT_EQ(Stop::pause, again->advance(endless, last.progress.step, {})) << each.name;
+  EXPECT_EQ(single->progress().flow.step, last.progress.flow.step) << each.name;
+  if (last.progress.flow.step > 0) {
+    ASSERT_EQ(Stop::pause, again->advance(endless, last.progress.flow.step, {})) << each.name;
   }
   expect_equal(again.state(), last, each.name);
   EXPECT_EQ(Stop::failed, shared->advance(endless, -1, {})) << each.name;
@@ -334,7 +317,7 @@ TEST_F(CoupledRanks, ShortenTheStepsOfABlockTogether) {
   for (SharedRun* run : {&single, &shared}) {
     run->start(each);
     EXPECT_EQ(Stop::target, (*run)->advance(0.064, -1, {}));
-    EXPECT_LT((*run)->progress().dt_min, 0.6 * (*run)->progress().dt_max);
+    EXPECT_LT((*run)->progress().flow.dt_min, 0.6 * (*run)->progress().flow.dt_max);
   }
   expect_near(single.state(), shared.state(), "accelerated");
 }
@@ -348,8 +331,8 @@ TEST_F(CoupledRanks, KeepTheStepsEqualIfOneRankIsInterrupted) {
     return world.rank() != 3 || now.step < 20;
   }));
   // Between two polls lie a few steps, the same on all ranks.
-  EXPECT_GE(shared->progress().step, 20);
-  EXPECT_LE(shared->progress().step, 32);
+  EXPECT_GE(shared->progress().flow.step, 20);
+  EXPECT_LE(shared->progress().flow.step, 32);
   EXPECT_EQ(Stop::pause, shared->advance(endless, 33, [](const flow::Status&) { return true; }));
   expect_one_cloth(shared, "after an interrupt");
 }

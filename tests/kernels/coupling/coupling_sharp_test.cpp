@@ -5,7 +5,6 @@
 #include <random>
 
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/points_transfer.hpp"
 #include "kernels/reference/coupling/sharp_sheet.hpp"
@@ -68,31 +67,36 @@ TEST(SharpSheet, ForcesOfCrumpledLayersMatchTheReference) {
   mesh::Mesh mesh;
   mesh.rest = sheet.positions;
   mesh.triangles = sheet.triangles;
-  const fabric::SurfaceViews<Space> surface(space, mesh);
-  const GridTransfer<Space> transfer(space, grid, DeltaFunction::cbs43, surface.vertices());
-  using Vectors = SharpSheet<Space>::Vectors;
+  fabric::Parameters cloth;
+  cloth.mesh = mesh;
   const auto rows = sheet.positions.size();
-  const Vectors x("x", rows), v("v", rows), force("force", rows);
+  cloth.mass.assign(rows, 1.0);
+  cloth.pinned.assign(rows, 7);
+  SheetParameters parameters;
+  parameters.method = CouplingMethod::sharp;
+  parameters.law = {sheet.alpha, sheet.beta, false};
+  const SharpSheet<Space> sharp(space, grid, cloth, parameters, density);
+  using Vectors = SharpSheet<Space>::Vectors;
+  const Vectors x("x", rows), v("v", rows);
   fabric::copy_to_points(space, sheet.positions, x);
   fabric::copy_to_points(space, sheet.velocities, v);
-  const Kokkos::View<PorousLaw*, Space::memory_space> law("law", rows);
-  Kokkos::deep_copy(law, PorousLaw{sheet.alpha, sheet.beta, false});
-  freeze_positions(space, transfer, x, v, 0.0);
-  const SharpSheet<Space> sharp(transfer, surface, law, density, {space, {}, law, {}});
-  SharpSheet<Space>::Faces<double> velocities, densities;
+  using OneComponent = Kokkos::View<double***, Kokkos::LayoutLeft, Space::memory_space>;
+  FaceViews<OneComponent> densities;
+  SharpSheet<Space>::Faces velocity_faces, density_faces;
+  FaceViews<OneComponent> velocities;
   for (int d = 0; d < 3; ++d) {
     const auto n = [&](int axis) { return static_cast<std::size_t>(faces_along(grid, d, axis)); };
-    using OneComponent = Kokkos::View<double***, Kokkos::LayoutLeft, Space::memory_space>;
-    velocities.component[d] = OneComponent("u", n(0), n(1), n(2));
-    densities.component[d] = OneComponent("f", n(0), n(1), n(2));
+    velocity_faces.component[d] = velocities.component[d] = OneComponent("u", n(0), n(1), n(2));
+    density_faces.component[d] = densities.component[d] = OneComponent("f", n(0), n(1), n(2));
     const auto mirror = Kokkos::create_mirror_view(velocities.component[d]);
     for (std::size_t i = 0; i < mirror.size(); ++i) mirror.data()[i] = air[static_cast<std::size_t>(d)][i];
     Kokkos::deep_copy(velocities.component[d], mirror);
   }
   for (int repetition = 0; repetition < 2; ++repetition) {
     for (const auto& component : densities.component) Kokkos::deep_copy(space, component, 0.0);
-    sharp.begin_step(space, velocities);
-    sharp.exchange(space, v, densities, force, dt);
+    sharp.freeze(space, {x, v}, 0.0);
+    sharp.interpolate_air(space, velocity_faces);
+    sharp.spread_forces(space, {x, v}, density_faces, dt);
     space.fence();
   }
   for (int d = 0; d < 3; ++d) {
@@ -106,19 +110,19 @@ TEST(SharpSheet, ForcesOfCrumpledLayersMatchTheReference) {
   }
   std::vector<Vector> forces(rows);
   fabric::PointsReader<Space> reader;
-  reader.read(space, force, forces);
+  reader.read(space, sharp.force(), forces);
   double largest = 0.0;
   for (const Vector& f : expected.vertices)
     for (const double value : f) largest = std::max(largest, std::abs(value));
   for (std::size_t i = 0; i < rows; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(forces[i][axis], expected.vertices[i][axis], 1e-5 * largest) << i;
-  EXPECT_EQ(transfer_counts(space, transfer).rejected_forces, 0);
+  EXPECT_EQ(transfer_counts(space, sharp.transfer()).rejected_forces, 0);
 }
 
 /// Mean velocity of the air, m/s.
 Vector mean_velocity_of(const CoupledCase& c, CoupledRun& run) {
-  const flow::Totals totals = run.solver->totals();
+  const flow::Totals totals = run.solver->flow().totals();
   Vector mean{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     mean[axis] = totals.momentum[axis] / (c.p.flow.density * c.volume());
@@ -185,7 +189,7 @@ TEST(SharpSheet, TakesTheMomentumThatTheAirLoses) {
   Vector last{};
   for (int step = 0; step < 40; ++step) {
     ASSERT_TRUE(run.advance(1));
-    const flow::Totals now = run.solver->totals();
+    const flow::Totals now = run.solver->flow().totals();
     const Vector force = run.force(), total = run.solver->total_force_on_air();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(now.momentum[axis] - last[axis], 0.004 * force[axis], 1e-13);
@@ -205,25 +209,19 @@ TEST(SharpSheet, ContinuesBitForBitAndBackendsAgree) {
   ASSERT_TRUE(whole.advance(20));
   ASSERT_TRUE(whole.advance(20));
   ASSERT_TRUE(first.advance(20));
-  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
-    std::vector<double> values(flow::state_size(c.p.flow, field));
-    first.solver->download(field, values);
-    second.solver->upload(field, values);
-  }
-  second.solver->restore(first.solver->progress());
-  const RestartState sheets = download_restart_state(*first.solver, c.x.size());
-  EXPECT_EQ(sheets.face_acceleration.size(), 3 * 16U * 8U);
-  upload_restart_state(*second.solver, sheets);
-  EXPECT_THROW(second.solver->upload_face_acceleration(std::vector<double>(7)), std::invalid_argument);
+  const drogue::testing::CoupledState middle = coupled_state(c, *first.solver);
+  EXPECT_EQ(middle.arrays.at("face_acceleration").size(), 3 * 16U * 8U);
+  restore(c, middle, *second.solver);
+  EXPECT_THROW(second.solver->upload("face_acceleration", std::vector<double>(7)), std::invalid_argument);
   ASSERT_TRUE(second.advance(20));
   EXPECT_EQ(second.force(), whole.force());
   std::vector<Vector> here(c.x.size()), there(c.x.size());
-  whole.solver->forces(here);
+  whole.solver->download("sheet_force", numbers(here));
   for (const device::Backend backend : device::compiled_backends()) {
     const auto other = c.solver(backend);
     ASSERT_EQ(other->advance(1e9, 20, {}), flow::Stop::pause);
     ASSERT_EQ(other->advance(1e9, 40, {}), flow::Stop::pause);
-    other->forces(there);
+    other->download("sheet_force", numbers(there));
     for (std::size_t i = 0; i < here.size(); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(there[i][axis], here[i][axis], drogue::testing::run_tolerance) << i << ' ' << axis;

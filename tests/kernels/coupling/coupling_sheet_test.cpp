@@ -74,7 +74,7 @@ TEST(NoSlip, ImpermeableSheetsStopAllRelativeMotion) {
 /// m/s.
 double leak_of(const CoupledCase& c, CoupledRun& run, const Vector& normal) {
   std::vector<Vector> x(c.x.size()), v(c.x.size()), air(c.x.size());
-  run.solver->download_cloth(x, v);
+  run.solver->fabric().download(x, v);
   run.solver->air_velocity(air);
   double sum = 0.0, mass = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -87,7 +87,7 @@ double leak_of(const CoupledCase& c, CoupledRun& run, const Vector& normal) {
 
 /// Mean velocity of the air, m/s.
 Vector mean_velocity(const CoupledCase& c, CoupledRun& run) {
-  const flow::Totals totals = run.solver->totals();
+  const flow::Totals totals = run.solver->flow().totals();
   Vector mean{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     mean[axis] = totals.momentum[axis] / (c.p.flow.density * c.volume());
@@ -166,8 +166,8 @@ TEST(FixedSheet, LayersAddTheirPressureDifferences) {
 
 /// Total of air and cloth.
 double energy(CoupledRun& run) {
-  const fabric::Totals cloth = run.solver->cloth_totals();
-  return run.solver->totals().kinetic_energy + cloth.kinetic + cloth.elastic;
+  const fabric::Totals cloth = run.solver->fabric().totals();
+  return run.solver->flow().totals().kinetic_energy + cloth.kinetic + cloth.elastic;
 }
 
 TEST(FreeSheet, ExchangesMomentumWithTheAirWithoutLoss) {
@@ -182,8 +182,8 @@ TEST(FreeSheet, ExchangesMomentumWithTheAirWithoutLoss) {
     c.p.substeps = 40;
     CoupledRun run(c);
     const auto momentum = [&] {
-      const flow::Totals air = run.solver->totals();
-      const fabric::Totals cloth = run.solver->cloth_totals();
+      const flow::Totals air = run.solver->flow().totals();
+      const fabric::Totals cloth = run.solver->fabric().totals();
       Vector sum{};
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = air.momentum[axis] + cloth.momentum[axis];
       return sum;
@@ -197,7 +197,7 @@ TEST(FreeSheet, ExchangesMomentumWithTheAirWithoutLoss) {
       last = now;
     }
     // Half of it has passed to the air at least.
-    EXPECT_GT(run.solver->totals().momentum[0], 0.5 * first[0]);
+    EXPECT_GT(run.solver->flow().totals().momentum[0], 0.5 * first[0]);
   }
 }
 
@@ -258,8 +258,8 @@ TEST(FreeSheet, ClothLinesPayloadAndAirKeepTheirMomentumInThreeDimensions) {
         scale += c.p.fabric.mass[i] * std::hypot(c.v[i][0], c.v[i][1], c.v[i][2]);
       }
       const auto momentum = [&] {
-        const flow::Totals air = run.solver->totals();
-        const fabric::Totals cloth = run.solver->cloth_totals();
+        const flow::Totals air = run.solver->flow().totals();
+        const fabric::Totals cloth = run.solver->fabric().totals();
         Vector sum{};
         for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = air.momentum[axis] + cloth.momentum[axis];
         return sum;
@@ -276,9 +276,9 @@ TEST(FreeSheet, ClothLinesPayloadAndAirKeepTheirMomentumInThreeDimensions) {
         last = now;
       }
       // The lines have slowed down the payload, and the canopy has moved the air.
-      run.solver->download_cloth(c.x, c.v);
+      run.solver->fabric().download(c.x, c.v);
       EXPECT_GT(c.v.back()[2], -3.5);
-      EXPECT_GT(std::abs(run.solver->totals().momentum[2]), 0.01 * scale);
+      EXPECT_GT(std::abs(run.solver->flow().totals().momentum[2]), 0.01 * scale);
     }
 }
 
@@ -339,7 +339,7 @@ TEST(FreeSheet, NoiseDecaysWithTheFilteredAcceleration) {
       CoupledRun run(c);
       ASSERT_TRUE(run.advance(200));
       std::vector<Vector> x(c.x.size()), v(c.x.size());
-      run.solver->download_cloth(x, v);
+      run.solver->fabric().download(x, v);
       for (const Vector& of_vertex : v) EXPECT_LT(std::abs(of_vertex[0]), 0.03) << mass << ' ' << impermeable;
     }
 }
@@ -356,7 +356,7 @@ double frequency(const CoupledCase& c) {
   double before = 1.0, crossing[2] = {};
   for (int found = 0, step = 1; found < 2 && step < 2000; ++step) {
     EXPECT_TRUE(run.advance(1));
-    run.solver->download_cloth(x, v);
+    run.solver->fabric().download(x, v);
     const double now = x[top][0] - c.x[top][0];
     if (now * before < 0.0) crossing[found++] = (step - now / (now - before)) * c.p.flow.fixed_dt;
     before = now;

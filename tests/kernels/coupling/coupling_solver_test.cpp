@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "kernels/coupling/sheet/edge_inset.hpp"
-#include "kernels/coupling/sheet/restart_state.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/coupling/edge_inset.hpp"
 #include "kernels/reference/coupling/grid_transfer.hpp"
@@ -25,6 +24,8 @@ namespace {
 using drogue::testing::counted_steps;
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
+using drogue::testing::CoupledState;
+using drogue::testing::restore;
 using drogue::testing::tested_backend;
 using fabric::Vector;
 
@@ -57,43 +58,33 @@ CoupledCase meeting_strips(bool with_contact) {
   return c;
 }
 
-struct State : RestartState {
-  std::vector<std::vector<double>> flow;
+struct State : CoupledState {
   Vector total_force;
-  flow::Progress progress;
 };
 
 State state_of(const CoupledCase& c, Solver& solver) {
-  State s{download_restart_state(solver, c.x.size()), {}, solver.total_force_on_air(), solver.progress()};
-  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
-    s.flow.emplace_back(flow::state_size(c.p.flow, field));
-    solver.download(field, s.flow.back());
-  }
-  return s;
+  return {coupled_state(c, solver), solver.total_force_on_air()};
 }
 
-void restore(const CoupledCase& c, const State& s, Solver& solver) {
-  std::size_t k = 0;
-  for (const flow::StateField field : flow::state_fields(c.p.flow)) solver.upload(field, s.flow[k++]);
-  solver.restore(s.progress);
-  upload_restart_state(solver, s);
-}
-
-double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      largest = std::max(largest, std::abs(a[i][axis] - b[i][axis]));
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = a.size() == b.size() ? 0.0 : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    largest = std::max(largest, std::abs(a[i] - b[i]));
   return largest;
 }
 
+double distance(std::vector<Vector> a, std::vector<Vector> b) {
+  return distance(std::vector<double>(numbers(a).begin(), numbers(a).end()),
+                  std::vector<double>(numbers(b).begin(), numbers(b).end()));
+}
+
 double distance(const State& a, const State& b) {
-  double largest = std::max({distance(a.positions, b.positions), distance(a.velocities, b.velocities),
-                             1e-3 * distance(a.air_acceleration, b.air_acceleration),
-                             1e-3 * distance(a.defect, b.defect)});
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < a.flow[k].size(); ++i)
-      largest = std::max(largest, std::abs(a.flow[k][i] - b.flow[k][i]));
+  double largest = 0.0;
+  for (const auto& [name, values] : a.arrays) {
+    const bool is_acceleration = name != "sheet_position" && name != "sheet_velocity";
+    largest = std::max(largest, (is_acceleration ? 1e-3 : 1.0) * distance(values, b.arrays.at(name)));
+  }
+  for (std::size_t k = 0; k < 3; ++k) largest = std::max(largest, distance(a.flow[k], b.flow[k]));
   return largest;
 }
 
@@ -127,7 +118,8 @@ TEST(CoupledSolver, ContinuesBitForBitWithTheFilteredDefect) {
   ASSERT_TRUE(first.advance(21));
   State middle = state_of(c, *first.solver);
   double largest = 0.0;
-  for (const Vector& defect : middle.defect) largest = std::max(largest, std::abs(defect[0]));
+  for (std::size_t k = 0; k < middle.arrays["defect"].size(); k += 3)
+    largest = std::max(largest, std::abs(middle.arrays["defect"][k]));
   EXPECT_GT(largest, 0.1);
   CoupledRun second(c), without(c);
   restore(c, middle, *second.solver);
@@ -136,7 +128,7 @@ TEST(CoupledSolver, ContinuesBitForBitWithTheFilteredDefect) {
   const State end = state_of(c, *whole.solver);
   EXPECT_EQ(distance(state_of(c, *second.solver), end), 0.0);
   // It is a part of the state.
-  middle.defect.assign(c.x.size(), Vector{});
+  std::ranges::fill(middle.arrays["defect"], 0.0);
   restore(c, middle, *without.solver);
   ASSERT_TRUE(without.advance(19));
   EXPECT_GT(distance(state_of(c, *without.solver), end), 1e-6);
@@ -154,7 +146,10 @@ TEST(CoupledSolver, ContinuesBitForBitWithABodyInMotion) {
     ASSERT_TRUE(begun.advance(first));
     const State middle = state_of(c, *begun.solver);
     restore(c, middle, *continued.solver);
-    EXPECT_EQ(distance(state_of(c, *continued.solver).positions, middle.positions), 0.0) << first;
+    EXPECT_EQ(distance(state_of(c, *continued.solver).arrays.at("sheet_position"),
+                       middle.arrays.at("sheet_position")),
+              0.0)
+        << first;
     ASSERT_TRUE(continued.advance(40 - first));
     EXPECT_EQ(distance(state_of(c, *continued.solver), state_of(c, *whole.solver)), 0.0) << first;
   }
@@ -183,8 +178,8 @@ Meeting meet(bool with_contact) {
   CoupledCase c = meeting_strips(with_contact);
   CoupledRun run(c);
   const auto momentum = [&] {
-    const flow::Totals air = run.solver->totals();
-    const fabric::Totals cloth = run.solver->cloth_totals();
+    const flow::Totals air = run.solver->flow().totals();
+    const fabric::Totals cloth = run.solver->fabric().totals();
     Vector sum{};
     for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = air.momentum[axis] + cloth.momentum[axis];
     return sum;
@@ -199,7 +194,7 @@ Meeting meet(bool with_contact) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       result.gain = std::max(result.gain, std::abs(now[axis] - last[axis]) / of_strip);
     last = now;
-    run.solver->download_cloth(c.x, c.v);
+    run.solver->fabric().download(c.x, c.v);
     result.intersections += reference::intersections(c.x, c.p.fabric.mesh.triangles, {}).size();
   }
   double mass = 0.0;
@@ -233,14 +228,14 @@ TEST(CoupledSolver, LinesAreCutAtTheirTime) {
   CoupledRun run(c);
   const auto pull = [&] {
     std::vector<Vector> forces(c.x.size());
-    run.solver->elastic_forces(forces);
+    run.solver->fabric().forces(forces);
     fabric::Parameters other = c.p.fabric;
     other.mesh.line_stiffness = {0.0, 1e-3};
     other.integrator = fabric::Integrator::symplectic_euler;
     other.dt = 1e-4;
     const auto cloth = fabric::create_solver(tested_backend, other);
     std::vector<Vector> x(c.x.size()), v(c.x.size()), without(c.x.size());
-    run.solver->download_cloth(x, v);
+    run.solver->fabric().download(x, v);
     cloth->upload(x, v);
     cloth->forces(without);
     return distance(forces, without);
@@ -248,7 +243,7 @@ TEST(CoupledSolver, LinesAreCutAtTheirTime) {
   bool stopped_at_cut = false;
   for (std::int64_t step = 1; step <= 30; ++step) {
     ASSERT_TRUE(run.advance(1));
-    const double time = run.solver->progress().time;
+    const double time = run.solver->progress().flow.time;
     stopped_at_cut = stopped_at_cut || time == cut;
     // The cut is made when the step after it begins.
     if (time <= cut) {
@@ -263,7 +258,7 @@ TEST(CoupledSolver, LinesAreCutAtTheirTime) {
 /// Starts a run that watches how line 0 pulls vertex 0, and line 1 vertex 30.
 void start_watching(const CoupledCase& c, Solver& solver) {
   solver.watch_pulls(std::vector<fabric::Pull>{{0, {0}}, {30, {1}}});
-  solver.upload_cloth(c.x, c.v);
+  solver.fabric().upload(c.x, c.v);
   solver.start();
 }
 
@@ -282,8 +277,8 @@ TEST(CoupledSolver, PeaksOfPullsAreThoseOfCompletedSteps) {
   for (int step = 0; step < 30; ++step) {
     ASSERT_TRUE(observed.advance(1));
     std::vector<Vector> x(c.x.size()), v(c.x.size());
-    observed.solver->download_cloth(x, v);
-    const double time = observed.solver->progress().time;
+    observed.solver->fabric().download(x, v);
+    const double time = observed.solver->progress().flow.time;
     for (std::size_t k = 0; k < 2; ++k)
       if (const double force = pull(k, x); force > expected[k].force && (k == 1 || time <= 0.0501))
         expected[k] = {force, time};
@@ -337,12 +332,12 @@ TEST(CoupledSolver, ReachesTargetsInEqualSteps) {
   CoupledRun run(c);
   for (const double target : {0.0101, 0.0999, 0.1}) {
     EXPECT_EQ(run.solver->advance(target, -1, {}), flow::Stop::target);
-    EXPECT_EQ(run.solver->progress().time, target);
+    EXPECT_EQ(run.solver->progress().flow.time, target);
   }
   // Steps of 0.004 s at most: 3 to the first time, 23 to the second one and one to the last.
-  EXPECT_EQ(run.solver->progress().step, 27);
-  EXPECT_NEAR(run.solver->progress().last_dt, 0.0001, 1e-12);
-  EXPECT_LE(run.solver->progress().dt_max, 0.004 * (1.0 + 1e-9));
+  EXPECT_EQ(run.solver->progress().flow.step, 27);
+  EXPECT_NEAR(run.solver->progress().flow.last_dt, 0.0001, 1e-12);
+  EXPECT_LE(run.solver->progress().flow.dt_max, 0.004 * (1.0 + 1e-9));
 }
 
 TEST(CoupledSolver, NoStepBeforeATargetIsFarShorterThanOthers) {
@@ -350,8 +345,8 @@ TEST(CoupledSolver, NoStepBeforeATargetIsFarShorterThanOthers) {
   CoupledRun run(c);
   // 32 steps of 0.004 s and a rest: two whole blocks end just short of the target.
   EXPECT_EQ(run.solver->advance(32.001 * 0.004, -1, {}), flow::Stop::target);
-  EXPECT_EQ(run.solver->progress().step, 33);
-  EXPECT_GT(run.solver->progress().dt_min, 0.9 * 0.004);
+  EXPECT_EQ(run.solver->progress().flow.step, 33);
+  EXPECT_GT(run.solver->progress().flow.dt_min, 0.9 * 0.004);
 }
 
 TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
@@ -360,7 +355,7 @@ TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
   ASSERT_TRUE(run.advance(10));
   const std::size_t vertices = c.x.size();
   std::vector<Vector> on_air(vertices), elastic(vertices), x(vertices), v(vertices);
-  run.solver->forces(on_air);
+  run.solver->download("sheet_force", numbers(on_air));
   const std::array<double, 3> total = run.solver->total_force_on_air();
   Vector sum{};
   double magnitude = 0.0;
@@ -369,7 +364,7 @@ TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
   EXPECT_GT(magnitude, 1e-3);
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(total[axis], sum[axis], 1e-14 * magnitude);
   // A solver of the cloth alone has the same forces and stresses at these positions.
-  run.solver->download_cloth(x, v);
+  run.solver->fabric().download(x, v);
   fabric::Parameters cloth_only = c.p.fabric;
   cloth_only.integrator = fabric::Integrator::symplectic_euler;
   cloth_only.dt = 1e-4;
@@ -377,13 +372,13 @@ TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
   cloth->upload(x, v);
   std::vector<Vector> expected(vertices);
   cloth->forces(expected);
-  run.solver->elastic_forces(elastic);
+  run.solver->fabric().forces(elastic);
   double largest = 0.0;
   for (const Vector& force : expected) largest = std::max(largest, std::abs(force[0]));
   EXPECT_GT(largest, 0.0);
   EXPECT_LE(distance(elastic, expected), 1e-12 * largest);
   std::vector<fabric::Stress> stress(c.p.fabric.mesh.triangles.size()), expected_stress(stress.size());
-  run.solver->cloth_stress(fabric::StressMeasure::cauchy, stress);
+  run.solver->fabric().stress(fabric::StressMeasure::cauchy, stress);
   cloth->stress(fabric::StressMeasure::cauchy, expected_stress);
   double largest_stress = 0.0;
   for (std::size_t t = 0; t < stress.size(); ++t) {
@@ -392,7 +387,7 @@ TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
   }
   EXPECT_GT(largest_stress, 0.0);
   std::vector<Vector> few(vertices - 1);
-  EXPECT_THROW(run.solver->elastic_forces(few), std::invalid_argument);
+  EXPECT_THROW(run.solver->fabric().forces(few), std::invalid_argument);
 }
 
 /// Velocity of the air where the vertices exchange forces with it: from the solver, and interpolated here.
@@ -400,7 +395,7 @@ void expect_air_velocity(const CoupledCase& c) {
   CoupledRun run(c), other(c);
   ASSERT_TRUE(run.advance(10));
   std::vector<Vector> x(c.x.size()), v(c.x.size()), air(c.x.size());
-  run.solver->download_cloth(x, v);
+  run.solver->fabric().download(x, v);
   run.solver->air_velocity(air);
   const coupling::StaggeredGrid grid = c.grid({false, false, true});
   if (c.p.sheet.edge_inset > 0.0)
@@ -412,7 +407,7 @@ void expect_air_velocity(const CoupledCase& c) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const flow::StateField field = flow::state_fields(c.p.flow)[axis];
     velocity[axis].resize(flow::state_size(c.p.flow, field));
-    run.solver->download(field, velocity[axis]);
+    run.solver->flow().download(field, velocity[axis]);
   }
   const std::vector<Vector> expected = reference::interpolate(grid, c.p.sheet.delta, velocity, x);
   double largest = 0.0;
@@ -440,10 +435,10 @@ TEST(CoupledSolver, StepSizeFollowsTheSpeedOfTheAir) {
   CoupledRun run(c);
   const std::array<int, 3> n = extents(c.p.flow, flow::StateField::velocity_x);
   const std::vector<double> wind(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]), 8.0);
-  run.solver->upload(flow::StateField::velocity_x, wind);
+  run.solver->flow().upload(flow::StateField::velocity_x, wind);
   run.solver->start();
   ASSERT_TRUE(run.advance(1));
-  EXPECT_NEAR(run.solver->progress().last_dt, 0.3 * h / 8.0, 1e-3 * h);
+  EXPECT_NEAR(run.solver->progress().flow.last_dt, 0.3 * h / 8.0, 1e-3 * h);
 }
 
 TEST(CoupledSolver, StopsIfPollReturnsFalse) {
@@ -451,20 +446,20 @@ TEST(CoupledSolver, StopsIfPollReturnsFalse) {
   CoupledRun run(c);
   EXPECT_EQ(run.solver->advance(1.0, -1, [](const flow::Status& now) { return now.step < 20; }),
             flow::Stop::interrupted);
-  EXPECT_GE(run.solver->progress().step, 20);
-  EXPECT_LE(run.solver->progress().step, 32);  // a whole block
+  EXPECT_GE(run.solver->progress().flow.step, 20);
+  EXPECT_LE(run.solver->progress().flow.step, 32);  // a whole block
 }
 
 /// Advances until a failure and expects the state before the failed step.
 void expect_failure(const CoupledCase& c, FailureReason reason) {
   CoupledRun run(c);
   ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
-  EXPECT_EQ(run.solver->failure_reason(), reason);
+  EXPECT_EQ(run.solver->failure().reason, reason);
   const State last = state_of(c, *run.solver);
   EXPECT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
   CoupledRun again(c);
-  if (last.progress.step > 0) {
-    ASSERT_TRUE(again.advance(last.progress.step));
+  if (last.progress.flow.step > 0) {
+    ASSERT_TRUE(again.advance(last.progress.flow.step));
   }
   const State expected = state_of(c, *again.solver);
   EXPECT_EQ(distance(expected, last), 0.0);
@@ -472,7 +467,7 @@ void expect_failure(const CoupledCase& c, FailureReason reason) {
   run.solver->air_velocity(air);
   again.solver->air_velocity(expected_air);
   EXPECT_EQ(distance(air, expected_air), 0.0);
-  EXPECT_EQ(distance(expected.forces, last.forces), 0.0);
+  EXPECT_EQ(distance(expected.force, last.force), 0.0);
   EXPECT_EQ(expected.total_force, last.total_force);
 }
 
@@ -485,16 +480,40 @@ TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
   // A new start forgets it.
   CoupledRun run(c);
   ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
-  run.solver->upload_cloth(c.x, c.v);
+  run.solver->fabric().upload(c.x, c.v);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::array<int, 3> n = extents(c.p.flow, flow::state_fields(c.p.flow)[k]);
     const auto faces =
         static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
-    run.solver->upload(flow::state_fields(c.p.flow)[k], std::vector<double>(faces, 0.0));
+    run.solver->flow().upload(flow::state_fields(c.p.flow)[k], std::vector<double>(faces, 0.0));
   }
   run.solver->start();
   EXPECT_TRUE(run.advance(5));
-  EXPECT_EQ(run.solver->failure_reason(), FailureReason::flow);
+  EXPECT_EQ(run.solver->failure().reason, FailureReason::flow);
+}
+
+TEST(CoupledSolver, FailedStepsReturnToEveryArrayOfTheState) {
+  std::vector<CoupledCase> cases(4, flying_strip());
+  cases[1].p.sheet.defect_filter = 0.1;
+  cases[2].p.sheet.method = CouplingMethod::explicit_;
+  cases[2].set_mass(5.0);
+  cases[3].p.sheet.method = CouplingMethod::sharp;
+  cases[3].p.fabric.pinned.assign(cases[3].x.size(), 7);
+  cases[3].v.assign(cases[3].x.size(), {0.5, 0.2, 0.0});
+  for (const CoupledCase& c : cases) {
+    CoupledRun run(c);
+    ASSERT_TRUE(run.advance(3)) << static_cast<int>(c.p.sheet.method);
+    CoupledState changed = coupled_state(c, *run.solver);
+    double place = 0.0;
+    for (auto& [name, values] : changed.arrays)
+      for (double& value : values) value += 1e-3 * std::sin(place += 1.0);
+    // The next step fails, whatever the cloth does.
+    changed.flow[0].assign(changed.flow[0].size(), std::nan(""));
+    restore(c, changed, *run.solver);
+    EXPECT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
+    EXPECT_EQ(run.solver->progress().flow.step, 3);
+    EXPECT_EQ(coupled_state(c, *run.solver).arrays, changed.arrays);
+  }
 }
 
 TEST(CoupledSolver, LineThatCarriesMoreThanItsStrengthIsAFailure) {
@@ -512,7 +531,7 @@ TEST(CoupledSolver, LineThatCarriesMoreThanItsStrengthIsAFailure) {
   for (int step = 0; step < 25; ++step) {
     ASSERT_TRUE(free.advance(1));
     std::vector<Vector> x(c.x.size()), v(c.x.size());
-    free.solver->download_cloth(x, v);
+    free.solver->fabric().download(x, v);
     tension.push_back(length(x) / length(c.x) - 1.0);
   }
   const auto most = std::ranges::max_element(tension);
@@ -522,10 +541,10 @@ TEST(CoupledSolver, LineThatCarriesMoreThanItsStrengthIsAFailure) {
   expect_failure(c, FailureReason::line);
   CoupledRun limited(c);
   ASSERT_EQ(limited.solver->advance(10.0, -1, {}), flow::Stop::failed);
-  EXPECT_EQ(limited.solver->failed_line(), 1);
-  EXPECT_EQ(limited.solver->progress().step, most - tension.begin()) << "the state before the step";
+  EXPECT_EQ(limited.solver->failure().line, 1);
+  EXPECT_EQ(limited.solver->progress().flow.step, most - tension.begin()) << "the state before the step";
   // A line that is cut carries nothing.
-  c.p.cuts = {{0.5 * limited.solver->progress().time, {1}}};
+  c.p.cuts = {{0.5 * limited.solver->progress().flow.time, {1}}};
   CoupledRun cut(c);
   EXPECT_TRUE(cut.advance(25));
   c.p.line_strength = {1.0};
@@ -539,9 +558,9 @@ TEST(CoupledSolver, ClothThatIsTooStiffIsAFailure) {
   c.p.fabric.material.membrane_modulus *= 1e9;
   CoupledRun run(c);
   EXPECT_EQ(run.solver->advance(0.1, -1, {}), flow::Stop::failed);
-  EXPECT_EQ(run.solver->failure_reason(), FailureReason::too_stiff);
-  EXPECT_EQ(run.solver->progress().step, 0);
-  EXPECT_LE(run.solver->block().substeps, most_substeps);
+  EXPECT_EQ(run.solver->failure().reason, FailureReason::too_stiff);
+  EXPECT_EQ(run.solver->progress().flow.step, 0);
+  EXPECT_LE(run.solver->progress().block.substeps, most_substeps);
 }
 
 TEST(CoupledSolver, PollsBetweenTheFirstStepsOfABlock) {
@@ -560,11 +579,11 @@ TEST(CoupledSolver, InstabilityOfTheClothIsAFailure) {
   c.p.substeps = 200;
   expect_failure(c, FailureReason::cloth);
   CoupledRun run(c);
-  EXPECT_FALSE(run.solver->cloth_failure());
+  EXPECT_FALSE(run.solver->failure().cloth);
   ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
-  ASSERT_TRUE(run.solver->cloth_failure());
-  EXPECT_EQ(run.solver->cloth_failure()->reason, fabric::FailureReason::not_finite);
-  EXPECT_GE(run.solver->cloth_failure()->index, 0);
+  ASSERT_TRUE(run.solver->failure().cloth);
+  EXPECT_EQ(run.solver->failure().cloth->reason, fabric::FailureReason::not_finite);
+  EXPECT_GE(run.solver->failure().cloth->index, 0);
 }
 
 /// The strip in air that a body force accelerates, within a block, to a speed at which its dt is unstable.
@@ -586,13 +605,13 @@ TEST(CoupledSolver, StepsShortenWithinABlock) {
   constexpr double end = 0.064;  // 16 steps of the largest dt
   CoupledRun run(c), paused(c);
   ASSERT_EQ(run.solver->advance(end, -1, {}), flow::Stop::target);
-  const flow::Progress last = run.solver->progress();
+  const flow::Progress last = run.solver->progress().flow;
   EXPECT_EQ(last.dt_max, 0.004);
   EXPECT_LT(last.dt_min, 0.6 * last.dt_max);
   EXPECT_GT(last.step, 16);
   // Pauses do not change the steps.
-  while (paused.solver->progress().time < end)
-    ASSERT_NE(paused.solver->advance(end, paused.solver->progress().step + 1, {}), flow::Stop::failed);
+  while (paused.solver->progress().flow.time < end)
+    ASSERT_NE(paused.solver->advance(end, paused.solver->progress().flow.step + 1, {}), flow::Stop::failed);
   EXPECT_EQ(distance(state_of(c, *paused.solver), state_of(c, *run.solver)), 0.0);
 }
 
@@ -636,14 +655,15 @@ TEST(CoupledSolver, RejectsArraysOfTheWrongLength) {
   const CoupledCase c = flying_strip();
   CoupledRun run(c);
   std::vector<Vector> few(c.x.size() - 1);
-  EXPECT_THROW(run.solver->forces(few), std::invalid_argument);
   EXPECT_THROW(run.solver->air_velocity(few), std::invalid_argument);
-  EXPECT_THROW(run.solver->download_air_acceleration(few), std::invalid_argument);
-  EXPECT_THROW(run.solver->upload_air_acceleration(few), std::invalid_argument);
-  EXPECT_THROW(run.solver->upload_forces(few), std::invalid_argument);
-  EXPECT_THROW(run.solver->upload_defect(c.x), std::invalid_argument) << "it is not filtered";
-  EXPECT_TRUE(run.solver->download_defect().empty());
-  EXPECT_THROW(run.solver->upload_cloth(few, few), std::invalid_argument);
+  for (const char* name : {"air_acceleration", "sheet_force", "sheet_position", "sheet_velocity"}) {
+    EXPECT_THROW(run.solver->download(name, numbers(few)), std::invalid_argument) << name;
+    EXPECT_THROW(run.solver->upload(name, numbers(few)), std::invalid_argument) << name;
+  }
+  std::vector<Vector> whole(c.x.size());
+  EXPECT_THROW(run.solver->upload("defect", numbers(whole)), std::invalid_argument) << "it is not filtered";
+  for (const stepping::StateArray& array : run.solver->state()) EXPECT_NE(array.name, "defect");
+  EXPECT_THROW(run.solver->fabric().upload(few, few), std::invalid_argument);
 }
 
 /// Launches that differ on a device and a host.
