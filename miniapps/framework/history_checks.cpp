@@ -70,8 +70,6 @@ void require_measurable(const scene::Place& root, const std::vector<HistoryCheck
                  " must be positive: it is a frequency");
     at.refuse_if(check.statistic == Statistic::amplitude && check.value < 0.0, "value",
                  " must not be negative: it is an amplitude");
-    at.refuse_if(check.value != 0.0 && check.tolerance > 1.0, "tolerance",
-                 " is relative to value: above 1 it accepts the opposite sign too");
   }
 }
 

@@ -3,6 +3,7 @@
 
 import array
 import csv
+import itertools
 import json
 import math
 import os
@@ -27,6 +28,15 @@ import parachute_program
 from parachute_program import CANOPY, CLOTH, GUST, PLATE, VORTICES, statistic
 
 QUIET = ("--quiet", "--backend", "serial", "--out", "out")
+
+
+def mean_from(begin, times, values):
+    """Mean from a time to the last row by the trapezoidal rule, with the value at that time between two rows."""
+    first = next(k for k, time in enumerate(times) if time >= begin)
+    share = (begin - times[first - 1]) / (times[first] - times[first - 1])
+    points = [(begin, values[first - 1] + share * (values[first] - values[first - 1])), *zip(times[first:], values[first:], strict=True)]
+    areas = sum((after[0] - before[0]) * (before[1] + after[1]) / 2 for before, after in itertools.pairwise(points))
+    return areas / (times[-1] - begin)
 
 
 class CommandLine(parachute_program.FlowTest):
@@ -775,10 +785,7 @@ class Canopies(parachute_program.FlowTest):
         forces = [math.hypot(*(rows[f"canopy_0_line_force_{axis}"][k] for axis in "xyz")) for k in range(len(rows["time"]))]
         self.assertAlmostEqual(max(forces), reported["peak_force_0"], delta=1e-9 * max(forces))
         self.assertEqual(rows["time"][forces.index(max(forces))], reported["peak_force_0_time"])
-        window = [k for k, time in enumerate(rows["time"]) if 0.05 <= time <= 0.2]
-        areas = sum(0.5 * (rows["time"][k] - rows["time"][k - 1]) * (rows["canopy_0_force_z"][k] + rows["canopy_0_force_z"][k - 1])
-                    for k in window[1:])
-        mean = areas / (rows["time"][window[-1]] - rows["time"][window[0]])
+        mean = mean_from(0.05, rows["time"], rows["canopy_0_force_z"])
         drag = self.measured("canopy_0_drag_coefficient_mean")
         self.assertAlmostEqual(2 * mean / (1.225 * 64 * math.pi), drag, delta=1e-6)
         good = [drag, 8, 0.9 * max(forces), 1.1 * max(forces), reported["peak_force_0_time"] - 0.01, 1]
@@ -926,11 +933,8 @@ class Canopies(parachute_program.FlowTest):
                        for k in range(len(rows["time"]) - 1))
             self.assertAlmostEqual(rows[which][-1] - rows[which][0], path, delta=0.1)
         # The checks have the velocity of the fluid relative to the payload.
-        window = [k for k, time in enumerate(rows["time"]) if 0.4 <= time <= 1]
-        speeds = [math.hypot(rows["canopy_0_payload_velocity_x"][k], rows["canopy_0_payload_velocity_y"][k],
-                             8 - rows["canopy_0_payload_velocity_z"][k]) for k in window]
-        mean = sum((rows["time"][window[k + 1]] - rows["time"][window[k]]) * (speeds[k] + speeds[k + 1]) / 2
-                   for k in range(len(window) - 1)) / (rows["time"][window[-1]] - rows["time"][window[0]])
+        speeds = [math.hypot(x, y, 8 - z) for x, y, z in zip(*(rows[f"canopy_0_payload_velocity_{axis}"] for axis in "xyz"), strict=True)]
+        mean = mean_from(0.4, rows["time"], speeds)
         self.assertAlmostEqual(mean, self.measured("canopy_0_airspeed_mean"), delta=1e-9)
         self.assertGreater(mean, 2.0)
         # A run that is continued from the middle of a block has the same bits.

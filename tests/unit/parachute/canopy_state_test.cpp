@@ -199,7 +199,7 @@ std::array<double, 2> leak_between(double from, double to, const run::History& h
 TEST(CanopyChecks, LeakIsThatOfAnIntervalRelativeToTheStream) {
   const run::History history = leaking_rows();
   // Trapezoids: means of the leak of -1 for 2 s and 0 for 1 s, and of its square of 5 and 1.
-  const auto [mean, rms] = leak_between(0.5, 5.0, history);
+  const auto [mean, rms] = leak_between(1.0, 5.0, history);
   EXPECT_NEAR(mean, 2.0 / 3.0 / (5.0 * 4.0), 1e-15);
   EXPECT_NEAR(rms, std::sqrt(11.0 / 3.0) / (5.0 * 4.0), 1e-15);
   EXPECT_NEAR(leak_between(1.0, 3.0, history)[0], 1.0 / (5.0 * 4.0), 1e-15);
