@@ -3,7 +3,15 @@
 #include <algorithm>
 #include <iterator>
 
+#include "kernels/device/backend.hpp"
+
 namespace drogue::perf {
+
+std::vector<device::Backend> present_backends() {
+  std::vector<device::Backend> backends = device::compiled_backends();
+  std::erase_if(backends, [](device::Backend backend) { return !device::is_present(backend); });
+  return backends;
+}
 
 std::vector<Case> all_cases(bool quick) {
   std::vector<Case> cases = gas_cases(quick);

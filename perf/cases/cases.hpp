@@ -7,6 +7,16 @@
 /// Benchmark cases that this build and machine can run; `quick` selects small ones. No function throws.
 namespace drogue::perf {
 
+/// Backends of the build that can run here, slowest first.
+std::vector<device::Backend> present_backends();
+
+/// Change of the standard parameters of a case.
+template <class Parameters>
+struct Variant {
+  const char* name;  ///< last part of the case's name
+  void (*apply)(Parameters&);
+};
+
 std::vector<Case> gas_cases(bool quick);
 std::vector<Case> fabric_cases(bool quick);
 std::vector<Case> contact_cases(bool quick);

@@ -2,7 +2,7 @@
 
 #include "perf/cases/cases.hpp"
 #include "perf/ceilings/ceilings.hpp"
-#include "perf/measure/median_of_works.hpp"
+#include "perf/measure/parts.hpp"
 
 namespace drogue::perf {
 
@@ -26,48 +26,41 @@ constexpr CeilingEntry ceilings[] = {
     {Ceiling::graph_node, "graph-node", "latency of a kernel in a graph", 0.0}};
 
 Case ceiling_case(device::Backend backend, const CeilingEntry& entry) {
-  const auto kernel = std::make_shared<std::unique_ptr<CeilingKernel>>();
-  const std::string name(device::name(backend));
-  return {.name = std::string("ceiling/") + entry.name + "/" + name,
-          .on_device = device::needs_device(backend),
+  return {.name = std::string("ceiling/") + entry.name + "/" + std::string(device::name(backend)),
+          .backend = backend,
           .unit_of_work = "launch",
           .bound = entry.bound,
-          .prepare =
-              [=, ceiling = entry.ceiling] {
-                *kernel = create_ceiling(backend, ceiling);
-                return Sample{[=] { (*kernel)->reset(); },
-                              [=] {
-                                (*kernel)->run();
-                                return (*kernel)->launches();
-                              }};
-              },
-          .error = [=] { return (*kernel)->error(); },
           .tolerance = entry.tolerance,
-          .facts =
-              [=] {
-                Facts facts{.backend = name,
-                            .cells = 0,
-                            .variant = "",
-                            .flops = (*kernel)->flops(),
-                            .bytes = (*kernel)->bytes()};
-                facts.instructions = (*kernel)->instructions();
-                if (device::needs_device(backend))
-                  facts.device_seconds = median_of_works([=] {
-                    (*kernel)->reset();
-                    return (*kernel)->timed_run() / static_cast<double>((*kernel)->launches());
-                  });
-                return facts;
-              }};
+          .prepare = [backend, ceiling = entry.ceiling] {
+            const std::shared_ptr<CeilingKernel> kernel = create_ceiling(backend, ceiling);
+            return Sample{.reset = [=] { kernel->reset(); },
+                          .work =
+                              [=] {
+                                kernel->run();
+                                return kernel->launches();
+                              },
+                          .error = [=] { return kernel->error(); },
+                          .complete =
+                              [=](Facts& facts) {
+                                facts.flops = kernel->flops();
+                                facts.bytes = kernel->bytes();
+                                facts.instructions = kernel->instructions();
+                                if (device::needs_device(backend))
+                                  facts.device_seconds = median_of_works([&] {
+                                    kernel->reset();
+                                    return kernel->timed_run() / static_cast<double>(kernel->launches());
+                                  });
+                              }};
+          }};
 }
 
 }  // namespace
 
 std::vector<Case> ceiling_cases() {
   std::vector<Case> cases;
-  for (const device::Backend backend : device::compiled_backends())
+  for (const device::Backend backend : present_backends())
     for (const CeilingEntry& entry : ceilings)
-      if (device::is_present(backend) && has_ceiling(backend, entry.ceiling))
-        cases.push_back(ceiling_case(backend, entry));
+      if (has_ceiling(backend, entry.ceiling)) cases.push_back(ceiling_case(backend, entry));
   return cases;
 }
 

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "kernels/fabric/elastic/adjacency.hpp"
 #include "kernels/reference/fabric/scatter_step.hpp"
 #include "perf/cases/cases.hpp"
-#include "perf/models/fabric_step.hpp"
+#include "perf/models/step_bytes.hpp"
 #include "perf/problems/sheet.hpp"
 
 namespace drogue::perf {
@@ -14,42 +13,32 @@ namespace {
 
 /// Reference loop on one core that scatters edge forces to vertices, with the time step of the solver.
 Case scatter_case(int vertices, long steps) {
-  struct Run {
-    std::unique_ptr<reference::ScatterSheet> loop;
-    fabric::Parameters p;
-    sheet::State state;
-    double dt = 0.0;
-  };
-  const auto run = std::make_shared<Run>();
-  return {.name = "springs-step/scatter-loop/" + std::to_string(vertices),
-          .on_device = false,
-          .unit_of_work = "step",
-          .bound = "one core; no vectorisation requested",
-          .prepare =
-              [=] {
-                run->p = sheet::parameters(vertices);
-                run->loop = std::make_unique<reference::ScatterSheet>(run->p);
-                run->dt = sheet::default_dt(run->p, *fabric::create_solver(device::Backend::serial, run->p));
-                return Sample{[=] { run->state = sheet::start(run->p); },
-                              [=] {
-                                for (long step = 0; step < steps; ++step)
-                                  run->loop->step(run->dt, run->state.x, run->state.v);
-                                return steps;
-                              }};
-              },
-          .error = [=] { return sheet::energy_drift(run->p, run->state); },
-          .tolerance = sheet::tolerance(fabric::Integrator::rk4, vertices),
-          .facts =
-              [=] {
-                return Facts{"serial", static_cast<std::int64_t>(run->p.mass.size()), "scatter-loop"};
-              }};
+  return {
+      .name = "springs-step/scatter-loop/" + std::to_string(vertices),
+      .backend = device::Backend::serial,
+      .unit_of_work = "step",
+      .bound = "one core; no vectorisation requested",
+      .tolerance = sheet::tolerance(fabric::Integrator::rk4, vertices),
+      .prepare =
+          [=] {
+            const auto p = std::make_shared<const fabric::Parameters>(sheet::parameters(vertices));
+            const auto loop = std::make_shared<reference::ScatterSheet>(*p);
+            const auto state = std::make_shared<sheet::State>();
+            const double dt = sheet::default_dt(*p, *fabric::create_solver(device::Backend::serial, *p));
+            return Sample{
+                .reset = [=] { *state = sheet::start(*p); },
+                .work =
+                    [=] {
+                      for (long step = 0; step < steps; ++step) loop->step(dt, state->x, state->v);
+                      return steps;
+                    },
+                .error = [=] { return sheet::energy_drift(*p, *state); },
+                .complete = [=](Facts& facts) { facts.cells = static_cast<std::int64_t>(p->mass.size()); }};
+          },
+      .facts = {.variant = "scatter-loop"}};
 }
 
-/// Change of the standard parameters.
-struct FabricVariant {
-  const char* name;  ///< last part of the case's name
-  void (*apply)(fabric::Parameters&);
-};
+using FabricVariant = Variant<fabric::Parameters>;
 
 const FabricVariant standard = {"", [](fabric::Parameters&) {}};
 const FabricVariant quadratic = {"quadratic",
@@ -63,64 +52,46 @@ const FabricVariant patch_64 = {"patch-64", [](fabric::Parameters& p) { p.patch 
 const FabricVariant patch_128 = {"patch-128", [](fabric::Parameters& p) { p.patch = 128; }};
 const FabricVariant patch_256 = {"patch-256", [](fabric::Parameters& p) { p.patch = 256; }};
 
-Facts sheet_facts(device::Backend backend, const fabric::Parameters& p, const fabric::Solver& solver,
-                  const std::string& variant) {
-  Facts facts{std::string(device::name(backend)), static_cast<std::int64_t>(p.mass.size()), variant};
+void complete(Facts& facts, device::Backend backend, const fabric::Parameters& p,
+              const fabric::Solver& solver) {
+  facts.cells = static_cast<std::int64_t>(p.mass.size());
   facts.driver = solver.driver();
-  if (facts.driver == "persistent") return facts;
+  if (facts.driver == "persistent") return;
   if (p.integrator != fabric::Integrator::rk4) {
     facts.launches = 1;
-    return facts;
+    return;
   }
   const bool stages = !device::needs_device(backend) || p.driver == fabric::Driver::stages;
   facts.launches = stages ? 4 : 2;
-  if (device::needs_device(backend) == stages) return facts;  // stages of a device store nothing in slots
+  if (device::needs_device(backend) == stages) return;  // stages of a device store nothing in slots
   const auto slots = static_cast<std::int64_t>(fabric::ring_adjacency(p.mesh).neighbour.size());
   facts.bytes = fabric_step_bytes(stages ? FabricKernels::stages : FabricKernels::halves, facts.cells, slots);
-  return facts;
 }
 
-/// Sheet of several cases, made by the first that is prepared.
-class SharedSheet {
- public:
-  explicit SharedSheet(int vertices) : _vertices(vertices) {}
-  const fabric::Parameters& parameters() {
-    if (!_parameters) _parameters = sheet::parameters(_vertices);
-    return *_parameters;
-  }
-
- private:
-  int _vertices;
-  std::optional<fabric::Parameters> _parameters;
-};
-
-Case sheet_case(device::Backend backend, int vertices, const std::shared_ptr<SharedSheet>& sheet, long steps,
-                const FabricVariant& variant) {
-  struct Run {
-    fabric::Parameters p;
-    std::unique_ptr<fabric::Solver> solver;
-  };
-  const auto run = std::make_shared<Run>();
-  const std::string name(device::name(backend));
+/// `sheet`: that of several cases, made by the first that is prepared.
+Case sheet_case(device::Backend backend, int vertices, const std::shared_ptr<fabric::Parameters>& sheet,
+                long steps, const FabricVariant& variant) {
   fabric::Parameters changed;
   variant.apply(changed);
-  return {.name = "springs-step/" + name + "/" + std::to_string(vertices) + (*variant.name ? "/" : "") +
-                  variant.name,
-          .on_device = device::needs_device(backend),
+  return {.name = "springs-step/" + std::string(device::name(backend)) + "/" + std::to_string(vertices) +
+                  (*variant.name ? "/" : "") + variant.name,
+          .backend = backend,
           .unit_of_work = "step",
           .bound = backend == device::Backend::cuda
                        ? "latency between patches below 100k vertices, memory bandwidth above"
                        : "loads of neighbours by the cores",
+          .tolerance = sheet::tolerance(changed.integrator, vertices),
           .prepare =
               [=] {
-                run->p = sheet->parameters();
-                variant.apply(run->p);
-                run->solver = fabric::create_solver(backend, run->p);
-                return sheet::steps(run->p, *run->solver, steps);
+                if (sheet->mass.empty()) *sheet = sheet::parameters(vertices);
+                const auto p = std::make_shared<fabric::Parameters>(*sheet);
+                variant.apply(*p);
+                const std::shared_ptr<fabric::Solver> solver = fabric::create_solver(backend, *p);
+                Sample sample = sheet::steps(p, solver, steps);
+                sample.complete = [=](Facts& facts) { complete(facts, backend, *p, *solver); };
+                return sample;
               },
-          .error = [=] { return sheet::energy_drift(run->p, *run->solver); },
-          .tolerance = sheet::tolerance(changed.integrator, vertices),
-          .facts = [=] { return sheet_facts(backend, run->p, *run->solver, variant.name); }};
+          .facts = {.variant = variant.name}};
 }
 
 std::vector<FabricVariant> variants_of(int vertices, bool gpu) {
@@ -136,9 +107,8 @@ std::vector<FabricVariant> variants_of(int vertices, bool gpu) {
 std::vector<Case> fabric_cases(bool quick) {
   std::vector<Case> cases;
   for (const int vertices : quick ? std::vector{2640} : std::vector{2640, 15'625, 100'000, 1'000'000}) {
-    const auto sheet = std::make_shared<SharedSheet>(vertices);
-    for (const device::Backend backend : device::compiled_backends()) {
-      if (!device::is_present(backend)) continue;
+    const auto sheet = std::make_shared<fabric::Parameters>();
+    for (const device::Backend backend : present_backends()) {
       const bool gpu = backend == device::Backend::cuda;
       if (!gpu && vertices > 100'000) continue;
       // A sample takes about 20 ms: enough steps to hide its start and end.

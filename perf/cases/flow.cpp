@@ -5,7 +5,7 @@
 
 #include "kernels/flow/solver.hpp"
 #include "perf/cases/cases.hpp"
-#include "perf/models/flow_step.hpp"
+#include "perf/models/step_bytes.hpp"
 #include "perf/problems/pressure_solves.hpp"
 #include "perf/problems/streams.hpp"
 
@@ -48,53 +48,50 @@ double largest_exact_error(const flow::Parameters& p, Sides sides) {
 }
 
 Case flow_case(device::Backend backend, const Cells& cells, const FlowVariant& variant, long steps) {
-  const std::int64_t count = static_cast<std::int64_t>(cells[0]) * cells[1] * cells[2];
   flow::Parameters p = streams::parameters(cells, variant.sides);
   variant.apply(p);
-  const auto solver = std::make_shared<std::unique_ptr<flow::Solver>>();
-  const auto exact_error = std::make_shared<double>(0.0);
-  const std::string name(device::name(backend));
-  return {.name = "flow-step/" + name + "/" + streams::text(cells) + "/" + variant.name,
-          .on_device = device::needs_device(backend),
+  return {.name = "flow-step/" + std::string(device::name(backend)) + "/" + streams::text(cells) + "/" +
+                  variant.name,
+          .backend = backend,
           .unit_of_work = "step",
           .bound = backend == device::Backend::cuda ? "FP64 issue of the momentum stage, memory of the rest"
                                                     : "FP64 issue of the cores",
+          .tolerance = streams::divergence_tolerance,
           .prepare =
               [=] {
-                *solver = flow::create_solver(backend, p);
-                return streams::steps(p, **solver, steps);
-              },
-          .error =
-              [=] {
-                const double divergence = streams::relative_divergence(p, **solver);
+                const std::shared_ptr<flow::Solver> solver = flow::create_solver(backend, p);
+                const auto exact_error = std::make_shared<double>(0.0);
+                Sample sample = streams::steps(p, solver, steps);
                 // A model of turbulence changes the solution.
-                if (p.turbulence != flow::Turbulence::none) return divergence;
-                *exact_error = streams::exact_error(p, **solver, exact_steps);
-                return *exact_error <= largest_exact_error(p, variant.sides)
-                           ? divergence
-                           : std::numeric_limits<double>::infinity();
+                if (p.turbulence == flow::Turbulence::none)
+                  sample.error = [=, divergence_of = sample.error] {
+                    const double divergence = divergence_of();
+                    *exact_error = streams::exact_error(p, *solver, exact_steps);
+                    return *exact_error <= largest_exact_error(p, variant.sides)
+                               ? divergence
+                               : std::numeric_limits<double>::infinity();
+                  };
+                sample.complete = [=](Facts& facts) {
+                  facts.solution_error = *exact_error;
+                  facts.driver = solver->driver();
+                };
+                return sample;
               },
-          .tolerance = 1e-12,
-          // a wrong projection leaves a divergence of order one
-          .facts =
-              [=] {
-                Facts facts{name, count, variant.name, 0.0, flow_step_bytes(p), *exact_error};
-                facts.driver = (*solver)->driver();
-                return facts;
-              }};
+          .facts = {.cells = static_cast<std::int64_t>(cells[0]) * cells[1] * cells[2],
+                    .variant = variant.name,
+                    .bytes = flow_step_bytes(p)}};
 }
 
 void add_pressure_cases(std::vector<Case>& cases, device::Backend backend, const Cells& grid) {
   for (const PressureSolve& solve : pressure_solves(backend, grid, {Sides::periodic, Sides::tunnel}, 1 << 19))
-    cases.push_back(pressure_case(solve, std::make_shared<std::unique_ptr<pressure::Solver>>()));
+    cases.push_back(pressure_case(solve));
 }
 
 }  // namespace
 
 std::vector<Case> flow_cases(bool quick) {
   std::vector<Case> cases;
-  for (const device::Backend backend : device::compiled_backends()) {
-    if (!device::is_present(backend)) continue;
+  for (const device::Backend backend : present_backends()) {
     if (quick) {
       cases.push_back(flow_case(backend, {32, 32, 32}, usual_periodic, 4));
       cases.push_back(flow_case(backend, {20, 20, 40}, usual_tunnel, 4));

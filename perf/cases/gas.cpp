@@ -5,7 +5,6 @@
 #include "kernels/reference/gas/dense_step.hpp"
 #include "perf/cases/cases.hpp"
 #include "perf/models/gas_step.hpp"
-#include "perf/problems/baseline_case.hpp"
 #include "perf/problems/sod.hpp"
 
 namespace drogue::perf {
@@ -18,15 +17,16 @@ Case dense_case(std::int64_t cells, long steps) {
     reference::DenseWorkspace workspace;
     double time = 0.0;
   };
-  const auto run = std::make_shared<Run>();
   const gas::Parameters p = sod::parameters(cells);
   const double dx = (p.x_max - p.x_min) / static_cast<double>(cells);
   return {.name = "gas-step/dense-loop/" + std::to_string(cells),
-          .on_device = false,
+          .backend = device::Backend::serial,
           .unit_of_work = "step",
           .bound = "one core; no vectorisation requested",
+          .tolerance = sod::tolerance(p),
           .prepare =
               [=] {
+                const auto run = std::make_shared<Run>();
                 return Sample{[=] {
                                 run->time = 0.0;
                                 run->state.clear();
@@ -39,79 +39,68 @@ Case dense_case(std::int64_t cells, long steps) {
                                   run->time +=
                                       reference::dense_step(run->state, run->workspace, p.gamma, dx, p.cfl);
                                 return steps;
+                              },
+                              [=] {
+                                std::vector<double> rho;
+                                for (const auto& u : run->state) rho.push_back(u[0]);
+                                return sod::l1_error(p, rho, run->time);
                               }};
               },
-          .error =
-              [=] {
-                std::vector<double> rho;
-                for (const auto& u : run->state) rho.push_back(u[0]);
-                return sod::l1_error(p, rho, run->time);
-              },
-          .tolerance = sod::tolerance(p),
-          .facts =
-              [=] {
-                return Facts{"serial", cells, "dense-loop"};
-              }};
+          .facts = {.cells = cells, .variant = "dense-loop"}};
 }
 
-/// Change of the standard parameters.
-struct Variant {
-  const char* name;  ///< last part of the case's name
-  void (*apply)(gas::Parameters&);
-};
+using GasVariant = Variant<gas::Parameters>;
 
 /// Variants of the largest mesh, where arithmetic dominates, and of a small one, where launches dominate.
-const std::vector<Variant> large_variants = {
+const std::vector<GasVariant> large_variants = {
     {"z", [](gas::Parameters& p) { p.weno = gas::Weno::z; }},
     {"teno5", [](gas::Parameters& p) { p.weno = gas::Weno::teno5; }},
     {"split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }},
     {"auto", [](gas::Parameters& p) { p.positivity = gas::Positivity::automatic; }},
     {"on", [](gas::Parameters& p) { p.positivity = gas::Positivity::on; }},
     {"stages", [](gas::Parameters& p) { p.driver = gas::Driver::stages; }}};
-const std::vector<Variant> small_variants = {
+const std::vector<GasVariant> small_variants = {
     {"plain", [](gas::Parameters& p) { p.driver = gas::Driver::plain; }},
     {"graph", [](gas::Parameters& p) { p.driver = gas::Driver::graph; }},
     {"stages", [](gas::Parameters& p) { p.driver = gas::Driver::stages; }},
     {"split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }}};
 
-Case solver_case(device::Backend backend, std::int64_t cells, long steps, const Variant& variant) {
+Case solver_case(device::Backend backend, std::int64_t cells, long steps, const GasVariant& variant) {
   gas::Parameters p = sod::parameters(cells);
   variant.apply(p);
-  const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
-  const std::string name(device::name(backend));
-  return {
-      .name = "gas-step/" + name + "/" + std::to_string(cells) + (*variant.name ? "/" : "") + variant.name,
-      .on_device = device::needs_device(backend),
-      .unit_of_work = "step",
-      .bound = backend == device::Backend::cuda ? "launch latency below 100k cells, FP64 issue above"
-                                                : "FP64 issue of the cores",
-      .prepare =
-          [=] {
-            *solver = gas::create_solver(backend, p);
-            return sod::steps(p, backend, **solver, steps);
-          },
-      .error = [=] { return sod::l1_error(p, **solver); },
-      .tolerance = sod::tolerance(p),
-      .facts =
-          [=] {
-            const StepWork work = step_work(p, (*solver)->tiling());
-            Facts facts{name, cells, variant.name, static_cast<double>(work.arithmetic.flops()),
-                        static_cast<double>(work.bytes)};
-            facts.instructions = static_cast<double>(work.arithmetic.instructions());
-            facts.driver = (*solver)->driver();
-            // The kernels of the stages, and the one that accepts the step.
-            if (facts.driver != "persistent")
-              facts.launches = ((*solver)->tiling().fused ? 1 : gas::stage_table(p.time_scheme).stages) + 1;
-            return facts;
-          }};
+  return {.name = "gas-step/" + std::string(device::name(backend)) + "/" + std::to_string(cells) +
+                  (*variant.name ? "/" : "") + variant.name,
+          .backend = backend,
+          .unit_of_work = "step",
+          .bound = backend == device::Backend::cuda ? "launch latency below 100k cells, FP64 issue above"
+                                                    : "FP64 issue of the cores",
+          .tolerance = sod::tolerance(p),
+          .prepare =
+              [=] {
+                const std::shared_ptr<gas::Solver> solver = gas::create_solver(backend, p);
+                Sample sample = sod::steps(p, backend, solver, steps);
+                sample.complete = [=](Facts& facts) {
+                  const StepWork work = step_work(p, solver->tiling());
+                  facts.flops = static_cast<double>(work.arithmetic.flops());
+                  facts.bytes = static_cast<double>(work.bytes);
+                  facts.instructions = static_cast<double>(work.arithmetic.instructions());
+                  facts.driver = solver->driver();
+                  // The kernels of the stages, and the one that accepts the step.
+                  if (facts.driver != "persistent")
+                    facts.launches =
+                        (solver->tiling().fused ? 1 : gas::stage_table(p.time_scheme).stages) + 1;
+                };
+                return sample;
+              },
+          .facts = {.cells = cells, .variant = variant.name}};
 }
 
 /// The scheme of [Shi], which copies the state to and from the device in each stage.
 Case baseline_step_case(device::Backend backend, std::int64_t cells) {
-  const std::string name(device::name(backend));
-  Case step = baseline_case("gas-step/" + name + "/" + std::to_string(cells) + "/seed",
-                            "copies between host and device", backend, sod::parameters(cells), all_phases);
-  step.facts = [=] { return Facts{name, cells, "seed"}; };
+  Case step = sod::baseline_case(
+      "gas-step/" + std::string(device::name(backend)) + "/" + std::to_string(cells) + "/seed",
+      "copies between host and device", backend, sod::parameters(cells));
+  step.facts = {.cells = cells, .variant = "seed"};
   return step;
 }
 
@@ -121,8 +110,7 @@ std::vector<Case> gas_cases(bool quick) {
   std::vector<Case> cases;
   for (const std::int64_t cells : quick ? std::vector<std::int64_t>{1024, 8192}
                                         : std::vector<std::int64_t>{1024, 8192, 65536, 1 << 20, 1 << 24}) {
-    for (const device::Backend backend : device::compiled_backends()) {
-      if (!device::is_present(backend)) continue;
+    for (const device::Backend backend : present_backends()) {
       const bool gpu = backend == device::Backend::cuda;
       if (!gpu && cells > 1 << 20) continue;
       // A sample takes about 20 ms: enough steps to hide its start and end, and few enough that the waves
@@ -132,11 +120,11 @@ std::vector<Case> gas_cases(bool quick) {
           gpu ? std::clamp(n / 2, 10L, std::max(10L, 2000L / (1 + n / 65536))) : std::max(4L, 200'000L / n);
       cases.push_back(solver_case(backend, cells, steps, {"", [](gas::Parameters&) {}}));
       if (gpu && cells == 8192)
-        for (const Variant& variant : small_variants)
+        for (const GasVariant& variant : small_variants)
           cases.push_back(solver_case(backend, cells, steps, variant));
       if (gpu && cells == 8192) cases.push_back(baseline_step_case(backend, cells));
       if (gpu && cells == 1 << 24)
-        for (const Variant& variant : large_variants)
+        for (const GasVariant& variant : large_variants)
           cases.push_back(solver_case(backend, cells, steps, variant));
     }
     if (cells <= 8192) cases.push_back(dense_case(cells, std::max(2L, 50'000L / static_cast<long>(cells))));

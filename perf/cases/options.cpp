@@ -10,16 +10,13 @@ Case batch_case(device::Backend backend, std::size_t count, int mesh, int steps)
   const std::string name(device::name(backend)), grid = std::to_string(mesh) + "x" + std::to_string(steps);
   Case batch = puts::batch("options/" + name + "/" + std::to_string(count) + "/" + grid, backend,
                            HostMemory::pinned, count, {.mesh = mesh, .steps = steps}, puts::tolerance(mesh));
-  batch.facts = [=] {
-    const auto puts = static_cast<std::int64_t>(count);
-    // Scratch memory of an option stays in caches.
-    const double bytes = sizeof(options::Contract) + sizeof(options::Price);
-    return Facts{.backend = name,
-                 .cells = puts,
+  // Scratch memory of an option stays in caches.
+  constexpr double bytes = sizeof(options::Contract) + sizeof(options::Price);
+  const auto puts = static_cast<std::int64_t>(count);
+  batch.facts = {.cells = puts,
                  .variant = grid,
                  .flops = static_cast<double>(puts * options_march_arithmetic(mesh, steps).flops()),
                  .bytes = static_cast<double>(count) * bytes};
-  };
   return batch;
 }
 
@@ -33,7 +30,7 @@ Case surface_case(device::Backend backend, const puts::SurfaceSize& size, bool a
                                {.mesh = 128, .steps = 32, .surface = !apart, .time_copies = !apart},
                                puts::tolerance(128));
   const auto prices = static_cast<std::int64_t>(size.sets * size.strikes * size.maturities);
-  surface.facts = [=] { return Facts{name, prices, variant + " " + count}; };
+  surface.facts = {.cells = prices, .variant = variant + " " + count};
   return surface;
 }
 
@@ -44,7 +41,7 @@ Case cosine_case(device::Backend backend, std::size_t count) {
   Case batch =
       puts::batch("options-cos/" + name + "/" + std::to_string(count), backend, HostMemory::pinned, count,
                   {.method = options::Method::cos, .tolerance = loose}, puts::loose_cosine_error);
-  batch.facts = [=] { return Facts{name, static_cast<std::int64_t>(count), "cos"}; };
+  batch.facts = {.cells = static_cast<std::int64_t>(count), .variant = "cos"};
   return batch;
 }
 
@@ -52,8 +49,7 @@ Case cosine_case(device::Backend backend, std::size_t count) {
 
 std::vector<Case> options_cases(bool quick) {
   std::vector<Case> cases;
-  for (const device::Backend backend : device::compiled_backends()) {
-    if (!device::is_present(backend)) continue;
+  for (const device::Backend backend : present_backends()) {
     const bool gpu = backend == device::Backend::cuda;
     const auto add = [&](std::size_t count, int mesh, int steps) {
       cases.push_back(batch_case(backend, count, mesh, steps));

@@ -12,34 +12,28 @@ namespace {
 
 Case inflation_case(device::Backend backend, const std::array<int, 3>& cells, bool with_contact, double lead,
                     long milliseconds) {
-  const std::string name(device::name(backend)), variant = with_contact ? "c9-contact" : "c9";
-  const auto solver = std::make_shared<std::unique_ptr<coupling::Solver>>();
-  const auto problem = std::make_shared<inflation::Problem>();
-  return {.name = "parachute-flight/" + name + "/" + streams::text(cells) + "/" + variant,
-          .on_device = device::needs_device(backend),
+  const std::string variant = with_contact ? "c9-contact" : "c9";
+  return {.name = "parachute-flight/" + std::string(device::name(backend)) + "/" + streams::text(cells) +
+                  "/" + variant,
+          .backend = backend,
           .unit_of_work = "ms of flight",
           .bound = device::needs_device(backend) ? "latency of the steps of the cloth"
                                                  : "FP64 issue of the cores, for cells and triangles",
+          .tolerance = inflation::largest_imbalance,
           .prepare =
               [=] {
-                *problem = inflation::problem({.cells = cells, .with_contact = with_contact});
-                *solver = coupling::create_solver(backend, problem->parameters);
-                return inflation::flight(*problem, **solver, lead, milliseconds);
+                return inflation::flight(backend,
+                                         inflation::problem({.cells = cells, .with_contact = with_contact}),
+                                         lead, milliseconds);
               },
-          .error = [=] { return inflation::imbalance(problem->parameters, **solver); },
-          .tolerance = 1e-12,
-          .facts =
-              [=] {
-                return Facts{name, static_cast<std::int64_t>(cells[0]) * cells[1] * cells[2], variant};
-              }};
+          .facts = {.cells = static_cast<std::int64_t>(cells[0]) * cells[1] * cells[2], .variant = variant}};
 }
 
 }  // namespace
 
 std::vector<Case> parachute_cases(bool quick) {
   std::vector<Case> cases;
-  for (const device::Backend backend : device::compiled_backends()) {
-    if (!device::is_present(backend)) continue;
+  for (const device::Backend backend : present_backends()) {
     const auto add = [&](const std::array<int, 3>& cells, bool with_contact, double lead, long milliseconds) {
       cases.push_back(inflation_case(backend, cells, with_contact, lead, milliseconds));
     };

@@ -5,10 +5,9 @@
 
 #include "kernels/reference/linear/tridiagonal.hpp"
 #include "perf/cases/cases.hpp"
-#include "perf/measure/median_of_works.hpp"
+#include "perf/measure/parts.hpp"
 #include "perf/models/tridiagonal.hpp"
-#include "perf/tridiagonal/spd.hpp"
-#include "perf/tridiagonal/toeplitz.hpp"
+#include "perf/tridiagonal/solvers.hpp"
 
 namespace drogue::perf {
 
@@ -96,52 +95,50 @@ double error_of(const tridiagonal::ToeplitzBatch& batch, const std::vector<doubl
 }
 
 Case tridiagonal_case(device::Backend backend, bool by_pttrf, int count, int nodes) {
-  struct Run {
-    tridiagonal::ToeplitzBatch batch;
-    std::unique_ptr<tridiagonal::BatchSolver> solver;
-  };
-  const auto run = std::make_shared<Run>();
-  const std::string name(device::name(backend));
   const std::string variant = (by_pttrf ? "pttrf/" : "scan/") + std::to_string(nodes);
-  return {.name = "tridiagonal/" + name + "/" + std::to_string(count) + "/" + variant,
-          .on_device = device::needs_device(backend),
+  const Arithmetic work = by_pttrf ? spd_arithmetic(nodes - 1) : toeplitz_arithmetic(nodes);
+  const std::int64_t bytes = by_pttrf ? spd_bytes(nodes - 1) : toeplitz_bytes(nodes);
+  return {.name = "tridiagonal/" + std::string(device::name(backend)) + "/" + std::to_string(count) + "/" +
+                  variant,
+          .backend = backend,
           .unit_of_work = "batch",
           .bound = by_pttrf ? "memory, on a host divisions that wait for one another"
                             : "memory, on a host arithmetic",
+          .tolerance = tridiagonal_tolerance,
           .prepare =
               [=] {
-                run->batch = random_batch(count, nodes);
-                run->solver = by_pttrf ? create_spd_solver(backend, symmetric_systems(run->batch))
-                                       : create_toeplitz_solver(backend, run->batch);
-                return Sample{[=] { run->solver->reset(); },
-                              [=] {
-                                run->solver->solve();
-                                return 1L;
-                              }};
+                const auto batch =
+                    std::make_shared<const tridiagonal::ToeplitzBatch>(random_batch(count, nodes));
+                const std::shared_ptr<tridiagonal::BatchSolver> solver =
+                    by_pttrf ? create_spd_solver(backend, symmetric_systems(*batch))
+                             : create_toeplitz_solver(backend, *batch);
+                return Sample{.reset = [=] { solver->reset(); },
+                              .work =
+                                  [=] {
+                                    solver->solve();
+                                    return 1L;
+                                  },
+                              .error = [=] { return error_of(*batch, solver->solution()); },
+                              .complete =
+                                  [=](Facts& facts) {
+                                    if (device::needs_device(backend))
+                                      facts.device_seconds = median_of_works([&] {
+                                        solver->reset();
+                                        return solver->timed_solve();
+                                      });
+                                  }};
               },
-          .error = [=] { return error_of(run->batch, run->solver->solution()); },
-          .tolerance = tridiagonal_tolerance,
-          .facts =
-              [=] {
-                const Arithmetic work = by_pttrf ? spd_arithmetic(nodes - 1) : toeplitz_arithmetic(nodes);
-                const std::int64_t bytes = by_pttrf ? spd_bytes(nodes - 1) : toeplitz_bytes(nodes);
-                Facts facts{name, count, variant, static_cast<double>(count * work.flops()),
-                            static_cast<double>(count * bytes)};
-                if (device::needs_device(backend))
-                  facts.device_seconds = median_of_works([=] {
-                    run->solver->reset();
-                    return run->solver->timed_solve();
-                  });
-                return facts;
-              }};
+          .facts = {.cells = count,
+                    .variant = variant,
+                    .flops = static_cast<double>(count * work.flops()),
+                    .bytes = static_cast<double>(count * bytes)}};
 }
 
 }  // namespace
 
 std::vector<Case> tridiagonal_cases(bool quick) {
   std::vector<Case> cases;
-  for (const device::Backend backend : device::compiled_backends()) {
-    if (!device::is_present(backend)) continue;
+  for (const device::Backend backend : present_backends()) {
     for (const int nodes : quick ? std::vector{64} : std::vector{128, 256})
       for (const bool by_pttrf : {true, false})
         cases.push_back(tridiagonal_case(backend, by_pttrf, quick ? 64 : 4096, nodes));

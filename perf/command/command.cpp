@@ -1,10 +1,14 @@
 #include "perf/command/command.hpp"
 
 #include <algorithm>
+#include <string_view>
 
+#include "common/program/failure.hpp"
 #include "common/program/program.hpp"
 #include "common/program/signals.hpp"
 #include "common/scene/nearest.hpp"
+#include "kernels/device/backend.hpp"
+#include "perf/cases/cases.hpp"
 
 namespace drogue::perf {
 
@@ -16,10 +20,7 @@ std::vector<device::Backend> backends_of(const std::string& name) {
   const device::Backend wanted = device::wanted_backend(name);
   require(wanted);
   if (name != "auto") return {wanted};
-  std::vector<device::Backend> present;
-  for (const device::Backend backend : device::compiled_backends())
-    if (device::is_present(backend)) present.push_back(backend);
-  return present;
+  return present_backends();
 }
 
 ExitCode code_of(bool passed) {
@@ -56,6 +57,32 @@ void require_case(const std::string& name, const std::vector<Case>& cases) {
   throw Failure(ExitCode::usage, "this drogue-perf has no case '" + name + "'" +
                                      (scene::nearest(name, names) ? "; " + scene::suggestion(name, names)
                                                                   : "; see drogue-perf list"));
+}
+
+std::regex filter_of(const std::string& text) {
+  // std::regex recurses for nested brackets: a bound on the length bounds the stack.
+  constexpr std::size_t longest = 1000;
+  if (text.size() > longest)
+    throw Failure(ExitCode::usage, "--filter has more than " + std::to_string(longest) + " characters");
+  try {
+    return std::regex(text);
+  } catch (const std::regex_error&) {
+    throw Failure(ExitCode::usage,
+                  "--filter '" + text +
+                      "' is not a valid regular expression; literal brackets and stars need a "
+                      "backslash before them");
+  }
+}
+
+std::optional<std::string> missing_backend(const std::string& filter) {
+  constexpr std::string_view separators = "/^$|()";
+  for (std::size_t begin = 0; begin < filter.size();) {
+    const std::size_t end = std::min(filter.find_first_of(separators, begin), filter.size());
+    if (const auto backend = device::backend_from_name(filter.substr(begin, end - begin)))
+      if (const auto reason = device::why_unavailable(*backend)) return reason;
+    begin = end + 1;
+  }
+  return {};
 }
 
 }  // namespace drogue::perf

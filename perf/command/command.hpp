@@ -2,6 +2,8 @@
 
 #include <CLI/App.hpp>
 #include <functional>
+#include <optional>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -49,5 +51,12 @@ void require_name(const std::string& kind, const std::string& name, const std::v
 
 /// Throws Failure(usage) with the nearest name if no case is called `name`.
 void require_case(const std::string& name, const std::vector<Case>& cases);
+
+/// Regular expression of the option --filter. Throws Failure(usage) for a malformed or an overlong text.
+std::regex filter_of(const std::string& text);
+
+/// Reason why a backend that a filter or the name of a case names between slashes cannot run here. Does not
+/// throw.
+std::optional<std::string> missing_backend(const std::string& filter);
 
 }  // namespace drogue::perf

@@ -7,10 +7,10 @@
 #include <regex>
 
 #include "perf/command/command.hpp"
-#include "perf/command/filter.hpp"
 #include "perf/compare/annotation.hpp"
 #include "perf/compare/baseline.hpp"
 #include "perf/compare/comparison.hpp"
+#include "perf/rows/printed.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -37,14 +37,10 @@ struct CompareOptions {
 std::string details(const ComparedCase& row) {
   if (!row.speed) return row.reason;
   const SpeedChange& speed = *row.speed;
-  char text[256];
-  if (has_interval(speed))
-    std::snprintf(text, sizeof text, "%.3f times as long  [%.3f .. %.3f]  %.4g -> %.4g %s", speed.ratio,
-                  speed.low, speed.high, row.old_time, row.new_time, row.unit.c_str());
-  else
-    std::snprintf(text, sizeof text, "%.3f times as long  (too few samples for an interval)  %.4g -> %.4g %s",
-                  speed.ratio, row.old_time, row.new_time, row.unit.c_str());
-  return text;
+  const std::string interval = has_interval(speed) ? printed("[%.3f .. %.3f]", speed.low, speed.high)
+                                                   : "(too few samples for an interval)";
+  return printed("%.3f times as long  %s  %.4g -> %.4g %s", speed.ratio, interval.c_str(), row.old_time,
+                 row.new_time, row.unit.c_str());
 }
 
 void print(const std::vector<ComparedCase>& rows) {

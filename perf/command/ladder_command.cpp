@@ -11,8 +11,10 @@
 #include "perf/command/command.hpp"
 #include "perf/ladders/exercises/exercises.hpp"
 #include "perf/ladders/ladder.hpp"
-#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
+#include "perf/rows/printed.hpp"
+#include "perf/rows/rows.hpp"
+#include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -27,23 +29,21 @@ std::string text(device::Backend backend) { return std::string(device::name(back
 
 /// Case of a rung; a sample is a run from the initial state.
 Case case_of(const ladder::Ladder& ladder, const ladder::Rung& rung, device::Backend backend) {
-  const auto run = std::make_shared<std::unique_ptr<ladder::RungRun>>();
   return {.name = "ladder/" + ladder.name + "/" + text(backend) + "/" + std::to_string(ladder.size) + "/" +
                   rung.text.name,
-          .on_device = device::needs_device(backend),
+          .backend = backend,
           .unit_of_work = ladder.unit,
           .bound = rung.text.idea,
-          .prepare =
-              [=] {
-                *run = rung.make();
-                return Sample{[=] { (*run)->reset(); },
-                              [=, units = ladder.units] {
-                                (*run)->run();
-                                return units;
-                              }};
-              },
-          .error = [=] { return (*run)->error(); },
-          .tolerance = rung.tolerance};
+          .tolerance = rung.tolerance,
+          .prepare = [make = rung.make, units = ladder.units] {
+            const std::shared_ptr<ladder::RungRun> run = make();
+            return Sample{[=] { run->reset(); },
+                          [=] {
+                            run->run();
+                            return units;
+                          },
+                          [=] { return run->error(); }};
+          }};
 }
 
 nlohmann::json facts_of(const ladder::Ladder& ladder, const ladder::Rung& rung,
@@ -102,39 +102,34 @@ ExitCode climb(const LadderOptions& options, device::Backend backend) {
 
   std::printf("%-18s %12s  %-10s %12s  %-22s %9s %9s  %9s\n", "rung", "predicted", "by", "measured",
               ("us per " + ladder.unit + ", 95 %").c_str(), "to first", "to last", "error");
-  std::vector<nlohmann::json> lines;
-  bool passed = true;
+  Table table;
   double first = 0.0, last = 0.0;
   auto record = records.begin();
   for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
     const ladder::Rung& rung = ladder.rungs[k];
-    const ladder::Prediction& predicted = predictions[k];
     if (!rung.available) continue;
-    std::printf("%-18s %12.2f  %-10s ", rung.text.name, 1e6 * predicted.seconds, predicted.bound);
-    passed = passed && record->passed();
-    lines.push_back(to_json(*record, here, facts_of(ladder, rung, predicted, backend)));
+    const Record& measured = *record++;
+    table.add(measured, here, facts_of(ladder, rung, predictions[k], backend));
+    std::printf("%-18s %12.2f  %-10s ", rung.text.name, 1e6 * predictions[k].seconds, predictions[k].bound);
     // A wrong result has no time.
-    if (!record->passed()) {
-      std::printf("%12s  %-22s %9s %9s  %9.2g  %s\n", "", "", "", "", record->error, verdict(*record));
-      ++record;
-      continue;
+    if (measured.passed()) {
+      const double time = run::median(measured.samples);
+      if (first == 0.0) first = last = time;
+      std::printf("%12.2f  %-22s %8.2fx %8.2fx", 1e6 * time, interval_text(measured, 1e6, 2).c_str(),
+                  first / time, last / time);
+      last = time;
+    } else {
+      std::printf("%12s  %-22s %9s %9s", "", "", "", "");
     }
-    const run::MedianInterval time = run::median_interval(record->samples);
-    if (first == 0.0) first = last = time.median;
-    char interval[64];
-    std::snprintf(interval, sizeof interval, "[%.2f .. %.2f]", 1e6 * time.low, 1e6 * time.high);
-    std::printf("%12.2f  %-22s %8.2fx %8.2fx  %9.2g  %s\n", 1e6 * time.median, interval, first / time.median,
-                last / time.median, record->error, verdict(*record));
-    last = time.median;
-    ++record;
+    std::printf("  %9.2g  %s\n", measured.error, verdict(measured));
   }
   if (options.explain) {
     std::printf("\nHindsights on hosts are those of an Intel Xeon with AVX-512: docs/lessons/tables.md\n");
     for (const ladder::Rung& rung : ladder.rungs)
       std::printf("\n%s: %s\n  %s\n", rung.text.name, rung.text.idea, rung.text.hindsight);
   }
-  write_records(options.out, lines);
-  return code_of(passed);
+  write_records(options.out, table.records);
+  return code_of(table.passed);
 }
 
 /// State of an exercise after its run, in words, with the task unless it is done.
@@ -147,11 +142,9 @@ Checked check(const ladder::Exercise& exercise, double error) {
   if (error > exercise.rung.tolerance) return {false, "broken: " + std::string(exercise.task)};
   if (exercise.factor == 0.0) return {true, "mended"};
   const double factor = ladder::speed_up_of(exercise);
-  char words[64];
-  std::snprintf(words, sizeof words, "%.2f times as fast (goal %.3g)", factor, exercise.factor);
   const bool done = factor >= exercise.factor;
-  return {done,
-          std::string(done ? "fast: " : "slow: ") + words + (done ? "" : ". " + std::string(exercise.task))};
+  return {done, printed("%s: %.2f times as fast (goal %.3g)%s%s", done ? "fast" : "slow", factor,
+                        exercise.factor, done ? "" : ". ", done ? "" : exercise.task)};
 }
 
 /// Runs the exercises. Throws Failure(verification_failed) unless all are done.

@@ -30,7 +30,7 @@ void require_case_on_cuda(const std::string& name) {
     return;
   }
   std::vector<Case> cases = all_cases(false);
-  std::erase_if(cases, [](const Case& c) { return !c.on_device; });
+  std::erase_if(cases, [](const Case& c) { return !c.on_device(); });
   require_case(name, cases);
 }
 

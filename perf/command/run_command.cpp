@@ -18,11 +18,9 @@
 #include "perf/caches/host_caches.hpp"
 #include "perf/cases/cases.hpp"
 #include "perf/command/command.hpp"
-#include "perf/command/filter.hpp"
 #include "perf/compare/baseline.hpp"
-#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
-#include "perf/measure/repeats.hpp"
+#include "perf/measure/rounds.hpp"
 #include "perf/memory/cache_sweep.hpp"
 #include "perf/profile/kernel_profile.hpp"
 
@@ -34,9 +32,10 @@ struct RunOptions {
   bool quick = false, cold = false;
 };
 
-/// Omits unknown facts.
-nlohmann::json to_json(const Facts& facts) {
-  nlohmann::json json = {{"backend", facts.backend}};
+/// Facts of the record of a case; unknown ones are omitted.
+nlohmann::json facts_of(const Record& record) {
+  const Facts& facts = record.facts;
+  nlohmann::json json = {{"backend", device::name(record.backend)}};
   if (facts.cells > 0) json.update({{"cells", facts.cells}, {"variant", facts.variant}});
   if (facts.flops > 0.0) json["flops"] = facts.flops;
   if (facts.bytes > 0.0) json["bytes"] = facts.bytes;
@@ -85,13 +84,13 @@ Failure no_case(const RunOptions& options, const std::regex& filter) {
 std::function<void(bool)> cache_sweeps(const std::vector<Case>& cases) {
   std::map<bool, std::function<std::int64_t()>> sweeps;  // by whether they are on a device
   for (const Case& c : cases) {
-    if (sweeps.contains(c.on_device)) continue;
+    if (sweeps.contains(c.on_device())) continue;
     const std::int64_t bytes =
-        c.on_device ? device::gpu_hardware().l2 : host_cache_bytes(2) + host_cache_bytes(3);
+        c.on_device() ? device::gpu_hardware().l2 : host_cache_bytes(2) + host_cache_bytes(3);
     if (bytes == 0)
       throw Failure(ExitCode::usage, std::string("the system does not state the caches of the ") +
-                                         (c.on_device ? "GPU" : "host") + ", which --cold has to empty");
-    sweeps[c.on_device] = create_cache_sweep(c.on_device, 2 * bytes);
+                                         (c.on_device() ? "GPU" : "host") + ", which --cold has to empty");
+    sweeps[c.on_device()] = create_cache_sweep(c.on_device(), 2 * bytes);
   }
   return [=](bool on_device) { sweeps.at(on_device)(); };
 }
@@ -119,7 +118,7 @@ ExitCode run_cases(RunOptions options, const std::regex& filter) {
   Instruments instruments{&device_clocks()};
   if (options.cold) instruments.empty_caches = cache_sweeps(cases);
   for (const Record& record : measure(cases, warm_up_rounds, run_rounds, instruments)) {
-    lines.push_back(to_json(record, here, to_json(record.facts)));
+    lines.push_back(to_json(record, here, facts_of(record)));
     lines.back()["instrument"] = {{"overhead", overhead},
                                   {"works", record.repeats},
                                   {"units", record.units},

@@ -1,21 +1,19 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 
 #include "common/program/command_line.hpp"
 #include "common/program/program.hpp"
 #include "common/program/signals.hpp"
+#include "common/program/stopwatch.hpp"
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/files/output_path.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/ceilings/ceilings.hpp"
 #include "perf/command/command.hpp"
-#include "perf/command/filter.hpp"
-#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/measurement.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/work_precision/solution.hpp"
@@ -33,13 +31,13 @@ struct WorkPrecisionOptions {
 struct WorkPrecision {
   const char* app;
   bool (*solve)(const Selection&, const SolutionSink&);
-  const char *unit, *bound;
+  const char *unit = "solution", *bound = "time to the end of the run";
 };
 constexpr WorkPrecision apps[] = {
-    {"gas", gas_work_precision, "solution", "time to the end of the run"},
-    {"springs", springs_work_precision, "solution", "time to the end of the run"},
-    {"flow", flow_work_precision, "solution", "time to the end of the run"},
-    {"parachute", parachute_work_precision, "solution", "time to the end of the run"},
+    {"gas", gas_work_precision},
+    {"springs", springs_work_precision},
+    {"flow", flow_work_precision},
+    {"parachute", parachute_work_precision},
     {"options", options_work_precision, "option", "time of a batch, by option"}};
 
 const WorkPrecision& work_precision_of(const std::string& name) {
@@ -49,13 +47,12 @@ const WorkPrecision& work_precision_of(const std::string& name) {
 
 nlohmann::json to_json(const WorkPrecision& app, const Solution& solution, const nlohmann::json& provenance) {
   const std::string backend(device::name(solution.backend));
-  Record record;
-  record.name = std::string(app.app) + "-solution/" + solution.problem + "/" + backend + "/" +
-                solution.label + "/" + std::to_string(solution.cells);
-  record.unit_of_work = app.unit;
-  record.bound = app.bound;
-  record.samples = solution.samples;
-  record.error = solution.error;
+  Record record{.name = std::string(app.app) + "-solution/" + solution.problem + "/" + backend + "/" +
+                        solution.label + "/" + std::to_string(solution.cells),
+                .unit_of_work = app.unit,
+                .bound = app.bound,
+                .samples = solution.samples,
+                .error = solution.error};
   if (device::needs_device(solution.backend))
     if (auto reading = device_clocks().read()) record.clocks.push_back(std::move(*reading));
   // A scheme that fails on a problem gives a failed record.
@@ -84,8 +81,8 @@ void print(const Solution& solution) {
 /// Raises the clock of a GPU, which idles at a fraction of it, by `warm_up_seconds` of arithmetic. Blocks.
 void warm_up_gpu() {
   const std::unique_ptr<CeilingKernel> kernel = create_ceiling(device::Backend::cuda, Ceiling::fp64);
-  const auto begin = std::chrono::steady_clock::now();
-  while (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < warm_up_seconds) {
+  const Stopwatch stopwatch;
+  while (stopwatch.seconds() < warm_up_seconds) {
     kernel->reset();
     kernel->run();
   }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "perf/rows/printed.hpp"
 
 namespace drogue::perf {
 
@@ -13,29 +14,19 @@ std::string escape(const std::string& text, bool property) {
   std::string escaped;
   for (const char c : text) {
     const bool special = c == '%' || c == '\r' || c == '\n' || (property && (c == ':' || c == ','));
-    char code[8];
-    std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    if (special)
-      escaped += code;
-    else
-      escaped += c;
+    escaped +=
+        special ? printed("%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c))) : std::string(1, c);
   }
   return escaped;
 }
 
 }  // namespace
 
-std::string percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * fraction);
-  return text;
-}
+std::string percent(double fraction) { return printed("%.3g %%", 100.0 * fraction); }
 
 std::string describe_change(const SpeedChange& change) {
-  char text[128];
-  std::snprintf(text, sizeof text, "takes %.3f times as long (%.3f to %.3f with 95 %% confidence)",
-                change.ratio, change.low, change.high);
-  return text;
+  return printed("takes %.3f times as long (%.3f to %.3f with 95 %% confidence)", change.ratio, change.low,
+                 change.high);
 }
 
 std::string describe(const ComparedCase& row) {
@@ -51,23 +42,19 @@ std::string summary(const std::vector<ComparedCase>& rows) {
   const auto holding = [&](Presence presence) {
     return std::ranges::count(rows, presence, &ComparedCase::presence);
   };
-  char text[384];
-  std::snprintf(
-      text, sizeof text,
+  std::string sentence = printed(
       "%zu cases: %td unchanged, %td take longer, %td take less time, %td undecided, %td with another "
       "error, %td not compared (%td vanished, %td new)",
       rows.size(), count(Verdict::same), count(Verdict::slower), count(Verdict::faster),
       count(Verdict::ambiguous), count(Verdict::error_changed), count(Verdict::not_comparable),
       holding(Presence::old_alone), holding(Presence::new_alone));
-  std::string sentence = text;
   double logarithms = 0.0;
   int compared = 0;
   for (const ComparedCase& row : rows)
     if (row.speed) logarithms += std::log(row.speed->ratio), ++compared;
   if (compared == 0) return sentence;
-  std::snprintf(text, sizeof text, "; %.3f times as long in the geometric mean of %d",
-                std::exp(logarithms / compared), compared);
-  return sentence + text;
+  return sentence + printed("; %.3f times as long in the geometric mean of %d",
+                            std::exp(logarithms / compared), compared);
 }
 
 nlohmann::json verdicts_json(const std::string& before, const std::string& after,

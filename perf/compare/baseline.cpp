@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/program/failure.hpp"
+#include "perf/rows/printed.hpp"
 
 namespace drogue::perf {
 
@@ -182,13 +183,10 @@ std::string describe_age(const std::vector<MeasuredCase>& before, const Measured
   const double hours = std::difftime(*new_date, *old_date) / 3600.0;
   if (std::abs(hours) < 1.0) return "";
   const bool in_days = std::abs(hours) >= 48.0;
-  char text[64];
-  std::snprintf(text, sizeof text, "; %.1f %s %s", std::abs(in_days ? hours / 24.0 : hours),
-                in_days ? "days" : "hours", hours < 0.0 ? "before the old one" : "later");
   // The system changes too.
-  return hours > 24.0 * largest_age
-             ? text + std::string("; measure the old commit again before a verdict matters")
-             : text;
+  return printed("; %.1f %s %s%s", std::abs(in_days ? hours / 24.0 : hours), in_days ? "days" : "hours",
+                 hours < 0.0 ? "before the old one" : "later",
+                 hours > 24.0 * largest_age ? "; measure the old commit again before a verdict matters" : "");
 }
 
 }  // namespace drogue::perf

@@ -198,25 +198,34 @@ double smallest_effect(std::size_t runs) { return runs <= 1 ? 0.075 : runs == 2 
 
 bool has_interval(const SpeedChange& change) { return std::isfinite(change.high); }
 
-std::vector<SpeedVerdict> speed_verdict(const std::vector<SpeedChange>& changes) {
+std::vector<Verdict> speed_verdict(const std::vector<SpeedChange>& changes) {
   std::vector<double> probabilities;
   for (const SpeedChange& change : changes) probabilities.push_back(change.probability);
   probabilities = correct_for_count(probabilities);
-  std::vector<SpeedVerdict> verdicts;
+  std::vector<Verdict> verdicts;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const SpeedChange& change = changes[i];
     const double agreed = std::abs(change.agreed), shift = std::abs(std::log(change.ratio));
     const double smallest = std::log1p(smallest_effect(many_runs)), unseen = std::log1p(largest_unseen);
     if (probabilities[i] < false_alarm && agreed >= smallest && shift >= std::log1p(change.least))
-      verdicts.push_back(change.agreed > 0.0 ? SpeedVerdict::slower : SpeedVerdict::faster);
+      verdicts.push_back(change.agreed > 0.0 ? Verdict::slower : Verdict::faster);
     else if (has_interval(change) &&
              (change.identical ||
               (shift < smallest && std::log(change.high) <= unseen && std::log(change.low) >= -unseen)))
-      verdicts.push_back(SpeedVerdict::same);
+      verdicts.push_back(Verdict::same);
     else
-      verdicts.push_back(SpeedVerdict::ambiguous);
+      verdicts.push_back(Verdict::ambiguous);
   }
   return verdicts;
+}
+
+Goal goal(const SpeedChange& cost, double largest) {
+  if (cost.high <= largest) return Goal::met;
+  return cost.low > largest ? Goal::missed : Goal::undecided;
+}
+
+const char* name(Goal goal) {
+  return goal == Goal::met ? "met" : goal == Goal::missed ? "missed" : "undecided";
 }
 
 }  // namespace drogue::perf

@@ -36,7 +36,8 @@ bool has_interval(const SpeedChange& change);
 /// Change from the samples of both sides, which are positive and not empty. Does not throw.
 SpeedChange compare_speed(const Runs& before, const Runs& after);
 
-enum class SpeedVerdict { same, faster, slower, ambiguous };
+/// Verdict on one case of two files of records; the first four are those on its times.
+enum class Verdict { same, faster, slower, ambiguous, not_comparable, error_changed };
 
 /// Change of time that "same" excludes: with noisier samples it is "ambiguous".
 inline constexpr double largest_unseen = 0.1;
@@ -48,6 +49,22 @@ inline constexpr double false_alarm = 0.05;
 /// clock that drifts or jumps moves blocks of one side as far apart as those of both sides; samples without
 /// dependence on their order; or a change of a quarter that moves the fastest sample too. Without an interval
 /// all is "ambiguous". Does not throw.
-std::vector<SpeedVerdict> speed_verdict(const std::vector<SpeedChange>& changes);
+std::vector<Verdict> speed_verdict(const std::vector<SpeedChange>& changes);
+
+/// Largest ratio of the time of a kernel in Kokkos to that of the same algorithm in CUDA that is a goal.
+inline constexpr double largest_version_cost = 1.05;
+
+/// Verdict on a ratio of times against a goal.
+enum class Goal {
+  met,        ///< the whole interval is below it
+  missed,     ///< the whole interval is above it
+  undecided,  ///< the interval contains it: the samples are too few or too noisy
+};
+
+/// Goal of a time that is at most `largest` times the former one. Does not throw.
+Goal goal(const SpeedChange& cost, double largest = largest_version_cost);
+
+/// "met", "missed" or "undecided". Does not throw.
+const char* name(Goal goal);
 
 }  // namespace drogue::perf

@@ -96,7 +96,7 @@ struct Ladder {
 };
 
 /// Names of the ladders. Does not throw.
-[[nodiscard]] const std::vector<std::string>& names();
+[[nodiscard]] std::vector<std::string> names();
 
 /// Ladder of that name; `small` selects a size for tests. Allocates nothing on the backend. Throws
 /// std::invalid_argument for an unknown name and for a backend that is not compiled in.

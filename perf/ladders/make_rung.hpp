@@ -6,18 +6,30 @@
 
 namespace drogue::perf::ladder {
 
-/// Rung of class `Type`, which has a `text` and a static function `work`, and is made from the problem.
-/// `Type::available` and `Type::tolerance` replace the defaults if present. `problem` lives as long as the
-/// rung and its runs.
-template <class Type, class Problem>
-Rung make_rung(const std::shared_ptr<const Problem>& problem, double tolerance) {
-  Rung rung{.text = Type::text,
-            .work = Type::work(*problem),
-            .tolerance = tolerance,
-            .available = true,
-            .make = [problem]() -> std::unique_ptr<RungRun> { return std::make_unique<Type>(*problem); }};
-  if constexpr (requires { Type::available; }) rung.available = Type::available;
-  if constexpr (requires { Type::tolerance; }) rung.tolerance = Type::tolerance;
+/// Problem of a ladder, which all of its rungs and their runs share.
+template <class Problem>
+using Shared = std::shared_ptr<const Problem>;
+
+/// Maker of a run, of class `Run` made from the problem and further arguments.
+template <class Run, class Problem, class... More>
+std::function<std::unique_ptr<RungRun>()> run_of(const Shared<Problem>& problem, const More&... more) {
+  return [=] { return std::make_unique<Run>(*problem, more...); };
+}
+
+/// Rung with such runs and the tolerance of its problem.
+template <class Run, class Problem, class... More>
+Rung make_rung(const RungText& text, const Work& work, const Shared<Problem>& problem, const More&... more) {
+  return {.text = text,
+          .work = work,
+          .tolerance = Problem::tolerance,
+          .available = true,
+          .make = run_of<Run>(problem, more...)};
+}
+
+/// The rung where its idea needs a GPU.
+template <class ExecutionSpace>
+Rung on_gpu(Rung rung) {
+  rung.available = !device::is_host<ExecutionSpace>;
   return rung;
 }
 

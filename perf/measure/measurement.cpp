@@ -6,8 +6,7 @@
 #include "common/program/signals.hpp"
 #include "common/program/stopwatch.hpp"
 #include "common/run/statistics.hpp"
-#include "perf/measure/repeats.hpp"
-#include "perf/measure/warm_up.hpp"
+#include "perf/measure/rounds.hpp"
 
 namespace drogue::perf {
 
@@ -57,9 +56,9 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
   std::vector<Record> records;
   std::vector<Sample> samples;
   for (const Case& c : cases) {
-    Record& record = records.emplace_back();
-    record.name = c.name, record.unit_of_work = c.unit_of_work, record.bound = c.bound;
+    Record& record = records.emplace_back(Record{c.name, c.unit_of_work, c.bound, c.backend});
     record.tolerance = c.tolerance;
+    record.facts = c.facts;
     samples.push_back(c.prepare());
   }
   std::vector<long> repeats(cases.size(), 1);
@@ -70,15 +69,15 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
     for (std::size_t i = 0; i < cases.size() && !interrupted(); ++i) {
       if (lasted[i] >= instruments.longest_case && records[i].samples.size() >= least_samples) continue;
       const TimedSample taken = take(samples[i], repeats[i], [&] {
-        if (cold) instruments.empty_caches(cases[i].on_device);
+        if (cold) instruments.empty_caches(cases[i].on_device());
       });
       if (round < 0) {
-        warmth.add(cases[i].on_device, cold ? taken.wall : taken.seconds);
+        warmth.add(cases[i].on_device(), cold ? taken.wall : taken.seconds);
         const auto works = static_cast<double>(repeats[i]);
         if (!cold) repeats[i] = repeats_of(taken.seconds / works, taken.wall / works);
         continue;
       }
-      if (clocks != nullptr && cases[i].on_device)
+      if (clocks != nullptr && cases[i].on_device())
         if (auto reading = clocks->read()) records[i].clocks.push_back(std::move(*reading));
       lasted[i] += taken.wall;
       const auto units = static_cast<double>(taken.units);
@@ -93,8 +92,8 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
   if (interrupted() && std::ranges::any_of(records, [](const Record& r) { return r.samples.empty(); }))
     throw Failure(ExitCode::interrupted, "interrupted by a signal before every case had a sample");
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    records[i].error = cases[i].error();
-    if (cases[i].facts) records[i].facts = cases[i].facts();
+    records[i].error = samples[i].error();
+    if (samples[i].complete) samples[i].complete(records[i].facts);
   }
   return records;
 }

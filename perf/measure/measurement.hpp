@@ -6,25 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "kernels/device/backend_list.hpp"
 #include "perf/clocks/gpu_clocks.hpp"
 
 namespace drogue::perf {
 
-/// One timed sample: preparation and work.
-struct Sample {
-  std::function<void()> reset;  ///< restores the initial state; not timed
-  std::function<long()> work;   ///< returns the number of units of work done
-  /// Seconds of the named parts of the last work. If present, their sum replaces the wall time.
-  std::function<std::map<std::string, double>()> parts = {};
-};
-
 /// Facts of a case for a roofline diagram. Zero or empty: unknown.
 struct Facts {
-  std::string backend;
   std::int64_t cells = 0;
-  std::string variant;  ///< difference from the standard case of this backend and size
-  double flops = 0.0;   ///< per unit of work
-  double bytes = 0.0;   ///< per unit of work, between kernels and memory
+  std::string variant = {};  ///< difference from the standard case of this backend and size
+  double flops = 0.0;        ///< per unit of work
+  double bytes = 0.0;        ///< per unit of work, between kernels and memory
   /// Relative error of a separate run of the solver against an exact solution; 0 without one.
   double solution_error = 0.0;
   /// Least number of arithmetic instructions per unit of work, with every operation fused that can be; on a
@@ -35,32 +27,46 @@ struct Facts {
   /// Time on a device per unit of work, s (`device_time`): median of some works after the samples. 0 without
   /// a device, and for works that are more than kernels on one stream.
   double device_seconds = 0.0;
+  int iterations = 0;  ///< of the last solve by an iterative solver
+};
+
+/// Prepared work of a case, which owns what it works on. A timed sample is a reset and a work.
+struct Sample {
+  std::function<void()> reset;  ///< restores the initial state; not timed
+  std::function<long()> work;   ///< returns the number of units of work done
+  /// Error of the final state against the reference or an exact solution; called after the last sample.
+  std::function<double()> error = {};
+  /// Seconds of the named parts of the last work. If present, their sum replaces the wall time.
+  std::function<std::map<std::string, double>()> parts = {};
+  std::function<void(Facts&)> complete = {};  ///< adds facts after the last sample, if present
 };
 
 /// Benchmark case.
 struct Case {
   std::string name;          ///< work/variant/size, as `drogue-perf list` prints it
-  bool on_device;            ///< the backend of the work needs a device
+  device::Backend backend;   ///< of the work
   std::string unit_of_work;  ///< divisor of the seconds of a sample, for example "step"
   std::string bound;         ///< the limiting resource, in words
+  double tolerance;          ///< largest error of a valid timing
   std::function<Sample()> prepare;
-  /// Error of the final state against the reference or an exact solution; called after the last sample.
-  std::function<double()> error;
-  double tolerance;                   ///< largest error of a valid timing
-  std::function<Facts()> facts = {};  ///< called after the last sample, if present
+  Facts facts = {};  ///< those that are known before
+
+  /// True if the backend of the work needs a device. Does not throw.
+  [[nodiscard]] bool on_device() const { return device::needs_device(backend); }
 };
 
 /// Measured case.
 struct Record {
   std::string name, unit_of_work, bound;
-  std::vector<double> samples;  ///< seconds per unit of work
+  device::Backend backend{};
+  std::vector<double> samples = {};  ///< seconds per unit of work
   double error = 0.0;
   double tolerance = 0.0;
-  std::map<std::string, std::vector<double>> parts;  ///< of `samples`, for cases with named parts
-  Facts facts;
-  std::vector<ClockReading> clocks;  ///< of the GPU after each sample; empty for cases on a host
-  long repeats = 1;                  ///< works of a sample
-  long units = 0;                    ///< of work in a sample
+  std::map<std::string, std::vector<double>> parts = {};  ///< of `samples`, for cases with named parts
+  Facts facts = {};
+  std::vector<ClockReading> clocks = {};  ///< of the GPU after each sample; empty for cases on a host
+  long repeats = 1;                       ///< works of a sample
+  long units = 0;                         ///< of work in a sample
 
   /// True if the error is within the tolerance. Does not throw.
   [[nodiscard]] bool passed() const { return error <= tolerance; }

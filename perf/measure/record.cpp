@@ -3,6 +3,7 @@
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
+#include "perf/memory/memory.hpp"
 
 namespace drogue::perf {
 
@@ -53,5 +54,15 @@ void write_records(const std::string& file, const std::vector<nlohmann::json>& r
 }
 
 const char* verdict(const Record& record) { return record.passed() ? "passed" : "FAILED"; }
+
+void Table::add(const Record& record, const nlohmann::json& provenance, const nlohmann::json& facts) {
+  records.push_back(to_json(record, provenance, facts));
+  passed = passed && record.passed();
+}
+
+const GpuClocks& device_clocks() {
+  static const GpuClocks clocks(device_address());
+  return clocks;
+}
 
 }  // namespace drogue::perf

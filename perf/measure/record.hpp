@@ -24,4 +24,17 @@ void write_records(const std::string& file, const std::vector<nlohmann::json>& r
 /// "passed" or "FAILED". Does not throw.
 const char* verdict(const Record& record);
 
+/// Records of a printed table.
+struct Table {
+  std::vector<nlohmann::json> records;
+  bool passed = true;  ///< all records are within their tolerances
+
+  /// Appends a record as JSON. Does not throw.
+  void add(const Record& record, const nlohmann::json& provenance, const nlohmann::json& facts);
+};
+
+/// Clocks of the GPU of this process; without readings where there is none. Requires an initialised runtime.
+/// Does not throw.
+[[nodiscard]] const GpuClocks& device_clocks();
+
 }  // namespace drogue::perf

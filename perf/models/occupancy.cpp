@@ -1,7 +1,7 @@
 #include "perf/models/occupancy.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <utility>
 
 namespace drogue::perf {
@@ -9,108 +9,38 @@ namespace {
 
 constexpr int warp = 32, kib = 1024;
 
-/// Common values; the tables below state what differs.
-constexpr Architecture kepler(std::string_view name, int thread_registers) {
-  return {.name = name,
-          .multiprocessors = 0,
-          .blocks = 16,
-          .threads = 2048,
-          .registers = 64 * kib,
-          .block_registers = 64 * kib,
-          .register_unit = 256,
-          .thread_registers = thread_registers,
-          .partitions = 4,
-          .launch_partitions = 4,
-          .shared_bytes = 48 * kib,
-          .shared_unit = 256,
-          .block_shared_bytes = 48 * kib,
-          .reserved_bytes = 0};
-}
-
-/// Twice the registers of its family, of which a block holds half at most.
-constexpr Architecture kepler_37() {
-  Architecture a = kepler("sm_37", 255);
-  a.registers = 128 * kib;
-  a.shared_bytes = 112 * kib;
-  return a;
-}
-
-/// The system on a chip of a family, in which a block holds half of the registers.
-constexpr Architecture tegra(Architecture a) {
-  a.block_registers = 32 * kib;
-  return a;
-}
-
-/// From Maxwell to Turing.
-constexpr Architecture maxwell(std::string_view name, int shared, int block_shared) {
-  Architecture a = kepler(name, 255);
-  a.blocks = 32;
-  a.shared_bytes = shared * kib;
-  a.block_shared_bytes = block_shared * kib;
-  return a;
-}
-
-/// Pascal of 6.0 has two partitions, but launches what the rest of its family can, which has four.
-constexpr Architecture pascal_60() {
-  Architecture a = maxwell("sm_60", 64, 48);
-  a.partitions = 2;
-  return a;
-}
-
-constexpr Architecture turing() {
-  Architecture a = maxwell("sm_75", 64, 64);
-  a.blocks = 16;
-  a.threads = 1024;
-  return a;
-}
-
-/// From Ampere on, the system reserves shared memory in each block, which a block cannot request.
-constexpr Architecture ampere(std::string_view name, int threads, int blocks, int shared) {
-  Architecture a = maxwell(name, shared, shared - 1);
-  a.threads = threads;
-  a.blocks = blocks;
-  a.shared_unit = 128;
-  a.reserved_bytes = kib;
-  return a;
-}
-
-constexpr Architecture fermi_2x(std::string_view name) {
-  Architecture a = kepler(name, 63);
-  a.blocks = 8;
-  a.threads = 1536;
-  a.registers = a.block_registers = 32 * kib;
-  a.register_unit = 64;
-  a.partitions = a.launch_partitions = 2;
-  a.shared_unit = 128;
-  return a;
-}
-
-constexpr std::array known = {fermi_2x("sm_20"),
-                              fermi_2x("sm_21"),
-                              kepler("sm_30", 63),
-                              tegra(kepler("sm_32", 255)),
-                              kepler("sm_35", 255),
-                              kepler_37(),
-                              maxwell("sm_50", 64, 48),
-                              maxwell("sm_52", 96, 48),
-                              tegra(maxwell("sm_53", 64, 48)),
-                              pascal_60(),
-                              maxwell("sm_61", 96, 48),
-                              tegra(maxwell("sm_62", 64, 48)),
-                              maxwell("sm_70", 96, 96),
-                              maxwell("sm_72", 96, 96),
-                              turing(),
-                              ampere("sm_80", 2048, 32, 164),
-                              ampere("sm_86", 1536, 16, 100),
-                              ampere("sm_87", 1536, 16, 164),
-                              ampere("sm_88", 1536, 16, 100),
-                              ampere("sm_89", 1536, 24, 100),
-                              ampere("sm_90", 2048, 32, 228),
-                              ampere("sm_100", 2048, 32, 228),
-                              ampere("sm_103", 2048, 32, 228),
-                              ampere("sm_110", 1536, 24, 228),
-                              ampere("sm_120", 1536, 24, 100),
-                              ampere("sm_121", 1536, 24, 100)};
+// By member: name; multiprocessors, unknown; blocks, threads; registers, those of a block, their unit, those
+// of a thread; partitions, those of a launch; shared memory, its unit, that of a block, what the system
+// reserves from 8.0 on, which a block cannot request. Systems on a chip (3.2, 5.3, 6.2) hold half of the
+// registers in a block, as 3.7, which has twice as many. 6.0 has two partitions, but launches what the rest
+// of its family can.
+constexpr Architecture known[] = {
+    {"sm_20", 0, 8, 1536, 32 * kib, 32 * kib, 64, 63, 2, 2, 48 * kib, 128, 48 * kib, 0},
+    {"sm_21", 0, 8, 1536, 32 * kib, 32 * kib, 64, 63, 2, 2, 48 * kib, 128, 48 * kib, 0},
+    {"sm_30", 0, 16, 2048, 64 * kib, 64 * kib, 256, 63, 4, 4, 48 * kib, 256, 48 * kib, 0},
+    {"sm_32", 0, 16, 2048, 64 * kib, 32 * kib, 256, 255, 4, 4, 48 * kib, 256, 48 * kib, 0},
+    {"sm_35", 0, 16, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 48 * kib, 256, 48 * kib, 0},
+    {"sm_37", 0, 16, 2048, 128 * kib, 64 * kib, 256, 255, 4, 4, 112 * kib, 256, 48 * kib, 0},
+    {"sm_50", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 64 * kib, 256, 48 * kib, 0},
+    {"sm_52", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 96 * kib, 256, 48 * kib, 0},
+    {"sm_53", 0, 32, 2048, 64 * kib, 32 * kib, 256, 255, 4, 4, 64 * kib, 256, 48 * kib, 0},
+    {"sm_60", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 2, 4, 64 * kib, 256, 48 * kib, 0},
+    {"sm_61", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 96 * kib, 256, 48 * kib, 0},
+    {"sm_62", 0, 32, 2048, 64 * kib, 32 * kib, 256, 255, 4, 4, 64 * kib, 256, 48 * kib, 0},
+    {"sm_70", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 96 * kib, 256, 96 * kib, 0},
+    {"sm_72", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 96 * kib, 256, 96 * kib, 0},
+    {"sm_75", 0, 16, 1024, 64 * kib, 64 * kib, 256, 255, 4, 4, 64 * kib, 256, 64 * kib, 0},
+    {"sm_80", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 164 * kib, 128, 163 * kib, 1024},
+    {"sm_86", 0, 16, 1536, 64 * kib, 64 * kib, 256, 255, 4, 4, 100 * kib, 128, 99 * kib, 1024},
+    {"sm_87", 0, 16, 1536, 64 * kib, 64 * kib, 256, 255, 4, 4, 164 * kib, 128, 163 * kib, 1024},
+    {"sm_88", 0, 16, 1536, 64 * kib, 64 * kib, 256, 255, 4, 4, 100 * kib, 128, 99 * kib, 1024},
+    {"sm_89", 0, 24, 1536, 64 * kib, 64 * kib, 256, 255, 4, 4, 100 * kib, 128, 99 * kib, 1024},
+    {"sm_90", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 228 * kib, 128, 227 * kib, 1024},
+    {"sm_100", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 228 * kib, 128, 227 * kib, 1024},
+    {"sm_103", 0, 32, 2048, 64 * kib, 64 * kib, 256, 255, 4, 4, 228 * kib, 128, 227 * kib, 1024},
+    {"sm_110", 0, 24, 1536, 64 * kib, 64 * kib, 256, 255, 4, 4, 228 * kib, 128, 227 * kib, 1024},
+    {"sm_120", 0, 24, 1536, 64 * kib, 64 * kib, 256, 255, 4, 4, 100 * kib, 128, 99 * kib, 1024},
+    {"sm_121", 0, 24, 1536, 64 * kib, 64 * kib, 256, 255, 4, 4, 100 * kib, 128, 99 * kib, 1024}};
 
 constexpr int rounded_up(int value, int unit) { return (value + unit - 1) / unit * unit; }
 
@@ -132,7 +62,7 @@ int blocks_by_shared_memory(const Architecture& on, int bytes, int carve_out) {
 }  // namespace
 
 Architecture fermi() {
-  Architecture a = fermi_2x("sm_20");
+  Architecture a = *find_architecture("sm_20");
   a.multiprocessors = 14;
   a.register_unit = a.partitions = a.launch_partitions = a.shared_unit = 1;
   return a;
@@ -145,7 +75,7 @@ const Architecture* find_architecture(std::string_view name) {
   std::erase(wanted, '.');
   if (!wanted.starts_with("sm_")) wanted = "sm_" + wanted;
   const auto found = std::ranges::find(known, wanted, &Architecture::name);
-  return found == known.end() ? nullptr : &*found;
+  return found == std::end(known) ? nullptr : found;
 }
 
 Architecture hopper() {

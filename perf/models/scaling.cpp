@@ -1,7 +1,8 @@
 #include "perf/models/scaling.hpp"
 
-#include <cstdio>
 #include <numbers>
+
+#include "perf/rows/printed.hpp"
 
 namespace drogue::perf {
 
@@ -23,23 +24,21 @@ std::array<int, 3> scaled_cells(const std::array<int, 3>& one, bool weak, int un
 std::string flow_scene(const std::array<int, 3>& cells) {
   constexpr double length = 2.0 * std::numbers::pi, dt = 0.002;
   const double h = length / cells[0];
-  char text[1024];
   // The error is of second order: ten times that of the steps, and far below the change by a wrong term.
-  std::snprintf(text, sizeof text,
-                "app = \"parachute\"\n"
-                "[fluid]\ndensity = 1.0\nviscosity = 0.01\n"
-                "[grid]\ncells = [%d, %d, %d]\ndomain = [[0, %.17g], [0, %.17g], [0, %.17g]]\n"
-                "boundary = { x = \"periodic\", y = \"periodic\", z = \"periodic\" }\n"
-                "[initial]\nvelocity = [\"1 + sin(x)*cos(y)\", \"0.5 - cos(x)*sin(y)\", 0.25]\n"
-                "[flow]\ntime = \"ab2\"\n"
-                "[run]\ndt = %.17g\nend_time = %.17g\n"
-                "[verify]\n"
-                "exact = { x = \"1 + sin(x-t)*cos(y-0.5*t)*exp(-0.02*t)\", "
-                "y = \"0.5 - cos(x-t)*sin(y-0.5*t)*exp(-0.02*t)\", z = 0.25 }\n"
-                "l2_velocity = %.3g\ndivergence = 1e-10\n",
-                cells[0], cells[1], cells[2], length, h * cells[1], h * cells[2], dt, flow_scene_steps * dt,
-                1e-3 * h * h);
-  return text;
+  return printed(
+      "app = \"parachute\"\n"
+      "[fluid]\ndensity = 1.0\nviscosity = 0.01\n"
+      "[grid]\ncells = [%d, %d, %d]\ndomain = [[0, %.17g], [0, %.17g], [0, %.17g]]\n"
+      "boundary = { x = \"periodic\", y = \"periodic\", z = \"periodic\" }\n"
+      "[initial]\nvelocity = [\"1 + sin(x)*cos(y)\", \"0.5 - cos(x)*sin(y)\", 0.25]\n"
+      "[flow]\ntime = \"ab2\"\n"
+      "[run]\ndt = %.17g\nend_time = %.17g\n"
+      "[verify]\n"
+      "exact = { x = \"1 + sin(x-t)*cos(y-0.5*t)*exp(-0.02*t)\", "
+      "y = \"0.5 - cos(x-t)*sin(y-0.5*t)*exp(-0.02*t)\", z = 0.25 }\n"
+      "l2_velocity = %.3g\ndivergence = 1e-10\n",
+      cells[0], cells[1], cells[2], length, h * cells[1], h * cells[2], dt, flow_scene_steps * dt,
+      1e-3 * h * h);
 }
 
 }  // namespace drogue::perf

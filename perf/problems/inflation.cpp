@@ -1,7 +1,6 @@
 #include "perf/problems/inflation.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <memory>
 #include <memory_resource>
@@ -11,9 +10,10 @@
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
+#include "common/program/stopwatch.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
-#include "perf/measure/timed_parts.hpp"
+#include "perf/measure/parts.hpp"
 
 namespace drogue::perf::inflation {
 
@@ -63,6 +63,27 @@ void fly_to(coupling::Solver& solver, double time) {
   if (solver.advance(time, -1, {}) != flow::Stop::target)
     throw Failure(ExitCode::numerical_failure, "a step of the parachute benchmark failed");
 }
+
+/// Solver of a problem, with the state that samples begin from.
+struct Run {
+  Problem problem;
+  std::unique_ptr<coupling::Solver> solver;
+  double lead;
+  State start = {};
+
+  Run(device::Backend backend, const Problem& of, double seconds)
+      : problem(of), solver(coupling::create_solver(backend, of.parameters)), lead(seconds) {}
+
+  [[nodiscard]] const coupling::Parameters& parameters() const { return problem.parameters; }
+
+  /// Restores the state after `lead` seconds, which the first call computes.
+  void begin() {
+    if (!start.flow.empty()) return restore(*solver, parameters(), start);
+    inflation::start(*solver, problem);
+    fly_to(*solver, lead);
+    save(*solver, parameters(), start);
+  }
+};
 
 /// The canopy in the stream, with a fixed payload and edges of the discretization.
 Problem with_canopy(const Discretization& d, parachute_app::Canopy canopy) {
@@ -119,50 +140,43 @@ Problem porous_problem(const Discretization& d) {
   return with_canopy(d, canopy);
 }
 
-Sample flight(const Problem& problem, coupling::Solver& solver, double lead, long milliseconds) {
-  const auto state = std::make_shared<State>();
-  return {[=, &problem, &solver] {
-            if (!state->flow.empty()) return restore(solver, problem.parameters, *state);
-            start(solver, problem);
-            fly_to(solver, lead);
-            save(solver, problem.parameters, *state);
-          },
-          [=, &solver] {
-            fly_to(solver, state->progress.flow.time + 1e-3 * static_cast<double>(milliseconds));
+Sample flight(device::Backend backend, const Problem& problem, double lead, long milliseconds) {
+  const auto run = std::make_shared<Run>(backend, problem, lead);
+  return {[=] { run->begin(); },
+          [=] {
+            fly_to(*run->solver, run->start.progress.flow.time + 1e-3 * static_cast<double>(milliseconds));
             return milliseconds;
-          }};
+          },
+          [=] { return imbalance(run->parameters(), *run->solver); }};
 }
 
-Sample copied_steps(const Problem& problem, coupling::Solver& solver, double lead, long steps,
-                    const std::shared_ptr<std::pmr::memory_resource>& memory) {
-  struct Run {
+Sample copied_steps(device::Backend backend, const Problem& problem, double lead, long steps,
+                    HostMemory memory) {
+  struct Copies {
     std::shared_ptr<std::pmr::memory_resource> memory;
-    State start, now;
+    State state;
     std::map<std::string, double> parts;
   };
   using Arrays = std::pmr::vector<std::pmr::vector<double>>;
-  const auto run = std::make_shared<Run>(memory, State(), State{Arrays(memory.get()), {}, {}});
-  return {[=, &problem, &solver] {
-            if (run->start.flow.empty()) {
-              start(solver, problem);
-              fly_to(solver, lead);
-              save(solver, problem.parameters, run->start);
-            }
-            run->now = run->start;
+  const auto run = std::make_shared<Run>(backend, problem, lead);
+  const auto resource = host_memory(backend, memory);
+  const auto now = std::make_shared<Copies>(resource, State{Arrays(resource.get()), {}, {}});
+  return {[=] {
+            run->begin();
+            now->state = run->start;
           },
-          [=, &problem, &solver] {
-            State& now = run->now;
+          [=] {
             // The time never arrives: the number of steps ends the work.
             const auto step = [&] {
-              if (solver.advance(now.progress.flow.time + 1e3, now.progress.flow.step + steps, {}) !=
-                  flow::Stop::pause)
+              const flow::Progress& from = now->state.progress.flow;
+              if (run->solver->advance(from.time + 1e3, from.step + steps, {}) != flow::Stop::pause)
                 throw Failure(ExitCode::numerical_failure, "a step of the parachute benchmark failed");
             };
-            run->parts = timed_parts([&] { restore(solver, problem.parameters, now); }, step,
-                                     [&] { save(solver, problem.parameters, now); });
+            now->parts = timed_parts([&] { restore(*run->solver, run->parameters(), now->state); }, step,
+                                     [&] { save(*run->solver, run->parameters(), now->state); });
             return steps;
           },
-          [=] { return run->parts; }};
+          [=] { return imbalance(run->parameters(), *run->solver); }, [=] { return now->parts; }};
 }
 
 double Forces::impulse() const { return integrals(values, interval).back(); }
@@ -187,13 +201,13 @@ std::optional<Forces> forces(const Problem& problem, coupling::Solver& solver, d
   Forces result;
   result.interval = end_time / intervals;
   result.values = {0.0};
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   for (int k = 1; k <= intervals; ++k) {
     if (interrupted()) return {};
     fly_to(solver, k * result.interval);
     result.values.push_back(-solver.total_force_on_air()[2]);
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.seconds = stopwatch.seconds();
   result.steps = solver.progress().flow.step;
   return result;
 }

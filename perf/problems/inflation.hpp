@@ -2,13 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
-#include <memory_resource>
 #include <optional>
 #include <vector>
 
 #include "kernels/coupling/sheet/solver.hpp"
 #include "perf/measure/measurement.hpp"
+#include "perf/memory/memory.hpp"
 
 /// Benchmark problems of cloth in air: a C-9 parachute opens in a stream of 10 m/s, its payload fixed, in a
 /// box of 12 m by 12 m by 24 m with slip sides. Functions throw only what the solver throws, unless stated
@@ -37,17 +36,18 @@ Problem problem(const Discretization& discretization);
 /// From a cone that is nearly open, of cloth that lets 3.6 times as much air pass and hardly breathes.
 Problem porous_problem(const Discretization& discretization);
 
-/// Sample of `milliseconds` of flight after `lead` seconds. Each sample begins from the same state; the first
-/// reset computes it. `solver`, made for the problem, must outlive the sample. The work throws
-/// Failure(numerical_failure) after a failed step.
-Sample flight(const Problem& problem, coupling::Solver& solver, double lead, long milliseconds);
+/// `milliseconds` of flight by a solver on `backend` after `lead` seconds. Each sample begins from the same
+/// state; the first reset computes it. The error is `imbalance`. The work throws Failure(numerical_failure)
+/// after a failed step.
+Sample flight(device::Backend backend, const Problem& problem, double lead, long milliseconds);
 
-/// Sample of `steps` steps of the flow between two copies of the whole state: to the device, and back. The
-/// arrays of the flow, nearly all of it, are in `memory`. Each sample begins from the same state, after
-/// `lead` seconds, which the first reset computes. Its parts are h2d, compute and d2h. `solver`, made for the
-/// problem, must outlive the sample. The work throws Failure(numerical_failure) after a failed step.
-Sample copied_steps(const Problem& problem, coupling::Solver& solver, double lead, long steps,
-                    const std::shared_ptr<std::pmr::memory_resource>& memory);
+/// The same with `steps` steps of the flow between two copies of the whole state: to the device, and back.
+/// The arrays of the flow, nearly all of it, are in `memory`. Its parts are h2d, compute and d2h.
+Sample copied_steps(device::Backend backend, const Problem& problem, double lead, long steps,
+                    HostMemory memory);
+
+/// Tolerance of the imbalance.
+inline constexpr double largest_imbalance = 1e-12;
 
 /// Force of a canopy on the air against the stream.
 struct Forces {

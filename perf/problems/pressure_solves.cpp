@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "kernels/reference/linear/laplacian.hpp"
@@ -64,8 +65,7 @@ std::vector<PressureSolve> pressure_solves(device::Backend backend, const std::a
   return solves;
 }
 
-Case pressure_case(const PressureSolve& solve,
-                   const std::shared_ptr<std::unique_ptr<pressure::Solver>>& solver) {
+Case pressure_case(const PressureSolve& solve) {
   const PressureMethod& method = solve.method;
   const auto cells = static_cast<long>(solve.cell_count());
   const long pairs = solve.backend == device::Backend::cuda ? std::clamp(100'000'000L / cells, 3L, 100L)
@@ -79,28 +79,27 @@ Case pressure_case(const PressureSolve& solve,
   const std::string variant =
       std::string(method.name) + "/" + sides + (method.tolerance > 1e-8 ? "/1e-6" : "");
   return {.name = "flow-pressure/" + name + "/" + streams::text(solve.cells) + "/" + variant,
-          .on_device = device::needs_device(solve.backend),
+          .backend = solve.backend,
           .unit_of_work = "solve",
           .bound = method.iterates() ? "memory, and copies to the host"
                                      : "memory; FP64 tensor cores of matrix products",
-          .prepare =
-              [=] {
-                *solver = pressure::create_solver(solve.backend,
-                                                  streams::pressure_problem(solve.cells, solve.sides),
-                                                  method.solver, std::max(method.tolerance, 1e-10));
-                return Sample{[] {},
-                              [=] {
-                                (*solver)->solve(solves);
-                                return solves;
-                              }};
-              },
-          .error = [=] { return largest_residual(solve, **solver); },
           // The residual of hypre is relative to the right-hand side, in the 2-norm.
           .tolerance = method.iterates() ? 1e3 * method.tolerance : 1e-13,
-          .facts =
+          .prepare =
               [=] {
-                return Facts{name, solve.cell_count(), variant};
-              }};
+                const std::shared_ptr<pressure::Solver> solver = pressure::create_solver(
+                    solve.backend, streams::pressure_problem(solve.cells, solve.sides), method.solver,
+                    std::max(method.tolerance, 1e-10));
+                return Sample{.reset = [] {},
+                              .work =
+                                  [=] {
+                                    solver->solve(solves);
+                                    return solves;
+                                  },
+                              .error = [=] { return largest_residual(solve, *solver); },
+                              .complete = [=](Facts& facts) { facts.iterations = solver->iterations(); }};
+              },
+          .facts = {.cells = solve.cell_count(), .variant = variant}};
 }
 
 }  // namespace drogue::perf

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <vector>
 
 #include "perf/measure/measurement.hpp"
@@ -45,8 +44,7 @@ std::vector<PressureSolve> pressure_solves(device::Backend backend, const std::a
                                            const std::vector<streams::Sides>& sides,
                                            std::int64_t most_iterated_cells);
 
-/// Case of repeated solves. `solver` receives the solver in `prepare`.
-Case pressure_case(const PressureSolve& solve,
-                   const std::shared_ptr<std::unique_ptr<pressure::Solver>>& solver);
+/// Case of repeated solves. Does not throw.
+Case pressure_case(const PressureSolve& solve);
 
 }  // namespace drogue::perf

@@ -84,53 +84,52 @@ std::shared_ptr<std::pmr::memory_resource> memory_for(options::Pricer& pricer, d
   return host_memory(backend, memory);
 }
 
-Case timed(const std::string& name, device::Backend backend, HostMemory kind,
-           const std::function<std::vector<options::Contract>()>& contracts,
-           const options::Settings& settings, double limit) {
-  const auto run = std::make_shared<std::optional<Run>>();
-  const std::function<std::map<std::string, double>()> parts = [=] {
-    const options::WallTimes& timing = (*run)->timing;
-    return std::map<std::string, double>{
-        {"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
-  };
+Case priced(const std::string& name, device::Backend backend, HostMemory kind,
+            const std::function<std::vector<options::Contract>()>& contracts,
+            const options::Settings& settings, double limit) {
   return {.name = name,
-          .on_device = device::needs_device(backend),
+          .backend = backend,
           .unit_of_work = "batch",
           .bound = "arithmetic of the convolution",
-          .prepare =
-              [=] {
-                std::unique_ptr<options::Pricer> pricer = options::create_pricer(backend, settings);
-                const std::shared_ptr<std::pmr::memory_resource> memory =
-                    memory_for(*pricer, backend, settings, kind);
-                const std::vector<options::Contract> asked = contracts();
-                run->emplace(Run{.pricer = std::move(pricer),
-                                 .memory = memory,
-                                 .contracts = {asked.begin(), asked.end(), memory.get()},
-                                 .prices = std::pmr::vector<options::Price>(asked.size(), memory.get()),
-                                 .timing = {}});
-                return Sample{[] {},
-                              [=] {
-                                Run& now = **run;
-                                now.timing = now.pricer->price(now.contracts, now.prices);
-                                return 1L;
-                              },
-                              settings.time_copies ? parts : nullptr};
-              },
-          .error = [=] { return error(**run); },
-          .tolerance = limit};
+          .tolerance = limit,
+          .prepare = [=] {
+            std::unique_ptr<options::Pricer> pricer = options::create_pricer(backend, settings);
+            const std::shared_ptr<std::pmr::memory_resource> memory =
+                memory_for(*pricer, backend, settings, kind);
+            const std::vector<options::Contract> asked = contracts();
+            const auto run = std::make_shared<Run>(
+                Run{.pricer = std::move(pricer),
+                    .memory = memory,
+                    .contracts = {asked.begin(), asked.end(), memory.get()},
+                    .prices = std::pmr::vector<options::Price>(asked.size(), memory.get()),
+                    .timing = {}});
+            Sample sample{[] {},
+                          [=] {
+                            run->timing = run->pricer->price(run->contracts, run->prices);
+                            return 1L;
+                          },
+                          [=] { return error(*run); }};
+            if (settings.time_copies)
+              sample.parts = [=] {
+                const options::WallTimes& timing = run->timing;
+                return std::map<std::string, double>{
+                    {"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
+              };
+            return sample;
+          }};
 }
 
 }  // namespace
 
 Case batch(const std::string& name, device::Backend backend, HostMemory memory, std::size_t count,
            const options::Settings& settings, double limit) {
-  return timed(
+  return priced(
       name, backend, memory, [=] { return distinct(count); }, settings, limit);
 }
 
 Case surface(const std::string& name, device::Backend backend, const SurfaceSize& size,
              const options::Settings& settings, double limit) {
-  return timed(
+  return priced(
       name, backend, HostMemory::pinned, [=] { return surfaces(size); }, settings, limit);
 }
 

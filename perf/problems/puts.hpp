@@ -4,7 +4,7 @@
 
 #include "kernels/options/pricer.hpp"
 #include "perf/measure/measurement.hpp"
-#include "perf/memory/host_memory.hpp"
+#include "perf/memory/memory.hpp"
 
 /// Batches and surfaces of American puts, some of which have known prices. No function throws before a case
 /// runs.

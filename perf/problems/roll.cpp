@@ -6,9 +6,6 @@
 #include <numbers>
 
 #include "kernels/fabric/contact/features.hpp"
-#include "kernels/fabric/elastic/lumped_mass.hpp"
-#include "kernels/mesh/generators.hpp"
-#include "kernels/mesh/renumbering.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 
 namespace drogue::perf::roll {
@@ -42,14 +39,10 @@ struct Spiral {
 }  // namespace
 
 fabric::Parameters parameters(int vertices) {
-  const fabric::Mesh mesh = mesh::generate(mesh::Strip{1.0, 1.0, vertices});
-  fabric::Parameters p;
-  p.mesh = mesh::renumber(mesh, mesh::reverse_cuthill_mckee(mesh));
-  p.mass = fabric::lumped_masses(p.mesh, 0.1, 0.0, fabric::Lumping::area);
+  fabric::Parameters p = sheet::square(vertices);
   p.contact.self = true;
   p.contact.thickness = 0.4 * fabric::collision_edges(p.mesh).mean_length;
   p.contact.friction = 0.2;
-  p.dt = 1.0;
   return p;
 }
 
@@ -75,14 +68,11 @@ double default_dt(const fabric::Parameters& p, fabric::Solver& solver) {
   return std::min(0.5 * stable, 0.1 * fabric::collision_edges(p.mesh).mean_length / peak_speed);
 }
 
-Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count) {
-  solver.set_dt(default_dt(p, solver));
-  return {[&solver, from = solver.download_state()] { solver.upload_state(from); },
-          [&solver, count] {
-            solver.enqueue_steps(count);
-            static_cast<void>(solver.failure());  // blocks until the steps are done
-            return count;
-          }};
+Sample steps(const sheet::Shared& p, const std::shared_ptr<fabric::Solver>& solver, long count) {
+  Sample sample = sheet::steps_from(start(*p), solver, default_dt(*p, *solver), count);
+  sample.reset = [solver, from = solver->download_state()] { solver->upload_state(from); };
+  sample.error = [=] { return imbalance(*p, *solver); };
+  return sample;
 }
 
 double imbalance(const fabric::Parameters& p, fabric::Solver& solver) {

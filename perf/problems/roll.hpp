@@ -19,8 +19,8 @@ sheet::State start(const fabric::Parameters& p);
 /// a tenth of an edge. Overwrites the state of `solver`. Blocking.
 double default_dt(const fabric::Parameters& p, fabric::Solver& solver);
 
-/// Sample of `count` steps from the initial state. `solver`, made for `p`, must outlive the sample. Blocking.
-Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count);
+/// `count` steps of `solver`, made for `p`, from the initial state. The error is `imbalance`. Blocking.
+Sample steps(const sheet::Shared& p, const std::shared_ptr<fabric::Solver>& solver, long count);
 
 /// Change of the total energy less the work of contact, relative to the initial kinetic energy. Infinite
 /// after a failed step, without any contact, or if the exact checker finds intersecting triangles. The

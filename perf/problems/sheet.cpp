@@ -14,11 +14,17 @@ namespace drogue::perf::sheet {
 
 using fabric::Vector;
 
-fabric::Parameters parameters(int vertices) {
+fabric::Parameters square(int vertices) {
   const fabric::Mesh mesh = mesh::generate(mesh::Strip{1.0, 1.0, vertices});
   fabric::Parameters p;
   p.mesh = mesh::renumber(mesh, mesh::reverse_cuthill_mckee(mesh));
   p.mass = fabric::lumped_masses(p.mesh, 0.1, 0.0, fabric::Lumping::area);
+  p.dt = 1.0;
+  return p;
+}
+
+fabric::Parameters parameters(int vertices) {
+  fabric::Parameters p = square(vertices);
   p.gravity = {0.0, 0.0, -9.81};
   double length = 0.0, width = 0.0;
   for (const Vector& at : p.mesh.rest) length = std::max(length, at[0]), width = std::max(width, at[1]);
@@ -26,7 +32,6 @@ fabric::Parameters parameters(int vertices) {
     const bool edge = at[0] == 0.0 || at[0] == length || at[1] == 0.0 || at[1] == width;
     p.pinned.push_back(edge ? 7 : 0);
   }
-  p.dt = 1.0;
   return p;
 }
 
@@ -53,14 +58,20 @@ double default_dt(const fabric::Parameters& p, fabric::Solver& solver) {
   return 0.5 * fabric::stable_dt(p.integrator, solver.fastest_frequency(), solver.fastest_decay());
 }
 
-Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count) {
-  solver.set_dt(default_dt(p, solver));
-  return {[&solver, from = start(p)] { solver.upload(from.x, from.v); },
-          [&solver, count] {
-            solver.enqueue_steps(count);
-            static_cast<void>(solver.failure());  // blocks until the steps are done
+Sample steps_from(const State& start, const std::shared_ptr<fabric::Solver>& solver, double dt, long count) {
+  solver->set_dt(dt);
+  return {[=] { solver->upload(start.x, start.v); },
+          [=] {
+            solver->enqueue_steps(count);
+            static_cast<void>(solver->failure());  // blocks until the steps are done
             return count;
           }};
+}
+
+Sample steps(const Shared& p, const std::shared_ptr<fabric::Solver>& solver, long count) {
+  Sample sample = steps_from(start(*p), solver, default_dt(*p, *solver), count);
+  sample.error = [=] { return energy_drift(*p, *solver); };
+  return sample;
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "kernels/fabric/solver.hpp"
@@ -9,8 +10,11 @@
 /// 2 % and pinned along its edges. It oscillates under gravity like a drum.
 namespace drogue::perf::sheet {
 
-/// Mesh of about `vertices` vertices in the order of the mini-app, with material, loads and pins. Throws
+/// Mesh of about `vertices` vertices in the order of the mini-app, with masses and material. Throws
 /// std::invalid_argument for too few vertices.
+fabric::Parameters square(int vertices);
+
+/// The square with gravity and pins. Throws as `square`.
 fabric::Parameters parameters(int vertices);
 
 /// State of all vertices.
@@ -24,8 +28,15 @@ State start(const fabric::Parameters& p);
 /// Half of the largest stable time step in the initial state, s. Overwrites the state of `solver`. Blocking.
 double default_dt(const fabric::Parameters& p, fabric::Solver& solver);
 
-/// Sample of `count` steps from the initial state. `solver`, made for `p`, must outlive the sample. Blocking.
-Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count);
+/// Parameters of a case, whose mesh may be large: its functions share them.
+using Shared = std::shared_ptr<const fabric::Parameters>;
+
+/// `count` steps of `solver`, made for `p`, from a state with the time step `dt`, s. Without an error.
+/// Blocking.
+Sample steps_from(const State& start, const std::shared_ptr<fabric::Solver>& solver, double dt, long count);
+
+/// `count` steps of `solver`, made for `p`, from the initial state. The error is `energy_drift`. Blocking.
+Sample steps(const Shared& p, const std::shared_ptr<fabric::Solver>& solver, long count);
 
 /// Change of the total energy since the initial state, relative to the initial kinetic energy. Undamped
 /// motion conserves energy. Blocking.

@@ -5,7 +5,7 @@
 #include <memory_resource>
 
 #include "kernels/reference/gas/exact_riemann.hpp"
-#include "perf/memory/host_memory.hpp"
+#include "perf/memory/memory.hpp"
 
 namespace drogue::perf::sod {
 
@@ -35,7 +35,8 @@ Fields start(const gas::Parameters& p) {
   return fields;
 }
 
-Sample steps(const gas::Parameters& p, device::Backend backend, gas::Solver& solver, long count) {
+Sample steps(const gas::Parameters& p, device::Backend backend, const std::shared_ptr<gas::Solver>& solver,
+             long count) {
   struct Start {
     std::shared_ptr<std::pmr::memory_resource> memory;
     std::array<std::pmr::vector<double>, 3> fields;
@@ -45,13 +46,46 @@ Sample steps(const gas::Parameters& p, device::Backend backend, gas::Solver& sol
   const auto copy = [&](std::size_t k) {
     return std::pmr::vector<double>(fields[k].begin(), fields[k].end(), memory.get());
   };
-  return {[&solver, from = std::make_shared<Start>(Start{memory, {copy(0), copy(1), copy(2)}})] {
-            solver.upload(0, {from->fields[0], from->fields[1], from->fields[2]});
-            solver.start();
+  return {[solver, from = std::make_shared<Start>(Start{memory, {copy(0), copy(1), copy(2)}})] {
+            solver->upload(0, {from->fields[0], from->fields[1], from->fields[2]});
+            solver->start();
           },
-          [&solver, count] {
-            solver.advance(1.0, count, 0, {}, {});
+          [=] {
+            solver->advance(1.0, count, 0, {}, {});
             return count;
+          },
+          [=] { return l1_error(p, *solver); }};
+}
+
+Case baseline_case(const std::string& name, const std::string& bound, device::Backend backend,
+                   const gas::Parameters& p, bool compute_alone) {
+  return {.name = name,
+          .backend = backend,
+          .unit_of_work = "step",
+          .bound = bound,
+          .tolerance = tolerance(p),
+          .prepare = [=] {
+            const std::shared_ptr<gas::Solver> solver = gas::create_baseline_solver(backend, p);
+            const auto before = std::make_shared<gas::PhaseTimes>();
+            const Fields from = start(p);
+            return Sample{
+                [=] {
+                  solver->upload(0, {from[0], from[1], from[2]});
+                  solver->start();
+                  *before = solver->phase_times();
+                },
+                [=] {
+                  solver->advance(1.0, baseline_steps, 0, {}, {});
+                  return baseline_steps;
+                },
+                [=] { return l1_error(p, *solver); },
+                [=] {
+                  const gas::PhaseTimes now = solver->phase_times();
+                  std::map<std::string, double> parts = {{"compute", now.compute - before->compute}};
+                  if (!compute_alone)
+                    parts.insert({{"h2d", now.h2d - before->h2d}, {"d2h", now.d2h - before->d2h}});
+                  return parts;
+                }};
           }};
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "kernels/gas/solver.hpp"
@@ -26,10 +28,18 @@ double centre(const gas::Parameters& p, std::size_t i);
 /// Initial state of all cells.
 Fields start(const gas::Parameters& p);
 
-/// Sample of `count` steps from the initial state, which is kept in pinned memory: pageable copies of a large
-/// one take longer than the steps. `solver`, made for `p` on `backend`, must outlive the
-/// sample. Blocking.
-Sample steps(const gas::Parameters& p, device::Backend backend, gas::Solver& solver, long count);
+/// `count` steps of `solver`, made for `p` on `backend`, from the initial state, which is kept in pinned
+/// memory: pageable copies of a large one take longer than the steps. The error is `l1_error`. Blocking.
+Sample steps(const gas::Parameters& p, device::Backend backend, const std::shared_ptr<gas::Solver>& solver,
+             long count);
+
+/// Steps of a sample of some milliseconds of the baseline solver; the waves stay away from the ends.
+inline constexpr long baseline_steps = 20;
+
+/// Case of `baseline_steps` steps by the baseline solver, whose parts are h2d, compute and d2h, or
+/// `compute_alone`. Does not throw.
+Case baseline_case(const std::string& name, const std::string& bound, device::Backend backend,
+                   const gas::Parameters& parameters, bool compute_alone = false);
 
 /// L1 error of the density (kg/m^3) against the exact solution at `time` (s), per unit length.
 double l1_error(const gas::Parameters& p, const std::vector<double>& rho, double time);

@@ -153,19 +153,19 @@ linear::PoissonProblem pressure_problem(const std::array<int, 3>& cells, Sides s
   return problem;
 }
 
-Sample steps(const flow::Parameters& p, flow::Solver& solver, long count) {
-  const auto started = std::make_shared<bool>(false);
-  return {[=, &solver] {
-            if (*started) return;
-            start_from(solver, sampled(p, [&](std::size_t c, const std::array<double, 3>& x) {
-                         return initial_velocity(sides_of(p), c, x);
-                       }));
-            *started = true;
+Sample steps(const flow::Parameters& p, const std::shared_ptr<flow::Solver>& solver, long count) {
+  return {[=, started = false]() mutable {
+            if (started) return;
+            start_from(*solver, sampled(p, [&](std::size_t c, const std::array<double, 3>& x) {
+              return initial_velocity(sides_of(p), c, x);
+            }));
+            started = true;
           },
-          [=, &solver] {
-            advance_by(solver, count);
+          [=] {
+            advance_by(*solver, count);
             return count;
-          }};
+          },
+          [=] { return relative_divergence(p, *solver); }};
 }
 
 double relative_divergence(const flow::Parameters& p, flow::Solver& solver) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 
 #include "kernels/flow/solver.hpp"
@@ -30,10 +31,13 @@ flow::Parameters parameters(const std::array<int, 3>& cells, Sides sides);
 /// Pressure equation of a grid of unit spacing.
 linear::PoissonProblem pressure_problem(const std::array<int, 3>& cells, Sides sides);
 
-/// Sample of `count` steps. The first sample begins from the initial state, later ones where the one before
-/// ended: the work of a step does not depend on the flow. `solver`, made for `p`, must outlive the sample.
+/// `count` steps of `solver`, made for `p`. The first sample begins from the initial state, later ones where
+/// the one before ended: the work of a step does not depend on the flow. The error is `relative_divergence`.
 /// The work throws Failure(numerical_failure) after a failed step.
-Sample steps(const flow::Parameters& p, flow::Solver& solver, long count);
+Sample steps(const flow::Parameters& p, const std::shared_ptr<flow::Solver>& solver, long count);
+
+/// Tolerance of the divergence: a wrong projection leaves one of order one.
+inline constexpr double divergence_tolerance = 1e-12;
 
 /// Root-mean-square divergence of the present state times spacing over the largest speed.
 double relative_divergence(const flow::Parameters& p, flow::Solver& solver);

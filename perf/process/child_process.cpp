@@ -4,7 +4,8 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -61,12 +62,65 @@ int run_child(const std::vector<std::string>& words, const std::filesystem::path
   return wait_for(child);
 }
 
-std::string last_line(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string last;
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty()) last = line;
-  return last;
+namespace {
+
+/// Reason of a failure in a log.
+struct Reason {
+  std::string sentence;     ///< of the program, else the first paragraph, without the frame of a launcher
+  bool of_program = false;  ///< the sentence is that of a program of this suite
+  bool as_root = false;     ///< a launcher mentions that it runs as root
+};
+
+Reason reason_in(const std::filesystem::path& log) {
+  std::ifstream file(log);
+  Reason reason;
+  bool ended = false;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("drogue-") && line.find(": ") != std::string::npos)
+      return {line, true, reason.as_root};
+    reason.as_root = reason.as_root || line.find("run as root") != std::string::npos;
+    const bool has_words = std::ranges::any_of(line, [](unsigned char c) { return std::isalpha(c) != 0; });
+    if (has_words && !ended)
+      reason.sentence += (reason.sentence.empty() ? "" : " ") + line.substr(line.find_first_not_of(" \t"));
+    ended = ended || (!has_words && !reason.sentence.empty());
+  }
+  if (reason.sentence.ends_with(':')) reason.sentence.back() = '.';
+  return reason;
+}
+
+/// True for a code with which a program of this suite prints a sentence, and which a launcher passes on.
+bool has_sentence(int status) {
+  constexpr ExitCode codes[] = {ExitCode::usage, ExitCode::invalid_scene, ExitCode::numerical_failure,
+                                ExitCode::io_error, ExitCode::no_backend};
+  return std::ranges::any_of(codes, [&](ExitCode code) { return static_cast<int>(code) == status; });
+}
+
+/// How a run ended that gave no code of its own, in words.
+std::string describe_end(int status) {
+  if (status == 0 || status == static_cast<int>(ExitCode::verification_failed))
+    return "it ended without a result";
+  if (status > 128) return "signal " + std::to_string(status - 128) + " ended it";
+  return "it ended with code " + std::to_string(status);
+}
+
+}  // namespace
+
+Failure failed_run(const std::string& units, int status, const std::filesystem::path& log) {
+  const Reason reason = reason_in(log);
+  const std::string failed = "a run on " + units + " failed: ";
+  // 130 is that of a signal from the keyboard, whoever prints a sentence.
+  const bool interrupted = status == static_cast<int>(ExitCode::interrupted) && !reason.sentence.empty();
+  if (interrupted || (has_sentence(status) && reason.of_program))
+    return {static_cast<ExitCode>(status), failed + reason.sentence};
+  if (!reason.of_program && reason.as_root)
+    return {ExitCode::usage,
+            failed +
+                "mpirun refuses to run as root; run as another user, or, in a container, set "
+                "OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"};
+  // A launcher that starts nothing ends with 1, which no program of this suite does.
+  if (status == 1 && !reason.sentence.empty()) return {ExitCode::usage, failed + reason.sentence};
+  const std::string end = describe_end(status);
+  return {ExitCode::io_error, failed + (reason.sentence.empty() ? end : end + ": " + reason.sentence)};
 }
 
 }  // namespace drogue::perf

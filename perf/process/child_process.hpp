@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/program/failure.hpp"
+
 namespace drogue::perf {
 
 /// Runs `words`, the first of which is searched in PATH, in `folder`, without standard input, and waits.
@@ -13,8 +15,10 @@ namespace drogue::perf {
 int run_child(const std::vector<std::string>& words, const std::filesystem::path& folder,
               const std::filesystem::path& log, bool log_output = false);
 
-/// Last line of a file that is not empty, such as the reason of a failure in a log; empty without one. Throws
-/// only std::bad_alloc.
-std::string last_line(const std::filesystem::path& file);
+/// Failure of a run of a program of this suite on some `units`, such as "2 ranks", that ended with `status`
+/// and wrote `log`. Its code is that of the program; usage if mpirun refused to start it; io_error for a
+/// signal, a foreign code, or an end without a result. Its sentence holds that of the program or of mpirun.
+/// Throws only std::bad_alloc.
+Failure failed_run(const std::string& units, int status, const std::filesystem::path& log);
 
 }  // namespace drogue::perf

@@ -1,7 +1,6 @@
 #include "perf/raw/momentum.hpp"
 
-#include "perf/raw/check_launch.hpp"
-#include "perf/raw/roots.cuh"
+#include "perf/raw/device.cuh"
 
 namespace drogue::perf::raw {
 

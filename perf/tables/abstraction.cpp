@@ -7,14 +7,13 @@
 #include <string>
 
 #include "common/program/failure.hpp"
-#include "common/run/statistics.hpp"
-#include "perf/compare/version_cost.hpp"
-#include "perf/measure/device_clocks.hpp"
+#include "perf/compare/speed.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/problems/sheet.hpp"
 #include "perf/problems/sod.hpp"
 #include "perf/problems/streams.hpp"
 #include "perf/raw/kernel_pair.hpp"
+#include "perf/rows/rows.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
@@ -46,8 +45,8 @@ const char* name_of(Launches launches) { return launches == Launches::plain ? "p
 /// A shock tube after some steps, so that no part of it is at rest by symmetry.
 raw::GasProblem gas_problem(device::Backend backend, std::int64_t cells) {
   raw::GasProblem problem{sod::parameters(cells), {}, 0.0};
-  const std::unique_ptr<gas::Solver> solver = gas::create_solver(backend, problem.parameters);
-  const Sample sample = sod::steps(problem.parameters, backend, *solver, 50);
+  const std::shared_ptr<gas::Solver> solver = gas::create_solver(backend, problem.parameters);
+  const Sample sample = sod::steps(problem.parameters, backend, solver, 50);
   sample.reset();
   static_cast<void>(sample.work());
   for (std::vector<double>& field : problem.fields) field.resize(static_cast<std::size_t>(cells));
@@ -100,35 +99,27 @@ long steps_of(std::int64_t cells) {
 Case version_case(const std::shared_ptr<KernelPair>& pair, const std::string& name, Version version,
                   Launches launches, const Size& size,
                   const std::shared_ptr<std::optional<double>>& difference) {
-  const long steps = steps_of(size.cells);
   return {.name = name,
-          .on_device = true,
+          .backend = device::Backend::cuda,
           .unit_of_work = "step",
           .bound = size.cells < 100'000 ? "launch latency" : "that of the kernel of the suite",
-          .prepare =
-              [=] {
-                return Sample{[=] { pair->reset(version); },
-                              [=] {
-                                pair->run(version, launches, steps);
-                                return steps;
-                              }};
-              },
-          .error =
-              [=] {
-                if (!*difference) *difference = pair->difference(launches);
-                return **difference;
-              },
-          .tolerance = size.round_off};
-}
-
-void print_time(const Record& record) {
-  const run::MedianInterval time = run::median_interval(record.samples);
-  std::printf("  %11.3f [%.3f .. %.3f]", 1e6 * time.median, 1e6 * time.low, 1e6 * time.high);
+          .tolerance = size.round_off,
+          .prepare = [=, steps = steps_of(size.cells)] {
+            return Sample{[=] { pair->reset(version); },
+                          [=] {
+                            pair->run(version, launches, steps);
+                            return steps;
+                          },
+                          [=] {
+                            if (!*difference) *difference = pair->difference(launches);
+                            return **difference;
+                          }};
+          }};
 }
 
 /// Prints the row of two versions.
 void print_row(const Size& size, Launches launches, const Record& kokkos, const Record& hand_written,
-               const VersionCost& cost) {
+               const SpeedChange& cost) {
   std::printf("%-26s %-6s", size.name.c_str(), name_of(launches));
   // A wrong result has no time.
   if (!kokkos.passed() || !hand_written.passed()) {
@@ -136,8 +127,8 @@ void print_row(const Size& size, Launches launches, const Record& kokkos, const 
                 std::max(kokkos.error, hand_written.error), size.round_off);
     return;
   }
-  print_time(kokkos);
-  print_time(hand_written);
+  for (const Record* record : {&kokkos, &hand_written})
+    std::printf("  %11s %s", median_text(*record, 1e6, 3).c_str(), interval_text(*record, 1e6, 3).c_str());
   std::printf("  %6.3f [%.3f .. %.3f]  %8.1e", cost.ratio, cost.low, cost.high, kokkos.error);
   if (size.cells >= goal_size) std::printf("  goal <= %.2f %s", largest_version_cost, name(goal(cost)));
   std::printf("\n");
@@ -161,7 +152,7 @@ void add_size(const Size& size, device::Backend backend, bool quick, const nlohm
   for (std::size_t row = 0; row < 2; ++row) {
     const Launches launches = row == 0 ? Launches::plain : Launches::graph;
     const Record &kokkos = records[2 * row], &hand_written = records[2 * row + 1];
-    const VersionCost cost = version_cost(kokkos.samples, hand_written.samples);
+    const SpeedChange cost = compare_speed({hand_written.samples}, {kokkos.samples});
     print_row(size, launches, kokkos, hand_written, cost);
     for (const Version version : {Version::kokkos, Version::hand_written}) {
       nlohmann::json facts = {{"backend", backend_name},     {"cells", pair->cells()},

@@ -5,7 +5,7 @@
 #include "kernels/device/profiling_counters.hpp"
 #include "kernels/flow/solver.hpp"
 #include "perf/measure/record.hpp"
-#include "perf/memory/device_memory.hpp"
+#include "perf/memory/memory.hpp"
 #include "perf/problems/streams.hpp"
 #include "perf/tables/tables.hpp"
 
@@ -79,14 +79,11 @@ Table print_flow_memory(device::Backend backend, bool quick, const nlohmann::jso
       const std::string grid = streams::text(cells);
       std::printf("%-11s  %-24s  %6.1f", grid.c_str(), variant.name, a_cell(memory.arrays));
       gpu ? std::printf("    %6.1f\n", a_cell(memory.device)) : std::printf("\n");
-      Record record;
-      record.name = "flow-memory/" + name + "/" + grid + "/" + variant.name;
-      record.unit_of_work = "step";
-      record.bound = "memory of the device";
       nlohmann::json facts = {
           {"backend", name}, {"cells", count}, {"variant", variant.name}, {"array_bytes", memory.arrays}};
       if (gpu) facts["driver_bytes"] = memory.device;
-      table.add(record, provenance, facts);
+      table.add({"flow-memory/" + name + "/" + grid + "/" + variant.name, "step", "memory of the device"},
+                provenance, facts);
     }
   return table;
 }

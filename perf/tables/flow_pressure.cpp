@@ -1,10 +1,9 @@
 #include <cstdio>
-#include <memory>
 
-#include "perf/measure/device_clocks.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/problems/pressure_solves.hpp"
-#include "perf/rows/timed_columns.hpp"
+#include "perf/rows/printed.hpp"
+#include "perf/rows/rows.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
@@ -56,20 +55,16 @@ Table print_flow_pressure(device::Backend backend, bool quick, const nlohmann::j
         backend, grid, {streams::Sides::periodic, streams::Sides::walls, streams::Sides::tunnel},
         most_iterated_cells);
     std::vector<Case> cases;
-    std::vector<std::shared_ptr<std::unique_ptr<pressure::Solver>>> solvers;
-    for (const PressureSolve& solve : solves) {
-      solvers.push_back(std::make_shared<std::unique_ptr<pressure::Solver>>());
-      cases.push_back(pressure_case(solve, solvers.back()));
-    }
+    for (const PressureSolve& solve : solves) cases.push_back(pressure_case(solve));
     const std::vector<Record> records = measure_solves(solves, cases, quick);
     for (std::size_t i = 0; i < solves.size(); ++i) {
       const PressureSolve& solve = solves[i];
-      const int iterations = (*solvers[i])->iterations();
+      const int iterations = records[i].facts.iterations;
       const std::string iterated = iterations > 0 ? std::to_string(iterations) : "direct";
-      char tolerance[16] = "round-off";
-      if (solve.method.iterates()) std::snprintf(tolerance, sizeof tolerance, "%g", solve.method.tolerance);
+      const std::string tolerance =
+          solve.method.iterates() ? printed("%g", solve.method.tolerance) : "round-off";
       std::printf("%-11s  %-8s  %-15s  %-9s  %10s  %-20s  %10s  %.2g  %s\n", streams::text(grid).c_str(),
-                  streams::name(solve.sides), solve.method.name, tolerance,
+                  streams::name(solve.sides), solve.method.name, tolerance.c_str(),
                   median_text(records[i], 1e3, 4).c_str(), interval_text(records[i], 1e3, 4).c_str(),
                   iterated.c_str(), records[i].error, verdict(records[i]));
       nlohmann::json facts = {{"backend", name},

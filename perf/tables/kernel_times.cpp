@@ -41,14 +41,6 @@ std::vector<KernelTime> sums(const std::vector<KernelTime>& kernels, std::string
   return list;
 }
 
-Record untimed(const std::string& name) {
-  Record record;
-  record.name = "kernels/" + name;
-  record.unit_of_work = "profile";
-  record.bound = "the profiled launches";
-  return record;
-}
-
 }  // namespace
 
 Table print_kernel_times(const std::string& profile, const nlohmann::json& provenance) {
@@ -67,7 +59,7 @@ Table print_kernel_times(const std::string& profile, const nlohmann::json& prove
   const auto print = [&](const KernelTime& sum, const std::string& label) {
     std::printf("%-44s %9d %12.1f %12.2f %8.1f\n", label.c_str(), sum.launches, 1e6 * sum.seconds,
                 1e6 * sum.seconds / sum.launches, 100.0 * sum.seconds / total);
-    table.add(untimed(sum.name), provenance,
+    table.add({"kernels/" + sum.name, "profile", "the profiled launches"}, provenance,
               {{"launches", sum.launches}, {"seconds", sum.seconds}, {"share", sum.seconds / total}});
   };
   for (const KernelTime& sum : sums(kernels, &KernelTime::area)) print(sum, "all of " + sum.name);

@@ -10,6 +10,7 @@
 #include "kernels/device/host_cores.hpp"
 #include "perf/caches/host_caches.hpp"
 #include "perf/measure/record.hpp"
+#include "perf/rows/printed.hpp"
 #include "perf/tables/dissertation.hpp"
 #include "perf/tables/tables.hpp"
 
@@ -40,10 +41,7 @@ double host_clock() {
 
 /// `value` over `unit` with the name of the unit; "not stated" for 0.
 std::string amount(double value, double unit, const char* name) {
-  if (value == 0.0) return "not stated";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.4g %s", value / unit, name);
-  return text;
+  return value == 0.0 ? "not stated" : printed("%.4g %s", value / unit, name);
 }
 
 std::string bytes(double value) {
@@ -142,13 +140,9 @@ Table print_machine(const device::DeviceFacts& device) {
   print_line("compiler", dissertation::table_4_1.compiler, here["compiler"].get<std::string>());
   print_line("CUDA", dissertation::table_4_1.cuda,
              device.driver.empty() ? "none" : "driver " + device.driver);
-  Record record;
-  record.name = "machine";
-  record.unit_of_work = "machine";
-  record.bound = "none";
   Table table;
   table.add(
-      record, here,
+      {"machine", "machine", "none"}, here,
       {{"host", host}, {"device", device.gpu.empty() ? nlohmann::json() : gpu}, {"thesis", printed_facts()}});
   return table;
 }

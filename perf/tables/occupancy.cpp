@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <tuple>
 
 #include "common/program/failure.hpp"
 #include "common/program/program.hpp"
@@ -39,37 +39,34 @@ nlohmann::json facts_of(const Architecture& on, const Block& block, const Occupa
 
 /// Record without samples; its error is the number of mismatches.
 Record untimed(const Architecture& on, const std::string& kernel, int mismatches) {
-  Record record;
-  record.name = "occupancy/" + std::string(on.name) + "/" + kernel;
-  record.unit_of_work = "step";
-  record.bound = "what a multiprocessor holds";
-  record.error = mismatches;
-  return record;
+  return {.name = "occupancy/" + std::string(on.name) + "/" + kernel,
+          .unit_of_work = "step",
+          .bound = "what a multiprocessor holds",
+          .error = static_cast<double>(mismatches)};
 }
 
-nlohmann::json printed_facts(const dissertation::OccupancyRow& row) {
-  return {{"shared_bytes", row.shared_bytes},
-          {"blocks_by_registers", row.by_registers},
-          {"blocks_by_shared_memory", row.by_shared_memory},
-          {"blocks_by_limit", row.by_limit},
-          {"blocks", row.blocks},
-          {"threads_sm", row.threads},
-          {"threads_device", row.device_threads},
-          {"occupancy_percent", row.percent}};
-}
-
-/// Number of entries of a printed row that differ from the model.
-int differences(const dissertation::OccupancyRow& printed, const Block& block, const Occupancy& o) {
+/// Entries of a printed row, and how many of them differ from the model.
+struct PrintedRow {
+  nlohmann::json facts;
   int mismatches = 0;
-  for (const auto& [ours, theirs] : {std::pair{block.shared_bytes, printed.shared_bytes},
-                                     {o.by_registers, printed.by_registers},
-                                     {o.by_shared_memory, printed.by_shared_memory},
-                                     {o.by_limit, printed.by_limit},
-                                     {o.blocks, printed.blocks},
-                                     {o.threads, printed.threads},
-                                     {o.device_threads, printed.device_threads}})
-    mismatches += ours == theirs ? 0 : 1;
-  return mismatches + (std::round(1000.0 * o.occupancy) == std::round(10.0 * printed.percent) ? 0 : 1);
+};
+
+PrintedRow compare_with_printed(const dissertation::OccupancyRow& printed, const Block& block,
+                                const Occupancy& o) {
+  const bool same_percent = std::round(1000.0 * o.occupancy) == std::round(10.0 * printed.percent);
+  PrintedRow row{{{"occupancy_percent", printed.percent}}, same_percent ? 0 : 1};
+  for (const auto& [key, ours, theirs] :
+       {std::tuple{"shared_bytes", block.shared_bytes, printed.shared_bytes},
+        {"blocks_by_registers", o.by_registers, printed.by_registers},
+        {"blocks_by_shared_memory", o.by_shared_memory, printed.by_shared_memory},
+        {"blocks_by_limit", o.by_limit, printed.by_limit},
+        {"blocks", o.blocks, printed.blocks},
+        {"threads_sm", o.threads, printed.threads},
+        {"threads_device", o.device_threads, printed.device_threads}}) {
+    row.facts[key] = theirs;
+    row.mismatches += ours == theirs ? 0 : 1;
+  }
+  return row;
 }
 
 void print_table_4_2(Table& table, const nlohmann::json& provenance) {
@@ -84,7 +81,8 @@ void print_table_4_2(Table& table, const nlohmann::json& provenance) {
     const Block block{printed.block, dissertation::flux_registers,
                       dissertation::flux_shared_bytes(printed.block)};
     const Occupancy o = occupancy(on, block);
-    const Record record = untimed(on, std::to_string(block.threads), differences(printed, block, o));
+    const PrintedRow row = compare_with_printed(printed, block, o);
+    const Record record = untimed(on, std::to_string(block.threads), row.mismatches);
     std::printf(
         "%5d  %5d (%5d)   %6d (%2d)   %4d (%2d)  %3d (%d)  %3d (%d)   %3d (%3d)     %4d (%4d)     %4.1f "
         "(%4.1f)%s\n",
@@ -93,7 +91,7 @@ void print_table_4_2(Table& table, const nlohmann::json& provenance) {
         o.threads, printed.threads, o.device_threads, printed.device_threads, 100.0 * o.occupancy,
         printed.percent, record.passed() ? "" : "  FAILED");
     nlohmann::json facts = facts_of(on, block, o);
-    facts["thesis"] = printed_facts(printed);
+    facts["thesis"] = row.facts;
     table.add(record, provenance, facts);
   }
   std::printf(

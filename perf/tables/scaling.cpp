@@ -1,25 +1,44 @@
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "common/run/files/temporary_folder.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/compare/record_file.hpp"
+#include "perf/measure/record.hpp"
+#include "perf/memory/memory.hpp"
 #include "perf/models/scaling.hpp"
+#include "perf/problems/streams.hpp"
 #include "perf/process/child_process.hpp"
-#include "perf/process/failed_run.hpp"
-#include "perf/rows/timed_columns.hpp"
+#include "perf/rows/printed.hpp"
+#include "perf/rows/rows.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
 
 namespace {
+
+/// Runs a program of this suite on some units, such as "2 ranks". Returns the exit status of one that may
+/// have a result. Throws Failure as the program does, and interrupted after a signal.
+int run_on(const std::string& units, const std::vector<std::string>& words,
+           const std::filesystem::path& folder, const std::filesystem::path& log, bool log_output = false) {
+  const int status = run_child(words, folder, log, log_output);
+  if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
+  if (status != 0 && status != static_cast<int>(ExitCode::verification_failed))
+    throw failed_run(units, status, log);
+  return status;
+}
 
 /// Pattern of the plain cases of a mini-app on a backend, one per size.
 std::string cases_of(const std::string& app, device::Backend backend) {
@@ -48,10 +67,7 @@ std::vector<MeasuredCase> run_with_threads(const std::string& pattern, int threa
                                     "--out",
                                     file};
   if (quick) words.emplace_back("--quick");
-  const int status = run_child(words, folder.path(), log);
-  if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
-  if (status != 0 && status != static_cast<int>(ExitCode::verification_failed))
-    throw failed_run(std::to_string(threads) + " threads", status, log);
+  run_on(std::to_string(threads) + " threads", words, folder.path(), log);
   return read_records(file);
 }
 
@@ -78,15 +94,134 @@ Table print_scaling(const std::string& app, const std::vector<device::Backend>& 
         const run::MedianInterval time = run::median_interval(record.samples);
         if (threads == 1) of_one[record.name] = time.median;
         const auto one = of_one.find(record.name);
-        char interval[64];
-        std::snprintf(interval, sizeof interval, "[%.2f .. %.2f]", 1e6 * time.low, 1e6 * time.high);
-        std::printf("%14.2f  %-28s %s", 1e6 * time.median, interval,
+        std::printf("%14.2f  %-28s %s", 1e6 * time.median,
+                    printed("[%.2f .. %.2f]", 1e6 * time.low, 1e6 * time.high).c_str(),
                     speed_up_columns(one == of_one.end() ? std::nullopt : std::optional(one->second),
                                      time.median, threads)
                         .c_str());
         std::fflush(stdout);
       }
   }
+  return table;
+}
+
+namespace {
+
+/// Point of a curve: the program on some units.
+struct ScalingPoint {
+  int units;
+  std::array<int, 3> cells;
+  std::filesystem::path scene;
+  std::vector<double> samples;  ///< s per step
+  double error = 0.0;           ///< largest check over its tolerance
+  nlohmann::json result;        ///< of the last run
+};
+
+/// Throws Failure(no_backend) if no folder of PATH holds mpirun.
+void require_launcher() {
+  std::istringstream folders(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (std::filesystem::exists(std::filesystem::path(folder) / "mpirun")) return;
+  throw Failure(ExitCode::no_backend, "several ranks need mpirun, and no folder of PATH holds it");
+}
+
+int most_units(const ScalingRequest& request, device::Backend backend) {
+  if (request.unit == ScalingUnit::threads && backend != device::Backend::openmp) return 1;
+  if (request.most > 0) return request.most;
+  if (request.unit == ScalingUnit::ranks && device::needs_device(backend)) return device_count();
+  return static_cast<int>(std::thread::hardware_concurrency());
+}
+
+/// Words that start drogue-parachute on the units of a point. A rank has one thread.
+std::vector<std::string> command_of(const ScalingRequest& request, const ScalingPoint& point,
+                                    device::Backend backend, const std::filesystem::path& out) {
+  const bool ranks = request.unit == ScalingUnit::ranks;
+  const std::string units = std::to_string(point.units);
+  std::vector<std::string> words = {"env", "OMP_NUM_THREADS=" + (ranks ? "1" : units)};
+  if (ranks) words.insert(words.end(), {"mpirun", "-n", units});
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "drogue-parachute";
+  words.insert(words.end(), {program.string(), point.scene.string(), "--quiet", "--overwrite", "--backend",
+                             std::string(device::name(backend)), "--out", out.string()});
+  return words;
+}
+
+/// Runs the program once and adds a sample. Throws Failure as the program does.
+void run_point(const ScalingRequest& request, device::Backend backend, const std::filesystem::path& folder,
+               ScalingPoint& point) {
+  const std::filesystem::path out = folder / "out", log = folder / "log";
+  const std::string units = std::to_string(point.units) + " " + name(request.unit);
+  const int status = run_on(units, command_of(request, point, backend, out), folder, log, true);
+  std::ifstream file(out / "result.json");
+  point.result = nlohmann::json::parse(file, nullptr, false);
+  if (point.result.is_discarded() || point.result.value("ranks", 0) < 1) throw failed_run(units, status, log);
+  point.samples.push_back(point.result["timing"]["compute_s"].get<double>() /
+                          point.result["steps"].get<double>());
+  for (const nlohmann::json& check : point.result["checks"])
+    point.error = std::max(point.error, check["value"].get<double>() / check["tolerance"].get<double>());
+  std::filesystem::remove_all(out);
+}
+
+Record record_of(const ScalingRequest& request, device::Backend backend, const ScalingPoint& point) {
+  return {.name = "scaling/flow-step/" + std::string(device::name(backend)) + "/" +
+                  streams::text(point.cells) + "/" + name(request.unit) + "/" + std::to_string(point.units) +
+                  (request.weak ? "/weak" : "/strong"),
+          .unit_of_work = "step",
+          .bound = request.unit == ScalingUnit::ranks ? "messages of few cells per rank" : "memory bandwidth",
+          .samples = point.samples,
+          .error = point.error,
+          .tolerance = 1.0};
+}
+
+/// Measures one backend, all numbers of units in turn.
+void add_backend(const ScalingRequest& request, device::Backend backend, bool quick, Table& table) {
+  const run::TemporaryFolder folder("drogue-scaling");
+  const bool gpu = device::needs_device(backend);
+  const int edge = quick ? 24 : gpu ? 256 : 64;
+  std::vector<ScalingPoint> points;
+  for (const int units : unit_counts(most_units(request, backend))) {
+    const std::array<int, 3> cells = scaled_cells({edge, edge, edge}, request.weak, units);
+    const std::filesystem::path scene = folder.path() / ("scene-" + std::to_string(units) + ".toml");
+    run::write_file_atomically(scene.string(), flow_scene(cells));
+    points.push_back({.units = units, .cells = cells, .scene = scene, .samples = {}, .result = {}});
+  }
+  for (int round = 0; round < (quick ? 3 : 7); ++round)
+    for (ScalingPoint& point : points) run_point(request, backend, folder.path(), point);
+  std::optional<double> of_one;  // median time on one unit, s
+  for (const ScalingPoint& point : points) {
+    const Record record = record_of(request, backend, point);
+    if (point.units == 1 && record.passed()) of_one = run::median(record.samples);
+    const nlohmann::json& from = point.result["provenance"];
+    const nlohmann::json facts = {
+        {"backend", device::name(backend)},
+        {"cells", static_cast<std::int64_t>(point.cells[0]) * point.cells[1] * point.cells[2]},
+        {"ranks", point.result["ranks"]},
+        {"threads", point.result["threads"]},
+        {"scaling", request.weak ? "weak" : "strong"}};
+    table.add(record,
+              provenance({.kokkos_version = device::kokkos_version(),
+                          .gpu = from.value("gpu", ""),
+                          .driver = from.value("driver", ""),
+                          .threads = point.result["threads"].get<int>()}),
+              facts);
+    std::printf("%-52s%s", record.name.c_str(),
+                scaling_columns(record, request.weak, point.units, of_one).c_str());
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+const char* name(ScalingUnit unit) { return unit == ScalingUnit::ranks ? "ranks" : "threads"; }
+
+Table print_program_scaling(const ScalingRequest& request, const std::vector<device::Backend>& backends,
+                            bool quick) {
+  if (request.unit == ScalingUnit::ranks) require_launcher();
+  std::printf("Steps of drogue-parachute, %s scaling over %s\n%-52s%14s  %-28s %11s\n",
+              request.weak ? "weak" : "strong", name(request.unit), "case", "us per step", "95 %",
+              "efficiency");
+  Table table;
+  for (const device::Backend backend : backends) add_backend(request, backend, quick, table);
   return table;
 }
 

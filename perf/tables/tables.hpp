@@ -6,18 +6,9 @@
 
 #include "kernels/device/backend.hpp"
 #include "kernels/device/runtime.hpp"
-#include "perf/measure/measurement.hpp"
+#include "perf/measure/record.hpp"
 
 namespace drogue::perf {
-
-/// Records of a printed table.
-struct Table {
-  std::vector<nlohmann::json> records;
-  bool passed = true;  ///< all records are within their tolerances
-
-  /// Appends a record as JSON. Does not throw.
-  void add(const Record& record, const nlohmann::json& provenance, const nlohmann::json& facts);
-};
 
 // The functions below print to standard output and block until all samples are measured. They throw what the
 // solvers throw.

@@ -1,16 +1,16 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "kernels/device/backend.hpp"
-#include "perf/measure/measurement.hpp"
-#include "perf/memory/host_memory.hpp"
-#include "perf/rows/transfer_row.hpp"
+#include "perf/memory/memory.hpp"
+#include "perf/rows/rows.hpp"
+#include "perf/tables/tables.hpp"
 
-/// Rows of the tables of transfers: copy to the device, compute, copy to the host.
+/// Tables of transfers: copy to the device, compute, copy to the host.
 namespace drogue::perf {
 
 /// Kinds of memory that differ for a backend: a host backend copies within the host. Does not throw.
@@ -29,35 +29,25 @@ PrintedTimes printed_times(const Row& row) {
           .cpu = row.cpu > 0.0 ? std::optional(row.cpu) : std::nullopt};
 }
 
-/// Measured rows of a table.
-struct Transfers {
-  std::vector<Record> records;
-  /// Medians of the computation on one core, s. Empty: Serial is not compiled in, or the row failed its check
-  /// there.
-  std::vector<std::optional<double>> core;
+/// Row of a table: a case that is measured on the backend from `memory`, and on one core.
+struct TransferRow {
+  std::string columns;  ///< below the heading of the table
+  HostMemory memory;
+  std::function<Case(device::Backend, HostMemory)> make;
+  nlohmann::json facts;                      ///< besides those of all rows
+  std::optional<PrintedTimes> printed = {};  ///< in [Shi]
 };
 
-/// Measures `cases` of `backend`, and before them the same rows on Serial, `on_core`, of which those of one
-/// name are measured once, in few rounds. Blocks and throws as `measure`.
-Transfers measure_transfers(device::Backend backend, const std::vector<Case>& cases,
-                            const std::vector<Case>& on_core, int warm_up, int rounds);
+struct TransferTable {
+  std::string title, heading;  ///< lines above; names of the first columns
+  std::vector<TransferRow> rows;
+  bool on_core = true;  ///< rows have a time on one core
+  int warm_up, rounds;
+};
 
-/// Measures rows of which `case_of` makes cases; on Serial they do not differ in their memory.
-template <class Row>
-Transfers measure_transfers(device::Backend backend, const std::vector<Row>& rows,
-                            Case (*case_of)(device::Backend, const Row&), int warm_up, int rounds) {
-  std::vector<Case> cases, on_core;
-  for (Row row : rows) {
-    cases.push_back(case_of(backend, row));
-    row.memory = HostMemory::pageable;
-    on_core.push_back(case_of(device::Backend::serial, row));
-  }
-  return measure_transfers(backend, cases, on_core, warm_up, rounds);
-}
-
-/// Facts of all rows of transfers: backend, memory, medians of the parts and, if given, the times of [Shi]
-/// and that of one core. Does not throw.
-nlohmann::json transfer_facts(device::Backend backend, HostMemory memory, const Record& record,
-                              const std::optional<PrintedTimes>& printed, const std::optional<double>& core);
+/// Measures the rows on `backend` and, before, on Serial, where those of one name are measured once, in few
+/// rounds; prints them, with the medians of the parts, the times of [Shi] and that of one core, which also
+/// are facts of the records. Blocks and throws as `measure`.
+Table print_transfers(device::Backend backend, const TransferTable& table, const nlohmann::json& provenance);
 
 }  // namespace drogue::perf

@@ -1,8 +1,5 @@
-#include <chrono>
-#include <cmath>
-#include <numeric>
-
 #include "common/program/signals.hpp"
+#include "common/program/stopwatch.hpp"
 #include "kernels/reference/gas/muscl_hancock.hpp"
 #include "miniapps/gas/verify/study.hpp"
 #include "perf/work_precision/solution.hpp"
@@ -53,12 +50,11 @@ framework::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene,
     return reference::Primitive{w.rho, w.u, w.p};
   });
   framework::RepeatedRun runs;
-  while (static_cast<int>(runs.samples.size()) < repeats.most &&
-         std::accumulate(runs.samples.begin(), runs.samples.end(), 0.0) < repeats.seconds) {
+  while (!repeats.reached(runs.samples)) {
     reference::GasRun run = start;
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     reference::muscl_hancock(run, p, scene.end_time);
-    runs.samples.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    runs.samples.push_back(stopwatch.seconds());
     if (run.failed) {
       framework::RepeatedRun failed;
       failed.code = ExitCode::numerical_failure;
@@ -73,7 +69,7 @@ framework::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene,
 
 Solution gas_solution(const Problem& problem, device::Backend backend, const gas_app::SchemeNames& scheme,
                       int weno_power, std::int64_t cells, framework::RepeatedRun run) {
-  Solution s;
+  Solution s = solution_of(run, "l1_density");
   s.problem = problem.scene;
   s.backend = backend;
   s.label = scheme.label;
@@ -83,12 +79,7 @@ Solution gas_solution(const Problem& problem, device::Backend backend, const gas
               {"time_scheme", scheme.time},
               {"precision", scheme.precision}};
   s.cells = cells;
-  s.samples = std::move(run.samples);
-  s.steps = run.steps;
-  s.code = run.code;
-  s.message = std::move(run.message);
-  if (s.code == ExitCode::ok) s.error = run.errors.at("l1_density");
-  s.sound = s.code == ExitCode::ok && std::isfinite(s.error) && run.others["conservation"] <= 1e-11;
+  s.sound = s.sound && run.others["conservation"] <= 1e-11;
   return s;
 }
 

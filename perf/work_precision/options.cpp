@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "common/program/signals.hpp"
+#include "common/program/stopwatch.hpp"
 #include "common/study/repeats.hpp"
 #include "kernels/options/pricer.hpp"
 #include "perf/problems/known_puts.hpp"
@@ -18,8 +18,8 @@ constexpr study::Repeats options_repeats{20, 0.2};
 
 /// Point of a curve: a method with its settings.
 struct OptionsPoint {
-  const char *method, *exercise, *grids;
-  int intervals_per_step;  ///< 0: the default number of steps
+  const char *method, *exercise = "", *grids = "";
+  int intervals_per_step = 0;  ///< 0: the default number of steps
   options::Settings settings;
   options::Style style = options::Style::american;
 };
@@ -50,17 +50,9 @@ std::vector<OptionsPoint> other_points(const KnownPuts& puts, bool quick) {
   std::vector<OptionsPoint> points;
   if (puts.contract.model == options::JumpModel::generalized_hyperbolic)
     for (const int mesh : quick ? std::vector{64} : std::vector{64, 128, 256, 512})
-      points.push_back({.method = "seed",
-                        .exercise = "",
-                        .grids = "",
-                        .intervals_per_step = 0,
-                        .settings = {.method = options::Method::baseline, .mesh = mesh}});
+      points.push_back({.method = "seed", .settings = {.method = options::Method::baseline, .mesh = mesh}});
   for (const double tolerance : quick ? std::vector{1e-2} : std::vector{1e-2, 1e-4, 1e-5, 1e-6, 1e-7})
-    points.push_back({.method = "cos",
-                      .exercise = "",
-                      .grids = "",
-                      .intervals_per_step = 0,
-                      .settings = {.method = options::Method::cos, .tolerance = tolerance}});
+    points.push_back({.method = "cos", .settings = {.method = options::Method::cos, .tolerance = tolerance}});
   return points;
 }
 
@@ -127,10 +119,9 @@ Solution options_solution(const KnownPuts& puts, device::Backend backend, const 
   if (point.settings.method != options::Method::cos)
     pricer->price(contracts, prices);  // allocates memory and tables for later batches
   while (!options_repeats.reached(s.samples)) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     pricer->price(contracts, prices);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    s.samples.push_back(seconds / static_cast<double>(count));
+    s.samples.push_back(stopwatch.seconds() / static_cast<double>(count));
   }
   s.steps = prices[0].steps;
   // The resolution of `cos` is its number of exercise dates.

@@ -8,13 +8,14 @@
 
 #include "common/program/failure.hpp"
 #include "kernels/device/backend.hpp"
+#include "miniapps/framework/study.hpp"
 
 namespace drogue::perf {
 
 /// One run to solution: a point of a work-precision diagram (error against time).
 struct Solution {
   std::string problem;           ///< name of a shipped scene, or of a set of options
-  device::Backend backend;       ///< serial for the comparison scheme
+  device::Backend backend{};     ///< serial for the comparison scheme
   std::string label;             ///< label of the scheme
   nlohmann::json scheme;         ///< settings of the scheme, as facts of a record
   std::int64_t cells = 0;        ///< number of cells (flow: per axis), of vertices, or of intervals
@@ -25,6 +26,10 @@ struct Solution {
   ExitCode code = ExitCode::ok;  ///< numerical_failure comes with a `message`
   std::string message;
 };
+
+/// Solution of repeated runs of a scene, whose error is that of this name. It is sound if the error is
+/// finite.
+Solution solution_of(const framework::RepeatedRun& run, const std::string& error);
 
 /// Receives each solution as soon as it is measured.
 using SolutionSink = std::function<void(const Solution&)>;
@@ -48,8 +53,9 @@ bool gas_work_precision(const Selection& selection, const SolutionSink& sink);
 /// Runs two-dimensional vortices of Taylor and Green in a periodic cube, drifting and at rest, for 1 s on
 /// successively halved cells on each backend, in all combinations of advection, time scheme (AB2 at CFL 0.5,
 /// RK3 at 1) and direct pressure solver, and with implicit diffusion; by hypre with WENO-Z. The error is the
-/// largest of the velocity along x, m/s. Then runs the lid-driven cavity (cavity.hpp). `quick` selects two
-/// small grids, WENO-Z, the central scheme and transforms.
+/// largest of the velocity along x, m/s. Then runs the lid-driven cavity at Re 100 until it is
+/// steady by the schemes that solve directly; its error is the largest deviation of an extreme velocity on
+/// the centre lines, m/s. `quick` selects two small grids, WENO-Z, the central scheme and transforms.
 bool flow_work_precision(const Selection& selection, const SolutionSink& sink);
 
 /// Opens a C-9 from its flat cloth in a stream of 10 m/s for 1 s on successively finer grids on each backend,

@@ -44,19 +44,13 @@ springs_app::SpringsScene silent_scene(springs_app::SpringsScene scene) {
 }
 
 Solution springs_solution(const SpringsProblem& problem, device::Backend backend,
-                          const springs_app::StudyPoint& point, framework::RepeatedRun run) {
-  Solution s;
+                          const springs_app::StudyPoint& point, const framework::RepeatedRun& run) {
+  Solution s = solution_of(run, problem.check);
   s.problem = problem.scene;
   s.backend = backend;
   s.label = point.label;
   s.scheme = {{"model", point.model}, {"mass", point.mass}, {"integrator", point.integrator}};
   s.cells = static_cast<std::int64_t>(point.scene.mesh.rest.size());
-  s.samples = std::move(run.samples);
-  s.steps = run.steps;
-  s.code = run.code;
-  s.message = std::move(run.message);
-  if (s.code == ExitCode::ok) s.error = run.errors.at(problem.check);
-  s.sound = s.code == ExitCode::ok && std::isfinite(s.error);
   return s;
 }
 
@@ -72,10 +66,10 @@ bool springs_work_precision(const Selection& selection, const SolutionSink& sink
       for (const device::Backend backend : selection.backends) {
         const bool host = backend != device::Backend::cuda;
         if (host && point.scene.mesh.rest.size() > problem.most_on_host) continue;
-        framework::RepeatedRun run =
+        const framework::RepeatedRun run =
             run_repeatedly(silent_scene(point.scene), backend, springs_repeats, scratch);
         if (run.code == ExitCode::interrupted || interrupted()) return false;
-        sink(springs_solution(problem, backend, point, std::move(run)));
+        sink(springs_solution(problem, backend, point, run));
       }
   }
   return true;

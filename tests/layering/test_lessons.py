@@ -47,7 +47,7 @@ def texts():
     for ladder in LADDERS:
         for header in sorted((ROOT / "perf/ladders" / ladder).glob("*.hpp")):
             joined = re.sub(r'"\s*"', "", header.read_text(encoding="utf-8"))
-            for name, _, hindsight in re.findall(r'RungText text\{\s*"([^"]*)",\s*"([^"]*)",\s*"([^"]*)"\}', joined):
+            for name, _, hindsight in re.findall(r'RungText\{\s*"([^"]*)",\s*"([^"]*)",\s*"([^"]*)"\}', joined):
                 yield ladder, name, hindsight
 
 
@@ -64,11 +64,11 @@ class Lessons(unittest.TestCase):
     def test_each_rung_is_one_file(self):
         found = 0
         for ladder in ("weno", "springs", "options", "transfers"):
-            rungs = re.findall(r"make_rung<", (ROOT / f"perf/ladders/{ladder}/ladder.hpp").read_text(encoding="utf-8"))
+            rungs = re.findall(r"_rung<", (ROOT / f"perf/ladders/{ladder}/ladder.cpp").read_text(encoding="utf-8"))
             texts = 0
             for header in sorted((ROOT / "perf/ladders" / ladder).glob("*.hpp")):
                 text = header.read_text(encoding="utf-8")
-                for name in re.findall(r'RungText text\{\s*"([^"]+)"', text):
+                for name in re.findall(r'RungText\{\s*"([^"]+)"', text):
                     self.assertEqual(header.stem, name.replace("-", "_"))
                     texts += 1
             self.assertEqual(len(rungs), texts, ladder)

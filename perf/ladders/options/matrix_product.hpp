@@ -20,31 +20,13 @@ struct AfterProductFunctor {
   }
 };
 
-/// Rung 6. All options share the weights, so that the jumps of a step are one product of a matrix with the
-/// values of all options: by cuBLAS, which uses the FP64 tensor cores, by the library's loop on a host.
-///
-/// Prediction: two launches per step, packed arithmetic, and the values of all options between memory and
-/// four passes per step.
+/// Runs with two launches per step: the product, and what follows.
 template <class ExecutionSpace>
 class MatrixProductRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutLeft> {
   using Base = OptionsRung<ExecutionSpace, Kokkos::LayoutLeft>;
   using List = typename linear::DenseProduct<ExecutionSpace>::List;
 
  public:
-  static constexpr RungText text{
-      "matrix-product", "The jumps of all options as one product of matrices.",
-      "On a host this rung loses to registers: the plain product of the library streams all "
-      "values through the caches for each node. The tiles of a real matrix product are the "
-      "blocks of rung 5. On an H100 it loses too: 2859 us, after 1133 us "
-      "(docs/lessons/tables.md). There columns must share a distribution of jumps, which a "
-      "batch of different options does not (docs/options-notebook.md)."};
-
-  static Work work(const OptionsProblem& problem) {
-    Work work = options_work(problem, 2 * option_steps, 72);
-    work.packed = true;
-    return work;
-  }
-
   explicit MatrixProductRung(const OptionsProblem& problem)
       : Base(problem),
         _product(this->space()),
@@ -72,5 +54,24 @@ class MatrixProductRung final : public OptionsRung<ExecutionSpace, Kokkos::Layou
   linear::DenseProduct<ExecutionSpace> _product;
   List _matrix;  ///< column after column
 };
+
+/// Rung 6. All options share the weights, so that the jumps of a step are one product of a matrix with the
+/// values of all options: by cuBLAS, which uses the FP64 tensor cores, by the library's loop on a host.
+///
+/// Prediction: two launches per step, packed arithmetic, and the values of all options between memory and
+/// four passes per step.
+template <class ExecutionSpace>
+Rung matrix_product_rung(const Shared<OptionsProblem>& problem) {
+  Work work = options_work(*problem, 2 * option_steps, 72);
+  work.packed = true;
+  return make_rung<MatrixProductRung<ExecutionSpace>>(
+      RungText{"matrix-product", "The jumps of all options as one product of matrices.",
+               "On a host this rung loses to registers: the plain product of the library streams all "
+               "values through the caches for each node. The tiles of a real matrix product are the "
+               "blocks of rung 5. On an H100 it loses too: 2859 us, after 1133 us "
+               "(docs/lessons/tables.md). There columns must share a distribution of jumps, which a "
+               "batch of different options does not (docs/options-notebook.md)."},
+      work, problem);
+}
 
 }  // namespace drogue::perf::ladder

@@ -8,25 +8,14 @@ namespace drogue::perf::ladder {
 ///
 /// Prediction: none on a host, whose teams are single threads. The model of a GPU has no idle threads.
 template <class ExecutionSpace>
-class OneTeamRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight> {
- public:
-  static constexpr RungText text{
-      "one-team", "A team per option, a thread per node.",
-      "A host is back at the time of a thread per option, as predicted: a team is one thread "
-      "there. On a GPU one thread of 128 solves while the others wait. On an H100 this takes "
-      "2179 us all the same, after 11302 us; the model has 227 us for both, since it takes all "
-      "threads as busy (docs/lessons/tables.md)."};
-
-  static Work work(const OptionsProblem& problem) { return options_work(problem, 1, 40); }
-
-  using OptionsRung<ExecutionSpace, Kokkos::LayoutRight>::OptionsRung;
-
- protected:
-  void solve() override {
-    launch_option_teams<ExecutionSpace, PlainJumps, false>(this->space(), "drogue::perf::ladder::one_team",
-                                                           this->arrays(), this->problem().options(),
-                                                           option_nodes);
-  }
-};
+Rung one_team_rung(const Shared<OptionsProblem>& problem) {
+  return make_rung<TeamRung<ExecutionSpace, PlainJumps, false>>(
+      RungText{"one-team", "A team per option, a thread per node.",
+               "A host is back at the time of a thread per option, as predicted: a team is one thread "
+               "there. On a GPU one thread of 128 solves while the others wait. On an H100 this takes "
+               "2179 us all the same, after 11302 us; the model has 227 us for both, since it takes all "
+               "threads as busy (docs/lessons/tables.md)."},
+      options_work(*problem, 1, 40), problem, "drogue::perf::ladder::one_team", option_nodes);
+}
 
 }  // namespace drogue::perf::ladder

@@ -25,25 +25,12 @@ struct OptionFunctor {
   }
 };
 
-/// Rung 1. One thread per option, the nodes of an option side by side, as a loop over options on a CPU keeps
-/// them.
-///
-/// Prediction: arithmetic of 128 multiply-adds per node and step; the values of an option stay in caches.
-template <class ExecutionSpace, class Layout = Kokkos::LayoutRight>
-class OneThreadRung : public OptionsRung<ExecutionSpace, Layout> {
+/// Rungs with a thread per option.
+template <class ExecutionSpace, class Layout>
+class OneThreadRung final : public OptionsRung<ExecutionSpace, Layout> {
   using Base = OptionsRung<ExecutionSpace, Layout>;
 
  public:
-  static constexpr RungText text{
-      "one-thread", "One thread per option, its nodes side by side.",
-      "On a host 2.60 to 2.65 times the prediction: a sum of 128 products is one chain of "
-      "dependent additions, so that a core waits for each, and the compiler may not reorder it. "
-      "On an H100 43454 us where the model has 227 us: neighbouring threads read numbers that "
-      "lie an option apart, and one thread per option is too few to hide the latency of loads "
-      "(docs/lessons/tables.md)."};
-
-  static Work work(const OptionsProblem& problem) { return options_work(problem, 1, 40); }
-
   using Base::Base;
 
  protected:
@@ -52,5 +39,21 @@ class OneThreadRung : public OptionsRung<ExecutionSpace, Layout> {
                         OptionFunctor<typename Base::Arrays>{this->arrays()});
   }
 };
+
+/// Rung 1. One thread per option, the nodes of an option side by side, as a loop over options on a CPU keeps
+/// them.
+///
+/// Prediction: arithmetic of 128 multiply-adds per node and step; the values of an option stay in caches.
+template <class ExecutionSpace>
+Rung one_thread_rung(const Shared<OptionsProblem>& problem) {
+  return make_rung<OneThreadRung<ExecutionSpace, Kokkos::LayoutRight>>(
+      RungText{"one-thread", "One thread per option, its nodes side by side.",
+               "On a host 2.60 to 2.65 times the prediction: a sum of 128 products is one chain of "
+               "dependent additions, so that a core waits for each, and the compiler may not reorder it. "
+               "On an H100 43454 us where the model has 227 us: neighbouring threads read numbers that "
+               "lie an option apart, and one thread per option is too few to hide the latency of loads "
+               "(docs/lessons/tables.md)."},
+      options_work(*problem, 1, 40), problem);
+}
 
 }  // namespace drogue::perf::ladder

@@ -69,14 +69,27 @@ struct OptionTeamFunctor {
   }
 };
 
-/// Launches a team per option; on a host a team is one thread. Asynchronous.
-template <class ExecutionSpace, class Jumps, bool scratch, class Rung>
-void launch_option_teams(const ExecutionSpace& space, const char* label, const Rung& rung, int options,
-                         int threads) {
-  using Functor = OptionTeamFunctor<Rung, ExecutionSpace, Jumps, scratch>;
-  Kokkos::TeamPolicy<ExecutionSpace> policy(space, options, device::is_host<ExecutionSpace> ? 1 : threads);
-  policy.set_scratch_size(0, Kokkos::PerTeam(static_cast<int>(Functor::scratch_bytes())));
-  Kokkos::parallel_for(label, policy, Functor{rung});
-}
+/// Rungs with a team per option, of `threads` threads on a GPU; on a host a team is one thread.
+template <class ExecutionSpace, class Jumps, bool scratch>
+class TeamRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight> {
+  using Base = OptionsRung<ExecutionSpace, Kokkos::LayoutRight>;
+
+ public:
+  TeamRung(const OptionsProblem& problem, const char* label, int threads)
+      : Base(problem), _label(label), _threads(threads) {}
+
+ protected:
+  void solve() override {
+    using Functor = OptionTeamFunctor<typename Base::Arrays, ExecutionSpace, Jumps, scratch>;
+    Kokkos::TeamPolicy<ExecutionSpace> policy(this->space(), this->problem().options(),
+                                              device::is_host<ExecutionSpace> ? 1 : _threads);
+    policy.set_scratch_size(0, Kokkos::PerTeam(static_cast<int>(Functor::scratch_bytes())));
+    Kokkos::parallel_for(_label, policy, Functor{this->arrays()});
+  }
+
+ private:
+  const char* _label;
+  int _threads;
+};
 
 }  // namespace drogue::perf::ladder

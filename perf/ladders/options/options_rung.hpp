@@ -8,6 +8,7 @@
 #include "kernels/device/instance.hpp"
 #include "kernels/device/launch.hpp"
 #include "kernels/device/memory.hpp"
+#include "perf/ladders/make_rung.hpp"
 #include "perf/ladders/options/problem.hpp"
 
 namespace drogue::perf::ladder {

@@ -17,13 +17,13 @@ struct OptionStep {
   double rate_dt;  ///< rate times dt, of the discounted strike at the first node
 };
 
-/// Largest error of a rung: sums of 128 values below one, in 32 steps that damp.
-inline constexpr double options_tolerance = 1e-13;
-
 /// Problem of the options ladder: European puts of strike 1 under jumps of normal logarithms (Merton 1976) by
 /// implicit Euler steps, with the jumps of each step from the values before it. Options differ in variance,
 /// rate and maturity and share the distribution of jumps.
 struct OptionsProblem {
+  /// Largest error of a rung: sums of 128 values below one, in 32 steps that damp.
+  static constexpr double tolerance = 1e-13;
+
   double low, h;                  ///< x_0 = ln(spot/strike) of the first node, and spacing
   std::vector<double> weights;    ///< w_d of jumps by d = 1 - nodes .. nodes - 1, at index d + nodes - 1
   std::vector<OptionStep> steps;  ///< of each option

@@ -28,29 +28,17 @@ struct BlockedJumps {
 /// none: the model has no loads from shared memory.
 template <class ExecutionSpace,
           class Jumps = BlockedJumps<device::is_host<ExecutionSpace> ? 32 : option_nodes / 32>>
-class OptionRegistersRung final : public OptionsRung<ExecutionSpace, Kokkos::LayoutRight> {
- public:
-  static constexpr RungText text{
-      "registers", "Sums of several nodes in registers: a load serves them all.",
-      "On a host 3.60 to 3.72 times as fast, 6.71 to 6.72 predicted: independent sums end the "
-      "chains of additions and fill packs, but the solve, one chain of divisions per option, "
-      "stays and is now a large part of the time. On an H100 1133 us, after 1536 us, though the "
-      "model has 148 us for both: it does not count the loads from shared memory that registers "
-      "save (docs/lessons/tables.md)."};
-
-  static Work work(const OptionsProblem& problem) {
-    Work work = ScratchRung<ExecutionSpace>::work(problem);
-    work.packed = true;
-    return work;
-  }
-
-  using OptionsRung<ExecutionSpace, Kokkos::LayoutRight>::OptionsRung;
-
- protected:
-  void solve() override {
-    launch_option_teams<ExecutionSpace, Jumps, true>(this->space(), "drogue::perf::ladder::registers",
-                                                     this->arrays(), this->problem().options(), 32);
-  }
-};
+Rung registers_rung(const Shared<OptionsProblem>& problem) {
+  Work work = scratch_rung<ExecutionSpace>(problem).work;
+  work.packed = true;
+  return make_rung<TeamRung<ExecutionSpace, Jumps, true>>(
+      RungText{"registers", "Sums of several nodes in registers: a load serves them all.",
+               "On a host 3.60 to 3.72 times as fast, 6.71 to 6.72 predicted: independent sums end the "
+               "chains of additions and fill packs, but the solve, one chain of divisions per option, "
+               "stays and is now a large part of the time. On an H100 1133 us, after 1536 us, though the "
+               "model has 148 us for both: it does not count the loads from shared memory that registers "
+               "save (docs/lessons/tables.md)."},
+      work, problem, "drogue::perf::ladder::registers", 32);
+}
 
 }  // namespace drogue::perf::ladder

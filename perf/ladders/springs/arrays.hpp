@@ -128,21 +128,15 @@ class SheetOfArrays {
 ///
 /// Prediction: none, since the model counts the bytes that are used, and these are the same.
 template <class ExecutionSpace>
-class ArraysRung final : public SpringRung<ExecutionSpace, SheetOfArrays<ExecutionSpace, StoredSprings>> {
- public:
-  static constexpr RungText text{
-      "arrays", "A structure of arrays: neighbouring threads read neighbouring numbers.",
-      "On a host nothing changes: a vertex now gathers its numbers from some eighty lines of "
-      "memory, where the structure had them in a dozen, but each line serves the next vertices "
-      "too. Arrays pay where neighbouring threads read neighbouring numbers at once, on a GPU "
-      "or in packs. On an H100 1.37 times as fast: 46.7 us, after 64.0 us of the structures; "
-      "the model has 45.2 us for both (docs/lessons/tables.md)."};
-
-  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, stored_operations); }
-
-  explicit ArraysRung(const SpringProblem& problem)
-      : SpringRung<ExecutionSpace, SheetOfArrays<ExecutionSpace, StoredSprings>>(problem, problem.scattered) {
-  }
-};
+Rung arrays_rung(const Shared<SpringProblem>& problem) {
+  return make_rung<SpringRung<ExecutionSpace, SheetOfArrays<ExecutionSpace, StoredSprings>>>(
+      RungText{"arrays", "A structure of arrays: neighbouring threads read neighbouring numbers.",
+               "On a host nothing changes: a vertex now gathers its numbers from some eighty lines of "
+               "memory, where the structure had them in a dozen, but each line serves the next vertices "
+               "too. Arrays pay where neighbouring threads read neighbouring numbers at once, on a GPU "
+               "or in packs. On an H100 1.37 times as fast: 46.7 us, after 64.0 us of the structures; "
+               "the model has 45.2 us for both (docs/lessons/tables.md)."},
+      spring_work(*problem, 1, 8, stored_operations), problem, &SpringProblem::scattered);
+}
 
 }  // namespace drogue::perf::ladder

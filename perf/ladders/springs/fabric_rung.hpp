@@ -2,13 +2,14 @@
 
 #include "kernels/device/memory.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "perf/ladders/make_rung.hpp"
 #include "perf/ladders/springs/problem.hpp"
 
 namespace drogue::perf::ladder {
 
 /// Base of the last rungs: the solver of `kernels/fabric/`, with one driver.
 template <class ExecutionSpace>
-class FabricRung : public RungRun {
+class FabricRung final : public RungRun {
  public:
   FabricRung(const SpringProblem& problem, fabric::Driver driver) : _problem(problem) {
     fabric::Parameters p = problem.renumbered.parameters;

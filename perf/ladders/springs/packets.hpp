@@ -9,23 +9,15 @@ namespace drogue::perf::ladder {
 ///
 /// Prediction: one launch for all steps, no memory traffic to speak of; arithmetic remains.
 template <class ExecutionSpace>
-class PacketsRung final : public FabricRung<ExecutionSpace> {
- public:
-  static constexpr RungText text{
-      "packets", "One launch for all steps; patches exchange tagged messages.",
-      "Left over is the latency of messages between patches, which the model omits "
-      "(docs/springs-notebook.md). On an H100 8.38 us where the model has 1.44 us "
-      "(docs/lessons/tables.md)."};
-  static constexpr bool available = !device::is_host<ExecutionSpace>;
-
-  static Work work(const SpringProblem& problem) {
-    Work work = ring_work(problem, 0.25 / static_cast<double>(problem.steps));
-    work.bytes = 0.0;
-    return work;
-  }
-
-  explicit PacketsRung(const SpringProblem& problem)
-      : FabricRung<ExecutionSpace>(problem, fabric::Driver::persistent) {}
-};
+Rung packets_rung(const Shared<SpringProblem>& problem) {
+  Work work = ring_work(*problem, 0.25 / static_cast<double>(problem->steps));
+  work.bytes = 0.0;
+  return on_gpu<ExecutionSpace>(make_rung<FabricRung<ExecutionSpace>>(
+      RungText{"packets", "One launch for all steps; patches exchange tagged messages.",
+               "Left over is the latency of messages between patches, which the model omits "
+               "(docs/springs-notebook.md). On an H100 8.38 us where the model has 1.44 us "
+               "(docs/lessons/tables.md)."},
+      work, problem, fabric::Driver::persistent));
+}
 
 }  // namespace drogue::perf::ladder

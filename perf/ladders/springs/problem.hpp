@@ -24,12 +24,12 @@ struct Numbering {
   [[nodiscard]] std::size_t vertices() const { return triangles.size(); }
 };
 
-/// Largest error of a rung: rounding of positions, over displacements of a thousandth of them.
-inline constexpr double spring_tolerance = 1e-10;
-
 /// Problem of the spring ladder: Runge-Kutta steps of a stretched sheet of biquadratic springs. Mesh
 /// generators often number vertices without regard to neighbourhood, as here a random permutation does.
 struct SpringProblem {
+  /// Largest error of a rung: rounding of positions, over displacements of a thousandth of them.
+  static constexpr double tolerance = 1e-10;
+
   Numbering scattered, renumbered;
   long steps;
   double dt;                 ///< s

@@ -17,25 +17,20 @@ struct RecomputedSprings {
 };
 
 template <class ExecutionSpace, class Tension>
-using RecomputedSheet = SheetOfArrays<ExecutionSpace, RecomputedSprings<Tension>>;
+using RecomputedRung = SpringRung<ExecutionSpace, SheetOfArrays<ExecutionSpace, RecomputedSprings<Tension>>>;
 
 /// Rung 3. Arithmetic is cheaper than memory: four stored numbers per triangle instead of eight.
 ///
 /// Prediction: two thirds of the bytes, two fifths more operations.
 template <class ExecutionSpace, class Tension = RecomputedTension>
-class RecomputedRung final : public SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, Tension>> {
- public:
-  static constexpr RungText text{
-      "recomputed", "Stiffnesses are recomputed from lengths and area at rest.",
-      "The model weighs bytes against operations, but neither is the bound: the time is that of "
-      "waiting for loads, of which there are fewer. On a host 1.05 to 1.07 times as fast, 1.39 "
-      "predicted. At a million vertices on a GPU bytes are the bound, and fewer stored numbers "
-      "decide (docs/springs-notebook.md)."};
-
-  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 4, recomputed_operations); }
-
-  explicit RecomputedRung(const SpringProblem& problem)
-      : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, Tension>>(problem, problem.scattered) {}
-};
+Rung recomputed_rung(const Shared<SpringProblem>& problem) {
+  return make_rung<RecomputedRung<ExecutionSpace, Tension>>(
+      RungText{"recomputed", "Stiffnesses are recomputed from lengths and area at rest.",
+               "The model weighs bytes against operations, but neither is the bound: the time is that of "
+               "waiting for loads, of which there are fewer. On a host 1.05 to 1.07 times as fast, 1.39 "
+               "predicted. At a million vertices on a GPU bytes are the bound, and fewer stored numbers "
+               "decide (docs/springs-notebook.md)."},
+      spring_work(*problem, 1, 4, recomputed_operations), problem, &SpringProblem::scattered);
+}
 
 }  // namespace drogue::perf::ladder

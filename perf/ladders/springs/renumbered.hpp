@@ -9,19 +9,12 @@ namespace drogue::perf::ladder {
 ///
 /// Prediction: none, since the model takes loads of neighbours for free.
 template <class ExecutionSpace>
-class RenumberedRung final
-    : public SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, RecomputedTension>> {
- public:
-  static constexpr RungText text{
-      "renumbered", "Neighbours lie beside one another in memory.",
-      "A gain that the model does not predict, on a host 1.24 to 1.29 times as fast: neighbours "
-      "share lines of memory, so that fewer loads wait. The larger the mesh, the more it is."};
-
-  static Work work(const SpringProblem& problem) { return RecomputedRung<ExecutionSpace>::work(problem); }
-
-  explicit RenumberedRung(const SpringProblem& problem)
-      : SpringRung<ExecutionSpace, RecomputedSheet<ExecutionSpace, RecomputedTension>>(problem,
-                                                                                       problem.renumbered) {}
-};
+Rung renumbered_rung(const Shared<SpringProblem>& problem) {
+  return make_rung<RecomputedRung<ExecutionSpace, RecomputedTension>>(
+      RungText{"renumbered", "Neighbours lie beside one another in memory.",
+               "A gain that the model does not predict, on a host 1.24 to 1.29 times as fast: neighbours "
+               "share lines of memory, so that fewer loads wait. The larger the mesh, the more it is."},
+      recomputed_rung<ExecutionSpace>(problem).work, problem, &SpringProblem::renumbered);
+}
 
 }  // namespace drogue::perf::ladder

@@ -6,6 +6,7 @@
 #include "kernels/device/copy.hpp"
 #include "kernels/device/instance.hpp"
 #include "kernels/device/launch.hpp"
+#include "perf/ladders/make_rung.hpp"
 #include "perf/ladders/springs/problem.hpp"
 #include "perf/ladders/springs/tension.hpp"
 
@@ -66,13 +67,13 @@ struct SpringStageFunctor {
 /// Base of the rungs with kernels of their own. `Sheet` is made from a numbering of the problem and offers
 /// the functions above, `upload(space, state)` and `positions(space)`.
 template <class ExecutionSpace, class Sheet>
-class SpringRung : public RungRun {
+class SpringRung final : public RungRun {
  public:
-  SpringRung(const SpringProblem& problem, const Numbering& numbering)
+  SpringRung(const SpringProblem& problem, Numbering SpringProblem::*numbering)
       : _problem(problem),
-        _numbering(numbering),
+        _numbering(problem.*numbering),
         _instance(std::numeric_limits<int>::max()),
-        _sheet(problem, numbering, _instance.space()) {}
+        _sheet(problem, _numbering, _instance.space()) {}
 
   void reset() override {
     _sheet.upload(_instance.space(), _numbering.start);

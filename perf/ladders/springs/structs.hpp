@@ -93,18 +93,13 @@ class SheetOfStructs {
 /// Prediction: 8 stored numbers and two indices per triangle around each vertex. The model counts bytes that
 /// are used; the lines of memory in which they lie hold as many that are not.
 template <class ExecutionSpace>
-class StructsRung final : public SpringRung<ExecutionSpace, SheetOfStructs<ExecutionSpace>> {
- public:
-  static constexpr RungText text{
-      "structs", "An array of structures with stored neighbours and stiffnesses.",
-      "On a host 2.17 to 2.43 times the prediction: a core waits for each load of a scattered "
-      "neighbour, which the model takes for free. On an H100 64.0 us where the model has 45.2 "
-      "us: threads fetch lines of memory of which they use a part (docs/lessons/tables.md)."};
-
-  static Work work(const SpringProblem& problem) { return spring_work(problem, 1, 8, stored_operations); }
-
-  explicit StructsRung(const SpringProblem& problem)
-      : SpringRung<ExecutionSpace, SheetOfStructs<ExecutionSpace>>(problem, problem.scattered) {}
-};
+Rung structs_rung(const Shared<SpringProblem>& problem) {
+  return make_rung<SpringRung<ExecutionSpace, SheetOfStructs<ExecutionSpace>>>(
+      RungText{"structs", "An array of structures with stored neighbours and stiffnesses.",
+               "On a host 2.17 to 2.43 times the prediction: a core waits for each load of a scattered "
+               "neighbour, which the model takes for free. On an H100 64.0 us where the model has 45.2 "
+               "us: threads fetch lines of memory of which they use a part (docs/lessons/tables.md)."},
+      spring_work(*problem, 1, 8, stored_operations), problem, &SpringProblem::scattered);
+}
 
 }  // namespace drogue::perf::ladder

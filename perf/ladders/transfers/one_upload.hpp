@@ -1,6 +1,6 @@
 #pragma once
 
-#include "perf/ladders/transfers/pinned.hpp"
+#include "perf/ladders/transfers/transfer_rung.hpp"
 
 namespace drogue::perf::ladder {
 
@@ -14,26 +14,11 @@ struct OneUpload {
   }
 };
 
-/// Rung 5. The device owns the values: one copy up before the first step, one down after the last.
-///
-/// Prediction: a launch and the kernel per step, and the copies of the second rung divided by the steps.
-template <class ExecutionSpace, class Uploads = OneUpload>
-class OneUploadRung final : public PinnedRung<ExecutionSpace> {
+/// Runs that copy as `Uploads` says.
+template <class ExecutionSpace, class Uploads>
+class OneUploadRung final : public TransferRung<ExecutionSpace> {
  public:
-  static constexpr RungText text{
-      "one-upload", "The device owns the values between the first step and the last.",
-      "The largest gain of the ladder comes from work that is left out, not from work that is "
-      "done faster; on a host as on a GPU. On an H100 the prediction holds: 143 us, where the "
-      "model has 147 us (docs/lessons/tables.md)."};
-
-  static Work work(const TransferProblem& problem) {
-    const auto steps = static_cast<double>(problem.steps);
-    Work work = transfer_work(problem, 1, 2 / steps, 2 / steps);
-    work.pinned = true;
-    return work;
-  }
-
-  using PinnedRung<ExecutionSpace>::PinnedRung;
+  using TransferRung<ExecutionSpace>::TransferRung;
 
   void run() override {
     const ExecutionSpace& space = this->_instance.space();
@@ -48,5 +33,21 @@ class OneUploadRung final : public PinnedRung<ExecutionSpace> {
     space.fence("drogue::perf::ladder: values are on the host");
   }
 };
+
+/// Rung 5. The device owns the values: one copy up before the first step, one down after the last.
+///
+/// Prediction: a launch and the kernel per step, and the copies of the second rung divided by the steps.
+template <class ExecutionSpace, class Uploads = OneUpload>
+Rung one_upload_rung(const Shared<TransferProblem>& problem) {
+  const auto steps = static_cast<double>(problem->steps);
+  Work work = transfer_work(*problem, 1, 2 / steps, 2 / steps);
+  work.pinned = true;
+  return make_rung<OneUploadRung<ExecutionSpace, Uploads>>(
+      RungText{"one-upload", "The device owns the values between the first step and the last.",
+               "The largest gain of the ladder comes from work that is left out, not from work that is "
+               "done faster; on a host as on a GPU. On an H100 the prediction holds: 143 us, where the "
+               "model has 147 us (docs/lessons/tables.md)."},
+      work, problem);
+}
 
 }  // namespace drogue::perf::ladder

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "perf/ladders/transfers/pinned.hpp"
+#include "perf/ladders/transfers/transfer_rung.hpp"
 
 namespace drogue::perf::ladder {
 
@@ -17,33 +17,17 @@ struct Chunks {
   }
 };
 
-/// Rung 3. Chunks on two streams in turn: while one is computed, another is copied, in both directions at
-/// once.
-///
-/// Prediction: the longer one of copies and kernels. The copies of a step still move all values twice.
-template <class ExecutionSpace, int chunks = 8, class Division = Chunks>
-class OverlappedRung : public PinnedRung<ExecutionSpace> {
+/// Runs by chunks on two streams in turn.
+template <class ExecutionSpace, class Division = Chunks>
+class OverlappedRung final : public TransferRung<ExecutionSpace> {
  public:
-  static constexpr RungText text{
-      "overlapped", "Eight chunks on two streams: copies beside kernels.",
-      "On a host nothing overlaps: a chunk is copied, computed and copied back by the same "
-      "core. On one core it gains by caches, which hold a chunk but not all values: 1.25 times "
-      "as fast; on two threads nothing changes. On an H100 809 us, after 1207 us, where the "
-      "model has 1301 us and no gain: it adds copies up to copies down, which run at once "
-      "(docs/lessons/tables.md)."};
-
-  static Work work(const TransferProblem& problem) {
-    Work work = transfer_work(problem, chunks, 2 * chunks, 2);
-    work.pinned = work.overlapped = true;
-    return work;
-  }
-
-  using PinnedRung<ExecutionSpace>::PinnedRung;
+  OverlappedRung(const TransferProblem& problem, std::size_t chunks)
+      : TransferRung<ExecutionSpace>(problem), _chunks(chunks) {}
 
  protected:
   void step() override {
     const ExecutionSpace* const streams[] = {&this->_instance.space(), &_second.space()};
-    Division::for_each(this->_host.size(), chunks,
+    Division::for_each(this->_host.size(), _chunks,
                        [&](std::size_t chunk, std::size_t first, std::size_t count) {
                          this->enqueue(*streams[chunk % 2], first, count);
                        });
@@ -52,7 +36,32 @@ class OverlappedRung : public PinnedRung<ExecutionSpace> {
   }
 
  private:
+  std::size_t _chunks;
   device::Instance<ExecutionSpace> _second{std::numeric_limits<int>::max()};
 };
+
+/// Work per step in so many chunks. Does not throw.
+inline Work overlapped_work(const TransferProblem& problem, int chunks) {
+  Work work = transfer_work(problem, chunks, 2 * chunks, 2);
+  work.pinned = work.overlapped = true;
+  return work;
+}
+
+/// Rung 3. Chunks on two streams in turn: while one is computed, another is copied, in both directions at
+/// once.
+///
+/// Prediction: the longer one of copies and kernels. The copies of a step still move all values twice.
+template <class ExecutionSpace, class Division = Chunks>
+Rung overlapped_rung(const Shared<TransferProblem>& problem) {
+  constexpr int chunks = 8;
+  return make_rung<OverlappedRung<ExecutionSpace, Division>>(
+      RungText{"overlapped", "Eight chunks on two streams: copies beside kernels.",
+               "On a host nothing overlaps: a chunk is copied, computed and copied back by the same "
+               "core. On one core it gains by caches, which hold a chunk but not all values: 1.25 times "
+               "as fast; on two threads nothing changes. On an H100 809 us, after 1207 us, where the "
+               "model has 1301 us and no gain: it adds copies up to copies down, which run at once "
+               "(docs/lessons/tables.md)."},
+      overlapped_work(*problem, chunks), problem, chunks);
+}
 
 }  // namespace drogue::perf::ladder

@@ -9,18 +9,14 @@ namespace drogue::perf::ladder {
 ///
 /// Prediction: two copies of all values at the bandwidth of ordinary memory, then the kernel.
 template <class ExecutionSpace>
-class PageableRung final : public TransferRung<ExecutionSpace> {
- public:
-  static constexpr RungText text{
-      "pageable", "Values on the host in ordinary memory: up, compute, down, at every step.",
-      "On a host the copies are memcpy, and all takes 0.89 to 0.91 times the prediction, since "
-      "the last cache holds the values. On a GPU pageable memory costs 46 % of the time of the "
-      "WENO port at 8192 cells (docs/transfers.md). On an H100 this rung takes 6229 us where "
-      "the model has 4611 us (docs/lessons/tables.md)."};
-
-  static Work work(const TransferProblem& problem) { return transfer_work(problem, 1, 2, 2); }
-
-  explicit PageableRung(const TransferProblem& problem) : TransferRung<ExecutionSpace>(problem) {}
-};
+Rung pageable_rung(const Shared<TransferProblem>& problem) {
+  return make_rung<TransferRung<ExecutionSpace>>(
+      RungText{"pageable", "Values on the host in ordinary memory: up, compute, down, at every step.",
+               "On a host the copies are memcpy, and all takes 0.89 to 0.91 times the prediction, since "
+               "the last cache holds the values. On a GPU pageable memory costs 46 % of the time of the "
+               "WENO port at 8192 cells (docs/transfers.md). On an H100 this rung takes 6229 us where "
+               "the model has 4611 us (docs/lessons/tables.md)."},
+      transfer_work(*problem, 1, 2, 2), problem, ValueMemory::pageable);
+}
 
 }  // namespace drogue::perf::ladder

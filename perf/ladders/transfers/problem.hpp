@@ -6,11 +6,11 @@
 
 namespace drogue::perf::ladder {
 
-/// Largest error of a rung. The step is a contraction: rounding errors do not add up.
-inline constexpr double transfer_tolerance = 1e-14;
-
 /// Problem of the transfer ladder: steps x <- 1 / (1 + x) of many values that the host owns.
 struct TransferProblem {
+  /// Largest error of a rung. The step is a contraction: rounding errors do not add up.
+  static constexpr double tolerance = 1e-14;
+
   std::vector<double> start;     ///< in [0, 1]
   std::vector<double> expected;  ///< after the steps, in closed form by Fibonacci numbers
   long steps;

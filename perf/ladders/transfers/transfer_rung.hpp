@@ -9,6 +9,7 @@
 #include "kernels/device/instance.hpp"
 #include "kernels/device/launch.hpp"
 #include "kernels/device/pinned_memory.hpp"
+#include "perf/ladders/make_rung.hpp"
 #include "perf/ladders/transfers/problem.hpp"
 
 namespace drogue::perf::ladder {
@@ -21,14 +22,19 @@ struct FractionFunctor {
   KOKKOS_FUNCTION void operator()(int i) const { x(i) = 1.0 / (1.0 + x(i)); }
 };
 
-/// Base of the rungs: values on the host, in memory of a given resource, and room for them on the device.
+/// Where the host keeps its values.
+enum class ValueMemory { pageable, pinned };
+
+/// Run with values on the host, in one kind of memory, and room for them on the device. It copies all of them
+/// to the device and back at every step; derived rungs do so otherwise.
 template <class ExecutionSpace>
 class TransferRung : public RungRun {
  public:
-  explicit TransferRung(const TransferProblem& problem, std::pmr::memory_resource* memory = nullptr)
+  explicit TransferRung(const TransferProblem& problem, ValueMemory memory = ValueMemory::pinned)
       : _problem(problem),
         _instance(std::numeric_limits<int>::max()),
-        _host(problem.start.size(), memory != nullptr ? memory : std::pmr::new_delete_resource()),
+        _host(problem.start.size(),
+              memory == ValueMemory::pinned ? &_pinned : std::pmr::new_delete_resource()),
         _device("drogue::perf::ladder::values", problem.start.size()) {}
 
   void reset() override { std::copy(_problem.start.begin(), _problem.start.end(), _host.begin()); }
@@ -62,6 +68,7 @@ class TransferRung : public RungRun {
 
   const TransferProblem& _problem;
   device::Instance<ExecutionSpace> _instance;
+  device::PinnedMemory<ExecutionSpace> _pinned;  ///< outlives the values
   std::pmr::vector<double> _host;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> _device;
 };

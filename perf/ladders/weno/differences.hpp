@@ -3,7 +3,6 @@
 #include "kernels/gas/flux/characteristic.hpp"
 #include "perf/ladders/weno/direct_flux.hpp"
 #include "perf/ladders/weno/stage_kernel.hpp"
-#include "perf/ladders/weno/weno_rung.hpp"
 
 namespace drogue::perf::ladder {
 
@@ -105,19 +104,12 @@ using DifferenceFlux = DifferenceFluxWith<JiangShuCorrection>;
 ///
 /// Prediction: 26 % fewer operations per face, three divisions more.
 template <class ExecutionSpace, class Flux = DifferenceFlux>
-class DifferencesRung final : public WenoRung<ExecutionSpace> {
- public:
-  static constexpr RungText text{
-      "differences", "The flux from differences of neighbours: fewer operations.",
-      "On a host 1.14 times as fast, 1.12 to 1.14 predicted: counting operations predicts the "
-      "ratio of two similar kernels better than the time of either."};
-
-  static Work work(const WenoProblem& problem) { return stage_work(problem, 1, 9, Flux::arithmetic); }
-
-  using WenoRung<ExecutionSpace>::WenoRung;
-
- protected:
-  void step() override { launch_stages<Flux>(*this, "drogue::perf::ladder::differences"); }
-};
+Rung differences_rung(const Shared<WenoProblem>& problem) {
+  return make_rung<StageRung<ExecutionSpace, Flux>>(
+      RungText{"differences", "The flux from differences of neighbours: fewer operations.",
+               "On a host 1.14 times as fast, 1.12 to 1.14 predicted: counting operations predicts the "
+               "ratio of two similar kernels better than the time of either."},
+      stage_work(*problem, 1, 9, Flux::arithmetic), problem, "drogue::perf::ladder::differences");
+}
 
 }  // namespace drogue::perf::ladder

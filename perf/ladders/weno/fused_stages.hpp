@@ -2,7 +2,6 @@
 
 #include "perf/ladders/weno/direct_flux.hpp"
 #include "perf/ladders/weno/stage_kernel.hpp"
-#include "perf/ladders/weno/weno_rung.hpp"
 
 namespace drogue::perf::ladder {
 
@@ -12,19 +11,12 @@ namespace drogue::perf::ladder {
 /// Prediction: three launches per step instead of six, and 9 numbers per cell and stage instead of 18: state
 /// and U^n in, state out. One face in 128 is computed twice.
 template <class ExecutionSpace>
-class FusedStagesRung final : public WenoRung<ExecutionSpace> {
- public:
-  static constexpr RungText text{
-      "fused-stages", "Fluxes stay in scratch memory: one kernel per stage.",
-      "On a host less traffic gains little, as predicted, where arithmetic is the bound. On a "
-      "GPU half of the launches go, which decides below 100 000 cells."};
-
-  static Work work(const WenoProblem& problem) { return stage_work(problem, 1, 9, DirectFlux::arithmetic); }
-
-  using WenoRung<ExecutionSpace>::WenoRung;
-
- protected:
-  void step() override { launch_stages<DirectFlux>(*this, "drogue::perf::ladder::fused_stages"); }
-};
+Rung fused_stages_rung(const Shared<WenoProblem>& problem) {
+  return make_rung<StageRung<ExecutionSpace, DirectFlux>>(
+      RungText{"fused-stages", "Fluxes stay in scratch memory: one kernel per stage.",
+               "On a host less traffic gains little, as predicted, where arithmetic is the bound. On a "
+               "GPU half of the launches go, which decides below 100 000 cells."},
+      stage_work(*problem, 1, 9, DirectFlux::arithmetic), problem, "drogue::perf::ladder::fused_stages");
+}
 
 }  // namespace drogue::perf::ladder

@@ -11,18 +11,13 @@ namespace drogue::perf::ladder {
 /// Prediction: memory traffic falls from 27 to 6 numbers per cell and step, three launches become two (a
 /// step, and the kernel that accepts it), for 5 % more faces.
 template <class ExecutionSpace>
-class FusedStepRung final : public LibraryRung<ExecutionSpace> {
- public:
-  static constexpr RungText text{
-      "fused-step", "All stages of a step in one kernel; ghosts are recomputed.",
-      "On a host 1.05 to 1.18 times as fast although it does more than the rungs before (it "
-      "tests every state and reduces wave speeds): it computes roots and divisions of many "
-      "faces first, so that they overlap, and differences once for all faces that share them."};
-
-  static Work work(const WenoProblem& problem) { return library_work(problem, 2); }
-
-  explicit FusedStepRung(const WenoProblem& problem)
-      : LibraryRung<ExecutionSpace>(problem, gas::Driver::plain) {}
-};
+Rung fused_step_rung(const Shared<WenoProblem>& problem) {
+  return make_rung<LibraryRung<ExecutionSpace>>(
+      RungText{"fused-step", "All stages of a step in one kernel; ghosts are recomputed.",
+               "On a host 1.05 to 1.18 times as fast although it does more than the rungs before (it "
+               "tests every state and reduces wave speeds): it computes roots and divisions of many "
+               "faces first, so that they overlap, and differences once for all faces that share them."},
+      library_work(*problem, 2), problem, gas::Driver::plain);
+}
 
 }  // namespace drogue::perf::ladder

@@ -1,13 +1,14 @@
 #pragma once
 
 #include "kernels/device/memory.hpp"
+#include "perf/ladders/make_rung.hpp"
 #include "perf/ladders/weno/problem.hpp"
 
 namespace drogue::perf::ladder {
 
 /// Base of the last rungs: the solver of `kernels/gas/`, with one driver and precision.
 template <class ExecutionSpace>
-class LibraryRung : public RungRun {
+class LibraryRung final : public RungRun {
  public:
   LibraryRung(const WenoProblem& problem, gas::Driver driver, gas::Precision precision = gas::Precision::full)
       : _problem(problem) {

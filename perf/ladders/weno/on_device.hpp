@@ -2,7 +2,7 @@
 
 #include "kernels/device/launch.hpp"
 #include "kernels/gas/stepping/stage_table.hpp"
-#include "perf/ladders/weno/flux_kernel.hpp"
+#include "perf/ladders/weno/direct_flux.hpp"
 #include "perf/ladders/weno/weno_rung.hpp"
 
 namespace drogue::perf::ladder {
@@ -19,22 +19,12 @@ struct UpdateFunctor {
   }
 };
 
-/// Rung 2. The state stays on the device; a second small kernel updates it.
-///
-/// Prediction: no copies, six launches per step. Per stage the flux kernel reads the state and writes the
-/// fluxes, the update reads both and U^n and writes the state: 18 numbers per cell.
+/// Runs with a kernel for the fluxes and one for the update.
 template <class ExecutionSpace>
 class OnDeviceRung final : public WenoRung<ExecutionSpace> {
   using Base = WenoRung<ExecutionSpace>;
 
  public:
-  static constexpr RungText text{
-      "on-device", "The state stays on the device; a second kernel updates it.",
-      "On a host 1.06 to 1.18 times as fast: there were no real copies to save, and the caches "
-      "hold the fluxes that the model fetches from memory. The rung pays off on a GPU."};
-
-  static Work work(const WenoProblem& problem) { return stage_work(problem, 2, 18, DirectFlux::arithmetic); }
-
   explicit OnDeviceRung(const WenoProblem& problem)
       : Base(problem), _flux("drogue::perf::ladder::flux", this->size() + 1) {}
 
@@ -61,5 +51,18 @@ class OnDeviceRung final : public WenoRung<ExecutionSpace> {
  private:
   Fields<ExecutionSpace> _flux;  ///< (cells + 1, 3)
 };
+
+/// Rung 2. The state stays on the device; a second small kernel updates it.
+///
+/// Prediction: no copies, six launches per step. Per stage the flux kernel reads the state and writes the
+/// fluxes, the update reads both and U^n and writes the state: 18 numbers per cell.
+template <class ExecutionSpace>
+Rung on_device_rung(const Shared<WenoProblem>& problem) {
+  return make_rung<OnDeviceRung<ExecutionSpace>>(
+      RungText{"on-device", "The state stays on the device; a second kernel updates it.",
+               "On a host 1.06 to 1.18 times as fast: there were no real copies to save, and the caches "
+               "hold the fluxes that the model fetches from memory. The rung pays off on a GPU."},
+      stage_work(*problem, 2, 18, DirectFlux::arithmetic), problem);
+}
 
 }  // namespace drogue::perf::ladder

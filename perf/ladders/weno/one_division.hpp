@@ -46,24 +46,15 @@ struct OneDivisionFlux {
 ///
 /// Prediction: 7 divisions of 32 per face are left.
 template <class ExecutionSpace>
-class OneDivisionRung final : public WenoRung<ExecutionSpace> {
- public:
-  static constexpr RungText text{
-      "one-division", "Weights over a common denominator: one division of five.",
-      "On a host 1.20 to 1.21 times as fast, 1.56 to 1.62 predicted: the processor overlaps a "
-      "division with other work, so that one that goes saves less than its own time. On an H100 "
-      "2.13 times as fast, 1.02 predicted, since the model has launches as the bound there: "
-      "14.2 us, after 30.2 us. A thread waits for its divisions one after the other "
-      "(docs/lessons/tables.md)."};
-
-  static Work work(const WenoProblem& problem) {
-    return stage_work(problem, 1, 9, OneDivisionFlux::arithmetic);
-  }
-
-  using WenoRung<ExecutionSpace>::WenoRung;
-
- protected:
-  void step() override { launch_stages<OneDivisionFlux>(*this, "drogue::perf::ladder::one_division"); }
-};
+Rung one_division_rung(const Shared<WenoProblem>& problem) {
+  return make_rung<StageRung<ExecutionSpace, OneDivisionFlux>>(
+      RungText{"one-division", "Weights over a common denominator: one division of five.",
+               "On a host 1.20 to 1.21 times as fast, 1.56 to 1.62 predicted: the processor overlaps a "
+               "division with other work, so that one that goes saves less than its own time. On an H100 "
+               "2.13 times as fast, 1.02 predicted, since the model has launches as the bound there: "
+               "14.2 us, after 30.2 us. A thread waits for its divisions one after the other "
+               "(docs/lessons/tables.md)."},
+      stage_work(*problem, 1, 9, OneDivisionFlux::arithmetic), problem, "drogue::perf::ladder::one_division");
+}
 
 }  // namespace drogue::perf::ladder

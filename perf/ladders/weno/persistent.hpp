@@ -9,21 +9,13 @@ namespace drogue::perf::ladder {
 ///
 /// Prediction: one launch for all steps, and no memory traffic to speak of; arithmetic remains.
 template <class ExecutionSpace>
-class PersistentRung final : public LibraryRung<ExecutionSpace> {
- public:
-  static constexpr RungText text{
-      "persistent", "One launch for all steps; the state stays in shared memory.",
-      "The model omits waiting: on an H200 two of five microseconds per step pass until the "
-      "fastest signal of all teams has arrived (docs/gas-notebook.md). On an H100 at 8192 cells "
-      "a step takes 5.25 us where the model has 0.612 us (docs/lessons/tables.md)."};
-  static constexpr bool available = !device::is_host<ExecutionSpace>;
-
-  static Work work(const WenoProblem& problem) {
-    return library_work(problem, 1.0 / static_cast<double>(problem.steps));
-  }
-
-  explicit PersistentRung(const WenoProblem& problem)
-      : LibraryRung<ExecutionSpace>(problem, gas::Driver::persistent) {}
-};
+Rung persistent_rung(const Shared<WenoProblem>& problem) {
+  return on_gpu<ExecutionSpace>(make_rung<LibraryRung<ExecutionSpace>>(
+      RungText{"persistent", "One launch for all steps; the state stays in shared memory.",
+               "The model omits waiting: on an H200 two of five microseconds per step pass until the "
+               "fastest signal of all teams has arrived (docs/gas-notebook.md). On an H100 at 8192 cells "
+               "a step takes 5.25 us where the model has 0.612 us (docs/lessons/tables.md)."},
+      library_work(*problem, 1.0 / static_cast<double>(problem->steps)), problem, gas::Driver::persistent));
+}
 
 }  // namespace drogue::perf::ladder

@@ -1,34 +1,16 @@
 #pragma once
 
-#include "perf/ladders/weno/flux_kernel.hpp"
+#include "perf/ladders/weno/direct_flux.hpp"
 #include "perf/ladders/weno/weno_rung.hpp"
 
 namespace drogue::perf::ladder {
 
-/// Rung 1. The port of a CPU code that [Shi], section 4.4.2, describes: only the costly loop runs on the
-/// device. Each stage copies the state up, computes the fluxes from tiles in scratch memory, copies them
-/// down, and the host updates the cells.
-///
-/// Prediction: per step three launches, six copies of three numbers per cell, and the arithmetic of three
-/// stages. The update on the host, a few operations per cell, is taken for free.
+/// Runs whose state is on the host.
 template <class ExecutionSpace>
 class PortRung final : public WenoRung<ExecutionSpace> {
   using Base = WenoRung<ExecutionSpace>;
 
  public:
-  static constexpr RungText text{
-      "port", "Only the costly loop runs on the device: state up, fluxes down, at every stage.",
-      "On a host the copies are memcpy and cost next to nothing, and all takes 1.11 to 1.20 "
-      "times the prediction: the long sums of the direct form hide most waiting. On a GPU the "
-      "copies are most of the time (docs/gas-notebook.md, transfers)."};
-
-  static Work work(const WenoProblem& problem) {
-    Work work = stage_work(problem, 1, 6, DirectFlux::arithmetic);
-    work.copies = 6;
-    work.copied_bytes = 3 * 48.0 * static_cast<double>(problem.cells());
-    return work;
-  }
-
   explicit PortRung(const WenoProblem& problem)
       : Base(problem),
         _device_flux("drogue::perf::ladder::flux", this->size() + 1),
@@ -75,5 +57,24 @@ class PortRung final : public WenoRung<ExecutionSpace> {
   Fields<ExecutionSpace> _device_flux;
   std::vector<double> _state, _flux;  ///< on the host: three rows each
 };
+
+/// Rung 1. The port of a CPU code that [Shi], section 4.4.2, describes: only the costly loop runs on the
+/// device. Each stage copies the state up, computes the fluxes from tiles in scratch memory, copies them
+/// down, and the host updates the cells.
+///
+/// Prediction: per step three launches, six copies of three numbers per cell, and the arithmetic of three
+/// stages. The update on the host, a few operations per cell, is taken for free.
+template <class ExecutionSpace>
+Rung port_rung(const Shared<WenoProblem>& problem) {
+  Work work = stage_work(*problem, 1, 6, DirectFlux::arithmetic);
+  work.copies = 6;
+  work.copied_bytes = 3 * 48.0 * static_cast<double>(problem->cells());
+  return make_rung<PortRung<ExecutionSpace>>(
+      RungText{"port", "Only the costly loop runs on the device: state up, fluxes down, at every stage.",
+               "On a host the copies are memcpy and cost next to nothing, and all takes 1.11 to 1.20 "
+               "times the prediction: the long sums of the direct form hide most waiting. On a GPU the "
+               "copies are most of the time (docs/gas-notebook.md, transfers)."},
+      work, problem);
+}
 
 }  // namespace drogue::perf::ladder

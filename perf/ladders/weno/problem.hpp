@@ -6,11 +6,11 @@
 
 namespace drogue::perf::ladder {
 
-/// Largest error of a rung: rounding of some thousand operations per value.
-inline constexpr double weno_tolerance = 1e-12;
-
 /// Problem of the WENO ladder: steps of one size of Sod's shock tube by WENO5-JS and SSP-RK3.
 struct WenoProblem {
+  /// Largest error of a rung: rounding of some thousand operations per value.
+  static constexpr double tolerance = 1e-12;
+
   gas::Parameters parameters;  ///< with `fixed_dt`, without a limiter
   long steps;
   sod::Fields start;     ///< initial state, SI units

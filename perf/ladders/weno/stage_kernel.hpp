@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/gas/stepping/stage_table.hpp"
-#include "perf/ladders/weno/tile.hpp"
+#include "perf/ladders/weno/weno_rung.hpp"
 
 namespace drogue::perf::ladder {
 
@@ -37,23 +37,35 @@ struct StageFunctor {
   }
 };
 
-/// Enqueues the three stages of SSP-RK3 between the buffers of a rung. Asynchronous.
-template <class Flux, class R = double, class Bounds = Kokkos::LaunchBounds<>, class Rung>
-void launch_stages(Rung& rung, const char* label) {
-  using Space = typename Rung::Space;
-  constexpr gas::StageTable table = gas::stage_table(gas::TimeScheme::ssprk3);
-  const auto buffer = [&](int role) { return rung.buffer(role); };
-  for (int s = 0; s < table.stages; ++s) {
-    const gas::StageWeights& w = table.stage[s];
-    launch_tiles<Bounds>(rung.space(), label, rung.problem().cells(),
-                         StageFunctor<Space, Flux, R>{.start = buffer(0),
-                                                      .in = buffer(w.in),
-                                                      .out = buffer(w.out),
-                                                      .gamma = rung.problem().gamma(),
-                                                      .dt_over_dx = rung.problem().dt_over_dx(),
-                                                      .share = w.share});
+/// Numbers that a thread computes at once: packs of cells on a host.
+template <class ExecutionSpace>
+using Packed = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+
+/// Rungs with a kernel per stage of SSP-RK3. `Bounds`: launch bounds.
+template <class ExecutionSpace, class Flux, class R = double, class Bounds = Kokkos::LaunchBounds<>>
+class StageRung final : public WenoRung<ExecutionSpace> {
+ public:
+  StageRung(const WenoProblem& problem, const char* label)
+      : WenoRung<ExecutionSpace>(problem), _label(label) {}
+
+ protected:
+  void step() override {
+    constexpr gas::StageTable table = gas::stage_table(gas::TimeScheme::ssprk3);
+    for (int s = 0; s < table.stages; ++s) {
+      const gas::StageWeights& w = table.stage[s];
+      launch_tiles<Bounds>(this->space(), _label, this->problem().cells(),
+                           StageFunctor<ExecutionSpace, Flux, R>{.start = this->buffer(0),
+                                                                 .in = this->buffer(w.in),
+                                                                 .out = this->buffer(w.out),
+                                                                 .gamma = this->problem().gamma(),
+                                                                 .dt_over_dx = this->problem().dt_over_dx(),
+                                                                 .share = w.share});
+    }
+    this->advance_buffers(table.stage[table.stages - 1].out);
   }
-  rung.advance_buffers(table.stage[table.stages - 1].out);
-}
+
+ private:
+  const char* _label;
+};
 
 }  // namespace drogue::perf::ladder

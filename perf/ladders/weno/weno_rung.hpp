@@ -4,6 +4,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/device/instance.hpp"
+#include "perf/ladders/make_rung.hpp"
 #include "perf/ladders/weno/problem.hpp"
 #include "perf/ladders/weno/tile.hpp"
 
@@ -14,7 +15,6 @@ namespace drogue::perf::ladder {
 template <class ExecutionSpace>
 class WenoRung : public RungRun {
  public:
-  using Space = ExecutionSpace;
   using State = Fields<ExecutionSpace>;
 
   explicit WenoRung(const WenoProblem& problem)
@@ -42,6 +42,10 @@ class WenoRung : public RungRun {
     return difference(_problem, got);
   }
 
+ protected:
+  /// Enqueues or does one step.
+  virtual void step() = 0;
+
   [[nodiscard]] const ExecutionSpace& space() const { return _instance.space(); }
   [[nodiscard]] const WenoProblem& problem() const { return _problem; }
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(_problem.cells()); }
@@ -51,10 +55,6 @@ class WenoRung : public RungRun {
 
   /// Makes the buffer of a role that of U^n.
   void advance_buffers(int role) { _current = (_current + role) % 3; }
-
- protected:
-  /// Enqueues or does one step.
-  virtual void step() = 0;
 
  private:
   [[nodiscard]] auto row(std::size_t k) const { return Kokkos::subview(buffer(0), Kokkos::ALL, k); }

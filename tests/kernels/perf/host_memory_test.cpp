@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "perf/memory/host_memory.hpp"
+#include "perf/memory/memory.hpp"
 #include "tests/support/backend.hpp"
 
 // Memory of arrays that tables of transfers copy.

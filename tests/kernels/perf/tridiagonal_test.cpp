@@ -6,8 +6,7 @@
 #include <stdexcept>
 
 #include "kernels/reference/linear/tridiagonal.hpp"
-#include "perf/tridiagonal/spd.hpp"
-#include "perf/tridiagonal/toeplitz.hpp"
+#include "perf/tridiagonal/solvers.hpp"
 #include "tests/support/backend.hpp"
 
 // Batches of random tridiagonal systems against Gaussian elimination with pivoting in long double.

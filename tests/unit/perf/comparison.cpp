@@ -6,7 +6,6 @@
 
 #include "common/program/failure.hpp"
 #include "perf/compare/annotation.hpp"
-#include "perf/compare/comparability.hpp"
 
 namespace drogue::perf {
 namespace {

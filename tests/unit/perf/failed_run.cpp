@@ -1,4 +1,4 @@
-#include "perf/process/failed_run.hpp"
+#include "perf/process/child_process.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,16 +15,17 @@ using std::chrono::milliseconds;
 /// Case that writes its resets and works into `log`.
 Case logged_case(std::string& log, bool on_device, milliseconds duration = milliseconds(0)) {
   Case made;
-  made.name = "a", made.on_device = on_device, made.unit_of_work = "step";
+  made.name = "a", made.unit_of_work = "step";
+  made.backend = on_device ? device::Backend::cuda : device::Backend::serial;
   made.prepare = [&log, duration] {
     return Sample{[&log] { log += "reset "; },
                   [&log, duration] {
                     log += "work ";
                     std::this_thread::sleep_for(duration);
                     return 1L;
-                  }};
+                  },
+                  [] { return 0.0; }};
   };
-  made.error = [] { return 0.0; };
   made.tolerance = 0.0;
   return made;
 }

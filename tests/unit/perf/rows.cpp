@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "perf/rows/block_rows.hpp"
-#include "perf/rows/timed_columns.hpp"
-#include "perf/rows/transfer_row.hpp"
+#include "perf/rows/rows.hpp"
 
 namespace drogue::perf {
 namespace {

@@ -72,9 +72,9 @@ const std::map<std::string, Machine> machines = {
 constexpr int pairs = 200;
 
 /// Verdicts on pairs of runs, each a comparison of its own, the second of them `factor` times as long.
-std::map<SpeedVerdict, int> verdicts(const Machine& machine, int count, double factor) {
+std::map<Verdict, int> verdicts(const Machine& machine, int count, double factor) {
   Random random(2026);
-  std::map<SpeedVerdict, int> found;
+  std::map<Verdict, int> found;
   for (int pair = 0; pair < pairs; ++pair) {
     const std::vector<double> before = machine(random, count);
     std::vector<double> after = machine(random, count);
@@ -84,26 +84,26 @@ std::map<SpeedVerdict, int> verdicts(const Machine& machine, int count, double f
   return found;
 }
 
-TEST(SpeedVerdict, IsWrongForAtMostATwentiethOfEqualRuns) {
+TEST(Verdict, IsWrongForAtMostATwentiethOfEqualRuns) {
   for (const auto& [name, machine] : machines) {
-    std::map<SpeedVerdict, int> found = verdicts(machine, 30, 1.0);
-    EXPECT_LE(found[SpeedVerdict::slower] + found[SpeedVerdict::faster], pairs / 20) << name;
+    std::map<Verdict, int> found = verdicts(machine, 30, 1.0);
+    EXPECT_LE(found[Verdict::slower] + found[Verdict::faster], pairs / 20) << name;
     // Doubt is no error, but on a quiet machine it would be no help.
     const bool is_clear = name == "quiet" || name == "heavy tails";
-    EXPECT_GE(found[SpeedVerdict::same], is_clear ? 9 * pairs / 10 : 0) << name;
+    EXPECT_GE(found[Verdict::same], is_clear ? 9 * pairs / 10 : 0) << name;
   }
 }
 
-TEST(SpeedVerdict, FindsATenthAtThreePercentNoise) {
-  EXPECT_GE(verdicts(quiet, 30, 1.10)[SpeedVerdict::slower], 19 * pairs / 20);
-  EXPECT_GE(verdicts(quiet, 30, 1.0 / 1.10)[SpeedVerdict::faster], 19 * pairs / 20);
+TEST(Verdict, FindsATenthAtThreePercentNoise) {
+  EXPECT_GE(verdicts(quiet, 30, 1.10)[Verdict::slower], 19 * pairs / 20);
+  EXPECT_GE(verdicts(quiet, 30, 1.0 / 1.10)[Verdict::faster], 19 * pairs / 20);
 }
 
-TEST(SpeedVerdict, NeverCallsATenthTheSameAtThreePercentNoise) {
-  for (const int count : {7, 15, 30}) EXPECT_EQ(verdicts(quiet, count, 1.10)[SpeedVerdict::same], 0) << count;
+TEST(Verdict, NeverCallsATenthTheSameAtThreePercentNoise) {
+  for (const int count : {7, 15, 30}) EXPECT_EQ(verdicts(quiet, count, 1.10)[Verdict::same], 0) << count;
 }
 
-TEST(SpeedVerdict, FindsOneSlowCaseAmongManyAndNoOther) {
+TEST(Verdict, FindsOneSlowCaseAmongManyAndNoOther) {
   Random random(7);
   std::vector<SpeedChange> changes;
   for (int i = 0; i < 60; ++i) {
@@ -112,22 +112,22 @@ TEST(SpeedVerdict, FindsOneSlowCaseAmongManyAndNoOther) {
       for (double& sample : after) sample *= 1.3;
     changes.push_back(compare_speed({heavy_tails(random, 30)}, {after}));
   }
-  const std::vector<SpeedVerdict> found = speed_verdict(changes);
+  const std::vector<Verdict> found = speed_verdict(changes);
   for (std::size_t i = 0; i < found.size(); ++i)
-    EXPECT_EQ(found[i] == SpeedVerdict::slower || found[i] == SpeedVerdict::faster, i == 41) << i;
+    EXPECT_EQ(found[i] == Verdict::slower || found[i] == Verdict::faster, i == 41) << i;
 }
 
-TEST(SpeedVerdict, TrendThatGoesOnIsNoChange) {
+TEST(Verdict, TrendThatGoesOnIsNoChange) {
   std::vector<double> before, after;
   Random random(5);
   for (int i = 0; i < 30; ++i) before.push_back(1.0 + 0.004 * i + 0.005 * normal(random));
   for (int i = 30; i < 60; ++i) after.push_back(1.0 + 0.004 * i + 0.005 * normal(random));
   const SpeedChange change = compare_speed({before}, {after});
   EXPECT_LT(change.probability, 1e-6);
-  EXPECT_EQ(speed_verdict({change}).front(), SpeedVerdict::ambiguous);
+  EXPECT_EQ(speed_verdict({change}).front(), Verdict::ambiguous);
 }
 
-TEST(SpeedVerdict, OtherWorkBesideARunIsNoChange) {
+TEST(Verdict, OtherWorkBesideARunIsNoChange) {
   Random random(17);
   const std::vector<double> before = quiet(random, 30);
   std::vector<double> after = quiet(random, 30);
@@ -136,10 +136,10 @@ TEST(SpeedVerdict, OtherWorkBesideARunIsNoChange) {
     if (i != 7 && i != 19) after[i] *= 1.8;
   const SpeedChange change = compare_speed({before}, {after});
   EXPECT_LT(change.probability, 1e-6);
-  EXPECT_EQ(speed_verdict({change}).front(), SpeedVerdict::ambiguous);
+  EXPECT_EQ(speed_verdict({change}).front(), Verdict::ambiguous);
 }
 
-TEST(SpeedVerdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
+TEST(Verdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
   Random random(3);
   const auto run = [&](double level) {
     std::vector<double> samples = quiet(random, 15);
@@ -149,12 +149,12 @@ TEST(SpeedVerdict, RunsOfOneBuildTeachTheNoiseBetweenRuns) {
   // Runs of one build that differ by 15 %: to be as fast as one of them is no change, 30 % beyond both is
   // one.
   const Runs before = {run(1.0), run(1.15)};
-  EXPECT_EQ(speed_verdict({compare_speed({before[1]}, {run(1.0)})}).front(), SpeedVerdict::faster);
-  EXPECT_NE(speed_verdict({compare_speed(before, {run(1.0)})}).front(), SpeedVerdict::faster);
-  EXPECT_EQ(speed_verdict({compare_speed(before, {run(1.5), run(1.5)})}).front(), SpeedVerdict::slower);
+  EXPECT_EQ(speed_verdict({compare_speed({before[1]}, {run(1.0)})}).front(), Verdict::faster);
+  EXPECT_NE(speed_verdict({compare_speed(before, {run(1.0)})}).front(), Verdict::faster);
+  EXPECT_EQ(speed_verdict({compare_speed(before, {run(1.5), run(1.5)})}).front(), Verdict::slower);
 }
 
-TEST(SpeedVerdict, MoreRunsFindSmallerChanges) {
+TEST(Verdict, MoreRunsFindSmallerChanges) {
   const auto found = [](int runs) {
     Random random(29);
     int slower = 0;
@@ -165,7 +165,7 @@ TEST(SpeedVerdict, MoreRunsFindSmallerChanges) {
         after.push_back(quiet(random, 30));
         for (double& sample : after.back()) sample *= 1.06;
       }
-      if (speed_verdict({compare_speed(before, after)}).front() == SpeedVerdict::slower) ++slower;
+      if (speed_verdict({compare_speed(before, after)}).front() == Verdict::slower) ++slower;
     }
     return slower;
   };
@@ -176,9 +176,9 @@ TEST(SpeedVerdict, MoreRunsFindSmallerChanges) {
 
 /// Counts of verdicts on pairs of equal builds, `runs` runs a side, whose levels differ by 1.5 % from run to
 /// run, as addresses and neighbours make them; the second side `factor` times as long.
-std::map<SpeedVerdict, int> verdicts_of_runs(int runs, double factor) {
+std::map<Verdict, int> verdicts_of_runs(int runs, double factor) {
   Random random(31);
-  std::map<SpeedVerdict, int> found;
+  std::map<Verdict, int> found;
   for (int pair = 0; pair < pairs; ++pair) {
     const auto side = [&](double scale) {
       Runs made;
@@ -195,18 +195,18 @@ std::map<SpeedVerdict, int> verdicts_of_runs(int runs, double factor) {
   return found;
 }
 
-TEST(SpeedVerdict, NoiseBetweenRunsIsNoChange) {
+TEST(Verdict, NoiseBetweenRunsIsNoChange) {
   for (const int runs : {1, 2, 3, 5}) {
-    std::map<SpeedVerdict, int> found = verdicts_of_runs(runs, 1.0);
-    EXPECT_LE(found[SpeedVerdict::slower] + found[SpeedVerdict::faster], pairs / 50) << runs;
+    std::map<Verdict, int> found = verdicts_of_runs(runs, 1.0);
+    EXPECT_LE(found[Verdict::slower] + found[Verdict::faster], pairs / 50) << runs;
   }
-  EXPECT_GE(verdicts_of_runs(1, 1.12)[SpeedVerdict::slower], 9 * pairs / 10);
-  EXPECT_GE(verdicts_of_runs(3, 1.10)[SpeedVerdict::slower], 9 * pairs / 10);
-  EXPECT_GE(verdicts_of_runs(5, 1.08)[SpeedVerdict::slower], 9 * pairs / 10);
-  EXPECT_GE(verdicts_of_runs(5, 1.05)[SpeedVerdict::slower], pairs / 2);
+  EXPECT_GE(verdicts_of_runs(1, 1.12)[Verdict::slower], 9 * pairs / 10);
+  EXPECT_GE(verdicts_of_runs(3, 1.10)[Verdict::slower], 9 * pairs / 10);
+  EXPECT_GE(verdicts_of_runs(5, 1.08)[Verdict::slower], 9 * pairs / 10);
+  EXPECT_GE(verdicts_of_runs(5, 1.05)[Verdict::slower], pairs / 2);
 }
 
-TEST(SpeedVerdict, FewerRunsNeedALargerChange) {
+TEST(Verdict, FewerRunsNeedALargerChange) {
   Random random(37);
   for (const auto& [runs, factor] : {std::pair{1, 1.06}, {2, 1.045}, {3, 1.025}})
     for (const double beyond : {0.0, 0.03}) {
@@ -218,29 +218,28 @@ TEST(SpeedVerdict, FewerRunsNeedALargerChange) {
           after.back().push_back((factor + beyond) * (1.0 + 0.001 * normal(random)));
         }
       }
-      EXPECT_EQ(speed_verdict({compare_speed(before, after)}).front() == SpeedVerdict::slower, beyond > 0.0)
+      EXPECT_EQ(speed_verdict({compare_speed(before, after)}).front() == Verdict::slower, beyond > 0.0)
           << runs << " " << factor + beyond;
     }
 }
 
-TEST(SpeedVerdict, SmallChangesAreNone) {
+TEST(Verdict, SmallChangesAreNone) {
   Random random(11);
   std::vector<double> before, after;
   for (int i = 0; i < 30; ++i)
     before.push_back(1.0 + 0.001 * normal(random)), after.push_back(1.02 + 0.001 * normal(random));
   const SpeedChange change = compare_speed({before}, {after});
   EXPECT_LT(change.probability, 1e-9);
-  EXPECT_EQ(speed_verdict({change}).front(), SpeedVerdict::same);
+  EXPECT_EQ(speed_verdict({change}).front(), Verdict::same);
 }
 
-TEST(SpeedVerdict, NeedsSamples) {
-  EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{2.0}})}).front(), SpeedVerdict::ambiguous);
+TEST(Verdict, NeedsSamples) {
+  EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{2.0}})}).front(), Verdict::ambiguous);
   // Not even equal samples show that nothing changed, if they are too few.
-  EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{1.0}})}).front(), SpeedVerdict::ambiguous);
-  EXPECT_EQ(speed_verdict({compare_speed({{1.0, 1.0, 1.0}}, {{1.0, 1.0, 1.0}})}).front(),
-            SpeedVerdict::ambiguous);
+  EXPECT_EQ(speed_verdict({compare_speed({{1.0}}, {{1.0}})}).front(), Verdict::ambiguous);
+  EXPECT_EQ(speed_verdict({compare_speed({{1.0, 1.0, 1.0}}, {{1.0, 1.0, 1.0}})}).front(), Verdict::ambiguous);
   const std::vector<double> four = {1.0, 1.1, 1.2, 1.3};
-  EXPECT_EQ(speed_verdict({compare_speed({four}, {four})}).front(), SpeedVerdict::same);
+  EXPECT_EQ(speed_verdict({compare_speed({four}, {four})}).front(), Verdict::same);
 }
 
 }  // namespace
