@@ -34,7 +34,3 @@ class FusedOperations(unittest.TestCase):
             self.skipTest("this processor has no fused multiply-add")
         options = disassembly.cache(BUILD)["DROGUE_UNFUSED_OPTIONS"].split(";")
         self.assertEqual(0, fused_operations(options), options)
-
-
-if __name__ == "__main__":
-    unittest.main()

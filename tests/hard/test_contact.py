@@ -3,7 +3,6 @@
 import itertools
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -42,7 +41,3 @@ class StationaryContact(gas_program.GasTest):
         for sets in choices:
             with self.subTest(sets=sets):
                 self.assert_kept("serial", *sets)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@
 import math
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -179,7 +178,3 @@ class HardCases(parachute_program.FlowTest):
             energies[model] = self.history("out")["kinetic_energy"][-1]
         self.assertLess(energies["smagorinsky"], 0.99 * energies["none"])
         self.assertLess(energies["vreman"], 0.999 * energies["none"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import math
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -105,7 +104,3 @@ class ShippedParachutes(parachute_program.FlowTest):
         self.assertLess(max(rows["cloth_elastic_energy"][k] for k in windows[2]),
                         1.5 * max(rows["cloth_elastic_energy"][k] for k in windows[0]))
         self.assertLess(max(rows["force_balance"]), 1e-14)
-
-
-if __name__ == "__main__":
-    unittest.main()

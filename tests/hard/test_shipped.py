@@ -2,7 +2,6 @@
 
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -29,7 +28,3 @@ class Shipped(gas_program.GasTest):
     @gas_program.needs_openmp
     def test_openmp_meets_the_tolerances(self):
         self.assert_all_pass("openmp")
-
-
-if __name__ == "__main__":
-    unittest.main()

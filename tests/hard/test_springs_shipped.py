@@ -3,7 +3,6 @@
 import math
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -78,7 +77,3 @@ class Shipped(springs_program.SpringsTest):
         self.assertLess(min(widths), 0.3 * widths[0])
         self.assertAlmostEqual(widths[0], widths[-1], delta=1e-12)
         self.assertLess(self.history("out/curtain")["contact_work"][-1], 0.0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -38,7 +37,3 @@ class Tolerances(gas_program.GasTest):
         for row in once.values():
             with self.subTest(hard_cases.label(row)):
                 self.assert_meets(row, "openmp")
-
-
-if __name__ == "__main__":
-    unittest.main()

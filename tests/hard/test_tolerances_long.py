@@ -2,7 +2,6 @@
 
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -33,7 +32,3 @@ class FineReferenceTolerances(reference_tolerances.ReferenceTest):
         rows = reference_tolerances.rows(lambda row: row["source"] == "published")
         self.assertEqual(21, len(rows))
         self.assert_all_met(rows, "serial")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -90,7 +90,3 @@ class Documents(unittest.TestCase):
                     count += 1
                     self.assertTrue(name in declared, f"{document} draws {name}")
         self.assertGreater(count, 10)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -41,7 +41,3 @@ class FindsCopies(unittest.TestCase):
         includes = "".join(f'#include "common/x{k}.hpp"\n' for k in range(20))
         overrides = "".join(f"  void f{k}() override;\n" for k in range(20))
         self.assertEqual([], self.found(includes + overrides, includes + overrides))
-
-
-if __name__ == "__main__":
-    unittest.main()

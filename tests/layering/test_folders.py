@@ -32,7 +32,3 @@ class ReadsTheTable(unittest.TestCase):
                  "scripts/plot/gas/a.py", "miniapps/gas/scenes/a.toml", "tests/unit/a.cpp", "kernels/mesh/__pycache__/a.pyc")
         self.assertEqual({"common/csv", "kernels/gas", "kernels/gas/flux", "scripts/plot/gas", "miniapps/gas"},
                          folders.existing(files))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -92,7 +92,3 @@ class PropertiesOfTests(unittest.TestCase):
         result = self.show("#include <a>\n// ctest-label: exact\nTEST(First, Run) {}\n")
         self.assertNotEqual(0, result.returncode)
         self.assertIn("the program has no such test", " ".join(result.stderr.split()))
-
-
-if __name__ == "__main__":
-    unittest.main()

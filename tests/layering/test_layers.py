@@ -106,7 +106,3 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         texts = {"kernels/a.hpp": use, "kernels/b.hpp": "#include <Kokkos_Core.hpp>\n" + use,
                  "kernels/c.hpp": '#include "kernels/b.hpp"\nKOKKOS_FUNCTION void f();\n', "kernels/d.hpp": "// Kokkos::View\n"}
         self.assertEqual(["kernels/a.hpp"], [path for path in texts if layers.uses_kokkos_unseen(path, texts)])
-
-
-if __name__ == "__main__":
-    unittest.main()

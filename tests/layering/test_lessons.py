@@ -161,7 +161,3 @@ class Lessons(unittest.TestCase):
                     self.assertIn(float(number), {float(f"{time:.{digits}g}") for time in known}, f"{ladder} {name}: {number} us")
                     stated += 1
         self.assertGreater(stated, 30)
-
-
-if __name__ == "__main__":
-    unittest.main()

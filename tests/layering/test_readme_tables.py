@@ -221,7 +221,3 @@ class EvidenceRows(unittest.TestCase):
              f"| `ladders/weno-cuda-h200.jsonl` | `drogue-perf ladder weno --out weno-cuda-h200.jsonl` | {machine} |",
              "", "End", ""],
             text.split("\n"))  # fmt: skip
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -143,7 +142,3 @@ class BadBatches(options_program.OptionsTest):
     def test_rejects_a_strike_in_a_parameter_set(self):
         message = self.expect(3, "surface", self.write(batch([row("a")])), "--strikes", "1", "--maturities", "1").stderr
         self.assertIn('unknown column "strike"', message)
-
-
-if __name__ == "__main__":
-    unittest.main()

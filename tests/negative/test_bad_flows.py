@@ -3,7 +3,6 @@
 import os
 import re
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -496,7 +495,3 @@ class BadFlows(parachute_program.FlowTest):
                 process = self.start(self.scene, "--check")
                 self.assertIn(process.returncode, (0, 3), process.stderr)
                 self.assertEqual(1 if process.returncode else 0, len(process.stderr.splitlines()))
-
-
-if __name__ == "__main__":
-    unittest.main()

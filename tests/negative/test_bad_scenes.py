@@ -83,7 +83,3 @@ class BadScenes(unittest.TestCase):
             result = check(argument)
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn(word, result.stderr.decode())
-
-
-if __name__ == "__main__":
-    unittest.main()

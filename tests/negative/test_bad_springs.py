@@ -2,7 +2,6 @@
 
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -77,7 +76,3 @@ class BadSprings(springs_program.SpringsTest):
                 process = self.start(self.scene, "--check")
                 self.assertIn(process.returncode, (0, 3), process.stderr)
                 self.assertEqual(1 if process.returncode else 0, len(process.stderr.splitlines()))
-
-
-if __name__ == "__main__":
-    unittest.main()

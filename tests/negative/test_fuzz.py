@@ -45,7 +45,3 @@ class Fuzz(unittest.TestCase):
             self.assert_ends_well(result, seed, {0, 3, 4, 5})
             codes.add(result.returncode)
         self.assertLessEqual({0, 3}, codes)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -45,7 +44,3 @@ class Ladder(perf_program.PerfTest):
         self.assertNotIn("broken: ", process.stdout)
         self.assertEqual(4, process.stdout.count("mended"))
         self.assertIn("--solutions", self.expect(2, "ladder", "weno", "--solutions").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

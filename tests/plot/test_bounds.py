@@ -1,6 +1,5 @@
 """Bounds of a step by the measured ceilings, scaling, and the cost of Kokkos, on pages of synthetic records."""
 
-import unittest
 
 import packages  # before modules that need the packages  isort: skip
 import synthetic_records as records
@@ -203,7 +202,3 @@ class Scaling(Folder):
     def test_without_one_unit_there_is_no_efficiency(self):
         page, _ = self.page(records.scaling()[1:2], app="gas")
         self.assertNotIn("efficiency", page.tables["AMD EPYC", "Scaling"][0])
-
-
-if __name__ == "__main__":
-    unittest.main()

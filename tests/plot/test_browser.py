@@ -72,7 +72,3 @@ class Pages(Folder):
             for page in pages:
                 for text, drawn, data in self.opened(browser, page):
                     self.assertTrue(drawn and data and len(text) > 20, (page.name, text, drawn, data))
-
-
-if __name__ == "__main__":
-    unittest.main()

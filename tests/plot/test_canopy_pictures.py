@@ -413,7 +413,3 @@ class CanopyPictures(unittest.TestCase):
     def test_panel_of_undefined_values_has_a_range(self):
         low, high = Panel("", {"": np.full(3, np.nan)}).limits(np.arange(3.0))
         self.assertLess(low, high)
-
-
-if __name__ == "__main__":
-    unittest.main()

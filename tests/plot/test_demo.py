@@ -89,7 +89,3 @@ class Demo(unittest.TestCase):
         done = self._demo("sood")
         self.assertEqual(done.returncode, 2)
         self.assertIn("sod, lax", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

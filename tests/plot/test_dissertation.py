@@ -30,7 +30,3 @@ class Dissertation(unittest.TestCase):
         done = self.draw("5.9")
         self.assertNotEqual(0, done.returncode)
         self.assertIn("no figure 5.9: 5.2, 5.3, 5.5", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import json
 import re
-import unittest
 
 import packages  # noqa: F401, before modules that need the packages  isort: skip
 import synthetic
@@ -145,7 +144,3 @@ class Refusals(Folder):
         code, files, sentence = plot(self.folder, "--norm", "l1_density")
         self.assertEqual((code, files), (2, []))
         self.assertIn("no study", sentence)
-
-
-if __name__ == "__main__":
-    unittest.main()

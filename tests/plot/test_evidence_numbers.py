@@ -389,7 +389,3 @@ class Springs(Folder):
         page, files = self.springs_page(lines)
         self.assertEqual([name for name in files if name.endswith("html")], ["gas.html", "springs.html"])
         self.assertEqual(len(page.tables), 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -37,7 +37,3 @@ class Expressions(unittest.TestCase):
         for text in ("1 +", "sin(x", "q + 1", "x x", "x ? 1"):
             with self.subTest(text), self.assertRaises(Failure):
                 evaluate(text, x=np.zeros(2))
-
-
-if __name__ == "__main__":
-    unittest.main()

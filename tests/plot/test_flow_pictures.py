@@ -393,7 +393,3 @@ class FlowPictures(unittest.TestCase):
         history = run / "history.csv"
         history.write_text("\n".join(history.read_text().splitlines()[:2]) + "\n")
         self.assertIsNone(flow_history_figure(read_run(run)))
-
-
-if __name__ == "__main__":
-    unittest.main()

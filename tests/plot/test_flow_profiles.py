@@ -195,7 +195,3 @@ class FlowProfiles(unittest.TestCase):
         verify = '[verify]\nlinf_velocity = 1.12e-3\nexact = { x = "y", y = 0, z = 0 }\n'
         run = read_run(self.run_of(shifted, verify))
         self.assert_is_legible(profiles_figure(run, run.snapshots[0]))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -137,7 +137,3 @@ class Isolation(unittest.TestCase):
         done = self.start(launcher, ".", environment={"PYTHONPATH": str(broken)})
         self.assertEqual((2, 1), (done.returncode, done.stderr.count("\n")), done.stderr)
         self.assertIn("compiled for another Python", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

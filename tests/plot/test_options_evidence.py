@@ -1,6 +1,5 @@
 """Pages of records of options: curves and settings, published results, goals, and tables of [Shi]."""
 
-import unittest
 
 import packages  # noqa: F401, before modules that need the packages  isort: skip
 import synthetic_records as records
@@ -118,7 +117,3 @@ class Batches(Folder):
         rows = transfers.transfer_rows(evidence.records)
         self.assertEqual({"seed", "pide"}, {row.source for row in rows})
         transfers.transfers_figure("title", evidence.machines[0], evidence.records)
-
-
-if __name__ == "__main__":
-    unittest.main()

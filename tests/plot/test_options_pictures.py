@@ -81,7 +81,3 @@ class OptionsPictures(unittest.TestCase):
         )
         files = [self.folder / f"{name}.csv" for name in ("one", "other", "batch")]
         self.assertAlmostEqual(0.1, largest_difference(*files))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -395,7 +395,3 @@ class Refusals(unittest.TestCase):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         (self.folder / "file").write_text("")
         self._refused(6, ["cannot be written"], run, "--out", self.folder / "file" / "pictures")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -154,7 +154,3 @@ class Output(ProgramTest):
         code, out, err = self.plot("--version")
         self.assertEqual((code, err), (0, ""))
         self.assertIn(f"(git {commit})\n", out)
-
-
-if __name__ == "__main__":
-    unittest.main()

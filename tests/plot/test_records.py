@@ -167,7 +167,3 @@ class Records(TemporaryFolder):
         for folder in (a, b):
             (folder / "history.csv").unlink()
         self.assertEqual(["neither fields nor history"], recording.differing_results(a, b))
-
-
-if __name__ == "__main__":
-    unittest.main()

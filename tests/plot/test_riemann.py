@@ -72,7 +72,3 @@ class ExactRiemannSolver(unittest.TestCase):
         self.assertEqual(list(rho[1:4]), [0, 0, 0])
         self.assertEqual(list(p[1:4]), [0, 0, 0])
         self.assertEqual(list(rho[[0, 4]]), [7, 7])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -339,7 +339,3 @@ class SpringsPictures(unittest.TestCase):
             contact='[contact]\nobjects = [{ kind = "sphere", centre = [1, 0, -2], radius = 0.5 }]\n',
         )
         self.assertGreater(self.greys(run), 1000)
-
-
-if __name__ == "__main__":
-    unittest.main()

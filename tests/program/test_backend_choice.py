@@ -91,7 +91,3 @@ class SharedCores(gas_program.GasTest):
 
     def test_keeps_a_configured_wait_in_silence(self):
         self.assertEqual([], self.notices(OMP_WAIT_POLICY="passive"))
-
-
-if __name__ == "__main__":
-    unittest.main()

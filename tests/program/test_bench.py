@@ -370,7 +370,3 @@ class Bench(unittest.TestCase):
         for words in ("work-precision --app gas --filter '^shu-osher$'", "work-precision --app springs --filter '^drum$'",
                       'run --filter "^options/cuda/$count/"', "cases options ", "cases flow-step "):
             self.assertIn(words, kinds)
-
-
-if __name__ == "__main__":
-    unittest.main()

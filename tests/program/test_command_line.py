@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -180,7 +179,3 @@ class Kokkos(gas_program.GasTest):
         run = self.start("sod", "--quiet", "--out", "run", sets=COARSE, environment={"KOKKOS_TOOLS_LIBS": "/no/tool.so"})
         self.assertEqual(0, run.returncode, run.stderr)
         self.assertTrue(re.search("KokkosP|tool", run.stderr))
-
-
-if __name__ == "__main__":
-    unittest.main()

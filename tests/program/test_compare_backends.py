@@ -76,7 +76,3 @@ class Backends(unittest.TestCase):
             with self.subTest(words=words, backends=backends):
                 code, lines = self.compare(*words, backends=backends)
                 self.assertEqual((2, True), (code, reason in lines[-1]), lines)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -112,7 +112,3 @@ class Builds(unittest.TestCase):
         self.assertEqual("record of old\n" * 2, (kept / "old.jsonl").read_text())
         self.assertEqual("record of new\n" * 2, (kept / "new.jsonl").read_text())
         self.assertEqual("verdict\n", (kept / "compare.txt").read_text())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import resource
 import shutil
 import subprocess
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -121,7 +120,3 @@ class Forbidden(DiskTest):
 
     def test_reports_a_folder_without_write_access(self):
         self.assertIn("/proc", self.expect(6, "sod", "--quiet", "--out", "/proc/drogue").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -67,7 +66,3 @@ class HistoryChecks(springs_program.SpringsTest):
         self.check(gas_program.PROGRAM, 0, "sod", last, sets=later, words=(*restart, "last"))
         message = self.check(gas_program.PROGRAM, 5, "sod", mean, sets=later, words=(*restart, "mean"))
         self.assertIn("energy_mean could not be measured", message)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,6 @@ import math
 import os
 import random
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -147,7 +146,3 @@ class DenseOutput(gas_program.GasTest):
             "mesh.cells=50", "verify.l1_density=1.0", f"output.times={times}"])
         file = gas_program.fields(self.folder / "run")
         self.assertEqual(times, [file.attributes[f"/steps/{group}"]["time"] for group in file.children("/steps")])
-
-
-if __name__ == "__main__":
-    unittest.main()

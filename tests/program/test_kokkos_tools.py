@@ -73,7 +73,3 @@ class Connectors(unittest.TestCase):
             depth += 1 if line.startswith("push ") else -1
             self.assertIn(depth, (0, 1, 2), line)
         self.assertEqual(0, depth)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -159,7 +159,3 @@ class Descent(unittest.TestCase):
                 (self.run_of("one"), ["--limit"], "cells of two sizes")):
             with self.subTest(folder.name):
                 self.assertIn(sentence, self.measure(folder, *words, code=1))
-
-
-if __name__ == "__main__":
-    unittest.main()

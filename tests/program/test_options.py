@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 from pathlib import Path
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
@@ -527,7 +526,3 @@ class Files(options_program.OptionsTest):
         self.expect(3, "price", file, "--backend", "serial", "--quiet", *FAST, "--result", "r.json")
         self.assertEqual(["ok", "invalid", "ok"], [written["status"] for written in self.prices()])
         self.assertLess(json.loads((self.folder / "r.json").read_text())["peak_bytes"]["host"], 200 * 2**20)
-
-
-if __name__ == "__main__":
-    unittest.main()

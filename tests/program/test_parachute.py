@@ -12,7 +12,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 import xml.etree.ElementTree
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
@@ -1234,7 +1233,3 @@ class Restart(parachute_program.FlowTest):
                 message = self.expect(6, self.scene, *QUIET, "--restart", "auto", sets=changed).stderr
                 self.assertTrue(message.endswith("it belongs to another scene\n"), message)
         self.expect(0, self.scene, *QUIET, "--restart", "auto", sets=[*sets, "run.cfl=0.2", "run.end_time=0.6"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -80,7 +79,3 @@ class Images(parachute_program.FlowTest):
         self.assertGreater(sum(inside), 1.05 * one)
         for a, b in zip(inside, across):
             self.assertAlmostEqual(a, b, delta=1e-6 * one)
-
-
-if __name__ == "__main__":
-    unittest.main()

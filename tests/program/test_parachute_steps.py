@@ -4,7 +4,6 @@
 import math
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -396,7 +395,3 @@ edge_length = 0.02
         for one, other in zip(*pressures, strict=True):
             for a, b in zip(one, other, strict=True):
                 self.assertAlmostEqual(a, b * 2.0 ** 80, delta=1e-9)
-
-
-if __name__ == "__main__":
-    unittest.main()

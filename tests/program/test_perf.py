@@ -748,7 +748,3 @@ class Refusals(perf_program.PerfTest):
 
     def test_reports_an_unwritable_record_file(self):
         self.assertIn("no/such/folder", self.expect(6, "table", "occupancy", "--out", "no/such/folder/x").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 import sys
-import unittest
 from pathlib import Path
 
 SOURCE = Path(os.environ["DROGUE_SOURCE"])
@@ -81,7 +80,3 @@ class Bisect(perf_program.PerfTest):
         text = self.found("1e-3 0.5", "1e-3 0.5 0.5", "3e-3 0.5")
         self.assertIn("AMBIGUOUS", text)
         self.assertIn("only 'skip'ped commits left", text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -87,7 +87,3 @@ class Workflow(perf_program.PerfTest):
             for line in re.findall(rf"drogue-perf {command} (.*)", WORKFLOW):
                 for option in re.findall(r"--[\w-]+", line):
                     self.assertIn(option, words, command)
-
-
-if __name__ == "__main__":
-    perf_program.unittest.main()

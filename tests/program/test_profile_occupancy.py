@@ -56,7 +56,3 @@ class ProfileOccupancy(perf_program.PerfTest):
     def test_reports_a_build_without_cases_on_cuda(self):
         self.program("bin/ncu", NCU)
         self.assertIn("is this a build with CUDA", self.profile("no such case").stderr)
-
-
-if __name__ == "__main__":
-    perf_program.unittest.main()

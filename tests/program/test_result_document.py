@@ -5,7 +5,6 @@ import os
 import re
 import shlex
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -109,7 +108,3 @@ class Document(springs_program.SpringsTest):
         # Options that targets of Kokkos add are among them.
         openmp = "openmp" in gas_program.backends()
         self.assertEqual(openmp, any("openmp" in flag for flag in reported), reported)
-
-
-if __name__ == "__main__":
-    unittest.main()

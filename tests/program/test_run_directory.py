@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 import time
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -179,7 +178,3 @@ class Output(gas_program.GasTest):
 
     def test_quiet_terminal_shows_nothing(self):
         self.assertEqual("", self.short_run("--quiet"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -25,7 +25,3 @@ class Smoke(unittest.TestCase):
                     cwd=folder, capture_output=True, text=True, check=False,
                 )  # fmt: skip
                 self.assertEqual((0, ""), (done.returncode, done.stderr))
-
-
-if __name__ == "__main__":
-    unittest.main()

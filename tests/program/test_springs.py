@@ -7,7 +7,6 @@ import os
 import re
 import resource
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -615,7 +614,3 @@ class Failures(springs_program.SpringsTest):
         slope = math.log2(error(61, "area") / error(217, "area"))
         self.assertAlmostEqual(2.0, slope, delta=0.15)
         self.assertLess(math.log2(error(61, "equal") / error(217, "equal")), 1.6)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -257,7 +256,3 @@ class ReferenceOfARun(gas_program.GasTest):
                     sets=[*sets, "verify.reference.cells=400"])
         self.assertEqual(before, history.read_text())
         self.assertEqual(2, len(self.result("run")["checks"]))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import os
 import signal
 import sys
 import time
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -80,7 +79,3 @@ class Interrupted(restarting.RestartTest):
         self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "whole", "--restart", "auto",
                     sets=restarting.CASES["sod"])
         self.assertEqual(before, (self.folder / "whole/history.csv").read_text())
-
-
-if __name__ == "__main__":
-    unittest.main()

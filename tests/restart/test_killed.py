@@ -3,7 +3,6 @@
 
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -46,7 +45,3 @@ class Killed(restarting.RestartTest):
         folder = self.folder / name
         folder.mkdir()
         return folder
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import fcntl
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -238,7 +237,3 @@ class RestartFiles(gas_program.GasTest):
 
     def test_restart_and_overwrite_exclude_each_other(self):
         self.resume(2, "--restart", "auto", "--overwrite")
-
-
-if __name__ == "__main__":
-    unittest.main()

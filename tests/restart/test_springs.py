@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -190,7 +189,3 @@ class Restart(springs_program.SpringsTest):
         sets = [*SETS, "time.end_time=3", "output.times=[0.6, 1.1, 1.3, 3]"]
         message = self.expect(6, self.scene, "--quiet", "--backend", "serial", "--out", "part", "--restart", "auto", sets=sets).stderr
         self.assertIn("output.times 1.1: the run continues from t = 2.49", message)
-
-
-if __name__ == "__main__":
-    unittest.main()

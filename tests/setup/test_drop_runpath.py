@@ -57,7 +57,3 @@ class DropRunpath(unittest.TestCase):
         result = self.drop(path)
         self.assertNotEqual(0, result.returncode)
         self.assertIn("no ELF file", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

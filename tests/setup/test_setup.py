@@ -101,7 +101,3 @@ class Setup(unittest.TestCase):
             self.fake(tool, f'exec {real} "$@"')
         (self.fakes / "apt-get").unlink()
         self.assertIn("use --system", self.refused(PATH=self.fakes))
-
-
-if __name__ == "__main__":
-    unittest.main()

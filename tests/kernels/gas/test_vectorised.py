@@ -85,7 +85,3 @@ class ScalarCodeDetection(unittest.TestCase):
     def test_detects_a_scalar_root(self):
         sentence, = self.complaints(*self.PACKED[:7], " 10:\tvsqrtsd %xmm1,%xmm1,%xmm2")
         self.assertIn("no packed square root", sentence)
-
-
-if __name__ == "__main__":
-    unittest.main()
