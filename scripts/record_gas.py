@@ -18,14 +18,7 @@ import pathlib
 import sys
 
 from recording import (
-    argument_parser,
-    assignments,
-    differing_datasets,
-    exact_rows,
-    run,
-    scene_runs,
-    summary,
-    write_record,
+    argument_parser, assignments, differing_datasets, exact_rows, run, scene_runs, summary, write_record,
 )
 
 BASELINE_MESHES = (1024, 2048, 3072, 4096, 5120, 6144, 7168, 8192)
@@ -60,9 +53,7 @@ def baseline_rows(program, backend, work):
             rows.append({"cells": cells, "exit_code": result["exit_code"], "message": result["message"]})
             continue
         phases = {name: 1e6 * timing[f"{name}_s"] / steps for name in ("h2d", "compute", "d2h")}
-        rows.append(
-            {"cells": cells, "steps": steps, "exit_code": 0} | {f"{k}_us": v for k, v in phases.items()}
-        )
+        rows.append({"cells": cells, "steps": steps, "exit_code": 0} | {f"{k}_us": v for k, v in phases.items()})
     return rows
 
 
@@ -114,18 +105,8 @@ def main():
         failed += [row for row in record["exact"] if not row["identical"]]
     if arguments.largest:
         result = run(
-            program,
-            "sod",
-            backends[-1],
-            work / "largest",
-            "--set",
-            f"mesh.cells={2**28}",
-            "--set",
-            "run.end_time=1e-9",
-            "--set",
-            "output.times=[1e-9]",
-            "--set",
-            'output.fields=["rho"]',
+            program, "sod", backends[-1], work / "largest", "--set", f"mesh.cells={2**28}", "--set",
+            "run.end_time=1e-9", "--set", "output.times=[1e-9]", "--set", 'output.fields=["rho"]',
         )
         bytes_a_cell = result.get("peak_bytes", {}).get("device", 0) / 2**28
         record["largest"] = summary(result) | {"device_bytes_a_cell": bytes_a_cell}
@@ -134,9 +115,7 @@ def main():
         record["long"] = long_rows(program, backends[-1], work, arguments.largest)
         failed += [row for row in record["long"] if not row["identical"]]
     return write_record(
-        record,
-        arguments.to / f"gas-{arguments.machine}.json",
-        failed,
+        record, arguments.to / f"gas-{arguments.machine}.json", failed,
         ("seed_mode", "exact", "largest", "long"),
     )
 

@@ -14,7 +14,7 @@ import parachute_program
 MANY_SMALL_STEPS = {
     "cavity", "cavity-1000", "channel", "oscillating-plate", "cylinder", "sphere-300", "disk-normal", "cup", "cup-reversed", "sphere-drop",
     "piston", "membrane-drum-in-air", "flag", "cloth-drop",
-}  # fmt: skip
+}
 
 # They are in test_parachutes_long.py.
 OTHER_PARACHUTES = set(parachute_program.CANOPIES) - {"c9-flat", "reefed", "sphere-drop", "membrane-drum-in-air", "cloth-drop"}

@@ -65,7 +65,7 @@ class Generator(unittest.TestCase):
         self.evidence = Path(folder.name)
         (self.evidence / "alone").mkdir()
         for name in ("gas-solution-h100", "springs-solution-h200", "springs-solution-epyc", "options-epyc", "flow-h200",
-                     "parachute-solution-h200", "flight-h200"):  # fmt: skip
+                     "parachute-solution-h200", "flight-h200"):
             shutil.copy(forms.EVIDENCE / f"{name}.jsonl", self.evidence)
         shutil.copy(forms.EVIDENCE / "alone/options-h200.jsonl", self.evidence / "alone")
 
@@ -220,4 +220,4 @@ class EvidenceRows(unittest.TestCase):
              f"| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/' --out options-N.jsonl`, one run per N | {machine} |",
              f"| `ladders/weno-cuda-h200.jsonl` | `drogue-perf ladder weno --out weno-cuda-h200.jsonl` | {machine} |",
              "", "End", ""],
-            text.split("\n"))  # fmt: skip
+            text.split("\n"))

@@ -61,8 +61,7 @@ class BadSprings(springs_program.SpringsTest):
     def test_rejects_stress_without_triangles(self):
         string = ["mesh={string={}}", "material={}", "pin=[{where='x==0'}]", "mass=[{where='x==1',add=1}]"]
         self.expect(0, self.scene, "--check", sets=string)
-        self.assert_refused("--set output.fields", ["von_mises", "triangles"], *string,
-                            'output.fields=["von_mises"]')
+        self.assert_refused("--set output.fields", ["von_mises", "triangles"], *string, 'output.fields=["von_mises"]')
 
     def test_rejects_the_linear_vector_model_with_motion(self):
         cloth = ["mesh={disk={}}", "material={model='linear-vector'}", "mass=[{where='x>0',add=1}]"]

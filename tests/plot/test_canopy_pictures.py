@@ -68,7 +68,7 @@ class CanopyPictures(unittest.TestCase):
 
     def test_draws_pictures_whatever_fields_run_has(self):
         for fields in (("velocity", "position", "von_mises"), ("velocity", "position"), ("position",),
-                       ("position", "von_mises")):  # fmt: skip
+                       ("position", "von_mises")):
             with self.subTest(fields):
                 run = write_canopies(self.folder / "-".join(fields), fields)
                 self.assertEqual(0, cli.main([str(run), "--quiet", "--dpi", "40"]))
@@ -98,7 +98,7 @@ class CanopyPictures(unittest.TestCase):
                 drawing = CanopyFigure(View(Canopies(run), plane_of(run, "y"), [shown]), run.snapshots).figure
                 box, height = panel_of(drawing, shown.label).get_window_extent(), drawing.bbox.height
                 rows, columns = (slice(int(low) + 2, int(high) - 2) for low, high in
-                                 ((height - box.y1, height - box.y0), (box.x0, box.x1)))  # fmt: skip
+                                 ((height - box.y1, height - box.y0), (box.x0, box.x1)))
                 frames = self.frames_of(path, *words)
                 self.assertEqual(3, len(frames))
                 for frame in frames:
@@ -117,7 +117,7 @@ class CanopyPictures(unittest.TestCase):
             for snapshot in run.snapshots:
                 drawing.show(snapshot)
                 (lines,) = [item for item in panel_of(drawing.figure, "speed").collections
-                            if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]  # fmt: skip
+                            if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]
                 self.assertEqual(0, max(np.ptp(segment[:, 0]) for segment in lines.get_segments()))
                 drawn.append(sorted({segment[0, 0] for segment in lines.get_segments()}))
         self.assertGreater(len(drawn[0]), 10)
@@ -130,7 +130,7 @@ class CanopyPictures(unittest.TestCase):
         raw = subprocess.run(
             [imageio_ffmpeg.get_ffmpeg_exe(), "-loglevel", "error", "-i", path / "fields.mp4", "-f", "rawvideo",
              "-pix_fmt", "rgb24", "-"], capture_output=True, check=True,
-        ).stdout  # fmt: skip
+        ).stdout
         decoded = np.frombuffer(raw, np.uint8).reshape(-1, *frames[0].shape).astype(int)
         self.assertEqual(len(frames), len(decoded))
         differences = [[np.abs(a - b).mean() for b in decoded] for a in frames]
@@ -142,7 +142,7 @@ class CanopyPictures(unittest.TestCase):
         folder = write_cloth_drop(self.folder / "drop")
         self.assertEqual(0, cli.main([str(folder), "--quiet", "--dpi", "40"]))
         self.assertEqual({"fields.png", "fields.gif", "canopies.png"},
-                         {file.name for file in folder.iterdir() if file.suffix in (".png", ".gif")})  # fmt: skip
+                         {file.name for file in folder.iterdir() if file.suffix in (".png", ".gif")})
         run = read_run(folder)
         self.assert_no_text_overlaps_or_leaves(canopy_figure(View(Canopies(run), None, []), run.snapshots[-1]))
         figure = canopies_history_figure(run)
@@ -290,7 +290,7 @@ class CanopyPictures(unittest.TestCase):
         run = read_run(write_canopies(self.folder / "run", payload_speed=1.0))
         failed = {"name": "divergence", "value": 2e-6, "tolerance": 1e-9, "passed": False}
         run.result["checks"] = [{"name": "canopy_0_drag_coefficient_mean", "value": 0.03, "tolerance": 0.1, "passed": True}, failed,
-                                failed | {"name": "momentum", "value": 2e-9}]  # fmt: skip
+                                failed | {"name": "momentum", "value": 2e-9}]
         words = ", FAILED: divergence 2e-06 (tolerance 1e-09)"
         for figure in (canopy_figure(self.view(run), run.snapshots[2]), canopies_history_figure(run)):
             self.assertTrue(any(text.get_text().endswith(words) for text in figure.texts))

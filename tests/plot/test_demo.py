@@ -61,16 +61,12 @@ class Demo(unittest.TestCase):
         self.assertEqual(page.count("data:image/png"), 4)
         self.assertEqual(page.count("data:image/gif"), 2)
         self.assertNotIn("sod-full", page)
-        self.assertEqual(
-            re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*", page), [], "the page refers to another file"
-        )
+        self.assertEqual(re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*", page), [], "the page refers to another file")
 
     def test_reports_failed_scene_in_message_table_and_page(self):
         done = self._demo("lax", failure="lax")
         self.assertEqual(done.returncode, 5)
-        self.assertEqual(
-            done.stderr, "demo: drogue-gas lax failed: l1_density is 0.013, above its tolerance 0.0065.\n"
-        )
+        self.assertEqual(done.stderr, "demo: drogue-gas lax failed: l1_density is 0.013, above its tolerance 0.0065.\n")
         self.assertRegex(done.stdout, r"lax .*FAILED")
         page = (self.folder / "out/index.html").read_text()
         self.assertIn("0 of 1 scenes verified", page)

@@ -18,7 +18,7 @@ class Dissertation(unittest.TestCase):
 
     def draw(self, figures):
         command = [sys.executable, packages.SOURCE / "scripts/studies/draw_dissertation.py", "--bin", os.environ["DROGUE_BIN"],
-                   "--figures", figures, "--work", self.folder / "runs", "--to", self.folder]  # fmt: skip
+                   "--figures", figures, "--work", self.folder / "runs", "--to", self.folder]
         return subprocess.run(command, capture_output=True, text=True, check=False)
 
     def test_draws_sod_and_prints_its_errors(self):

@@ -131,10 +131,8 @@ class FlowPictures(unittest.TestCase):
             return lambda time, x, y, z: {"velocity": vectors(value + 0 * x, 0 * x, 0 * x)}
 
         for value, cells, lengths, has_lines in (
-            (1.0, (16, 16, 1), (1.0, 1.0, 0.1), True),
-            (0.0, (16, 16, 1), (1.0, 1.0, 0.1), False),
-            (np.nan, (16, 16, 1), (1.0, 1.0, 0.1), False),
-            (np.inf, (16, 16, 1), (1.0, 1.0, 0.1), False),
+            (1.0, (16, 16, 1), (1.0, 1.0, 0.1), True), (0.0, (16, 16, 1), (1.0, 1.0, 0.1), False),
+            (np.nan, (16, 16, 1), (1.0, 1.0, 0.1), False), (np.inf, (16, 16, 1), (1.0, 1.0, 0.1), False),
             (1.0, (64, 4, 1), (64.0, 1.0, 0.1), False),
         ):
             with self.subTest((value, cells)), warnings.catch_warnings():
@@ -142,7 +140,7 @@ class FlowPictures(unittest.TestCase):
                 run = read_run(write_flow(self.folder / f"{value}-{cells[0]}", cells, lengths, flow(value)))
                 figure = slices_figure(View(plane_of(run), [quantities(run)["speed"]]), run.snapshots[0])
                 lines = [item for axes in figure.axes for item in axes.collections
-                         if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]  # fmt: skip
+                         if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]
                 self.assertEqual(has_lines, bool(lines) and len(lines[0].get_segments()) > 10)
                 self.assertEqual(has_lines, bool(lines))
 
@@ -155,7 +153,7 @@ class FlowPictures(unittest.TestCase):
         self.assertEqual(1, sentence.count("\n"))
         # Vorticity is no misspelt velocity.
         still = write_flow(self.folder / "still", (4, 4, 1), (1.0, 1.0, 1.0),
-                           lambda time, x, y, z: {"velocity": vectors(x, y, z)})  # fmt: skip
+                           lambda time, x, y, z: {"velocity": vectors(x, y, z)})
         self.assertIn("no field 'vorticity'; it has speed, velocity_x", self.refusal(still, "--field", "vorticity"))
 
     def test_quantities_are_components_and_magnitudes(self):
@@ -164,7 +162,7 @@ class FlowPictures(unittest.TestCase):
         known, snapshot = quantities(run), run.snapshots[0]
         x, y, z = 0.625, 0.375, 0.875
         expected = {"speed": np.sqrt(y * y + 4 + 4 * z * z), "velocity_y": 2.0, "velocity_z": 2 * z,
-                    "pressure": 100 * x + 10 * y + z, "vorticity": np.sqrt(18), "vorticity_z": -3.0}  # fmt: skip
+                    "pressure": 100 * x + 10 * y + z, "vorticity": np.sqrt(18), "vorticity_z": -3.0}
         for name, value in expected.items():
             self.assertAlmostEqual(value, known[name].values(snapshot)[2, 1, 3], msg=name)
 
@@ -229,7 +227,7 @@ class FlowPictures(unittest.TestCase):
         run = read_run(
             write_flow(self.folder / "run", (8, 8, 1), (1.0, 1.0, 1.0),
                        lambda time, x, y, z: {"velocity": vectors(0 * x, 1 + 0 * x, 0 * x)})
-        )  # fmt: skip
+        )
         known = quantities(run)
         without = slices_figure(View(plane_of(run), [known["velocity_x"]]), run.snapshots[0])
         self.assertEqual(0, len(without.axes[0].collections))
@@ -244,7 +242,7 @@ class FlowPictures(unittest.TestCase):
         """A mode of amplitude A adds the energy A^2 / 4 per mass to the shell nearest to its wave vector's size."""
         cases = (((16, 16, 16), (1.0, 1.0, 1.0), (3, 0, 0), 3), ((16, 18, 20), (1.0, 1.0, 1.0), (2, 3, 4), 5),
                  ((16, 12, 1), (1.0, 1.0, 5.0), (3, -4, 0), 5), ((1, 15, 16), (1.0, 2.0, 1.0), (0, 4, 1), 4),
-                 ((16, 1, 8), (4.0, 1.0, 2.0), (1, 0, 1), 2), ((9, 9, 9), (1.0, 1.0, 1.0), (0, 0, -4), 4))  # fmt: skip
+                 ((16, 1, 8), (4.0, 1.0, 2.0), (1, 0, 1), 2), ((9, 9, 9), (1.0, 1.0, 1.0), (0, 0, -4), 4))
         for cells, lengths, mode, shell in cases:
             with self.subTest(cells=cells, mode=mode):
                 phase = sum(
@@ -320,14 +318,12 @@ class FlowPictures(unittest.TestCase):
         self.assertAlmostEqual(axes.transData.transform(end)[1], (box.y0 + box.y1) / 2, delta=2)
 
     def test_spectrum_needs_periodic_sides_and_several_modes(self):
-        opened = read_run(
-            write_flow(self.folder / "opened", (8, 8, 1), (1.0, 1.0, 1.0), shear, is_open=True)
-        )
+        opened = read_run(write_flow(self.folder / "opened", (8, 8, 1), (1.0, 1.0, 1.0), shear, is_open=True))
         self.assertFalse(is_periodic(opened))
         still = read_run(
             write_flow(self.folder / "still", (8, 8, 1), (1.0, 1.0, 1.0),
                        lambda time, x, y, z: {"velocity": vectors(np.sin(2 * np.pi * y), 0 * x, 0 * x)})
-        )  # fmt: skip
+        )
         self.assertTrue(is_periodic(still))
         self.assertIsNone(spectrum_figure(still, still.snapshots[0]))
 

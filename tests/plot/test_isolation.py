@@ -37,7 +37,7 @@ class Isolation(unittest.TestCase):
 
     def start(self, *words, environment=None):
         return subprocess.run([str(word) for word in words], capture_output=True, text=True, cwd=self.here,
-                              env=os.environ | (environment or {}), timeout=300, check=False)  # fmt: skip
+                              env=os.environ | (environment or {}), timeout=300, check=False)
 
     def assert_draws(self, environment=None, launcher=None):
         """Asserts that the history in the working folder is drawn as in an empty one, without a word of Python or matplotlib."""
@@ -92,7 +92,7 @@ class Isolation(unittest.TestCase):
         self.assertEqual(plain, self.assert_draws({
             "PYTHONHOME": str(other), "PYTHONSTARTUP": str(other / "start.py"), "PYTHONINSPECT": "1", "PYTHONPLATLIBDIR": "none",
             "PYTHONOPTIMIZE": "2", "PYTHONUSERBASE": str(other), "PYTHONIOENCODING": "ascii",
-        }))  # fmt: skip
+        }))
 
     def test_settings_of_matplotlib_change_nothing(self):
         plain = self.assert_draws()

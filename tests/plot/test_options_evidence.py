@@ -44,18 +44,14 @@ class Solutions(Folder):
             return {text.get_text() for text in figure.axes[0].texts}
 
         core, gpu = labels(figure_of(self)), labels(figure_of(self, records.H200, "cuda"))
-        self.assertEqual(
-            {"[Shi], one option", "[Shi], 4096 options", "hand-written AVX-512", "PROJ"}, core
-        )
+        self.assertEqual({"[Shi], one option", "[Shi], 4096 options", "hand-written AVX-512", "PROJ"}, core)
         self.assertEqual(core | {"hand-written CUDA"}, gpu)
 
     def test_published_results_have_problem_backend_and_source(self):
         for result in PUBLISHED_RESULTS:
             self.assertIn(result.problem, FAMILY.problems)
             self.assertIn(result.backend, perf_record.BACKENDS)
-            self.assertTrue(
-                result.source and all(seconds > 0 and error > 0 for seconds, error in result.points)
-            )
+            self.assertTrue(result.source and all(seconds > 0 and error > 0 for seconds, error in result.points))
 
     def test_table_shows_times_to_target_errors(self):
         page, files = self.page(records.options_solutions(), "options")
@@ -96,7 +92,7 @@ class Batches(Folder):
         self.assertEqual(["options-transfers_cuda_nvidia-h200.png", "options.html"], files)
         rows = page.tables[MACHINE, "Tables 5.7 and 5.8, CUDA"]
         self.assertEqual([5, 5, 6], [sum(row[:2] == place for row in rows) for place in (
-            ["1", "128"], ["1", "256"], ["32", "128"])])  # fmt: skip
+            ["1", "128"], ["1", "256"], ["32", "128"])])
         pageable, pinned = (row for row in rows if row[:3] == ["32", "128", "ours, two solves for an error"])
         self.assertEqual(["pageable", "20", "160", "20", "200", "19\u2009478", "1\u00d710\u22124"], pageable[3:])
         self.assertEqual(["pinned", "18", "160", "20", "198"], pinned[3:8])

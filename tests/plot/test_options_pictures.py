@@ -76,8 +76,6 @@ class OptionsPictures(unittest.TestCase):
             self.assertEqual(6, cli.main([str(self.folder), "--quiet"]))
 
     def test_demo_finds_largest_difference_of_prices(self):
-        self.write(
-            batch="id,strike\na,1\nb,100\n", one="id,price\na,0.1\nb,5\n", other="id,price\na,0.2\nb,6\n"
-        )
+        self.write(batch="id,strike\na,1\nb,100\n", one="id,price\na,0.1\nb,5\n", other="id,price\na,0.2\nb,6\n")
         files = [self.folder / f"{name}.csv" for name in ("one", "other", "batch")]
         self.assertAlmostEqual(0.1, largest_difference(*files))

@@ -131,9 +131,7 @@ class Pictures(unittest.TestCase):
             '[boundary]\nleft = "periodic"\nright = "periodic"\n[verify]\nexact = "advection"\n'
         )
         one = np.ones_like(x)
-        synthetic.write_fields(
-            run / "fields.h5", x, [1.3], lambda t, x: (1 + 0.2 * np.sin(np.pi * (x - t)), one, one)
-        )
+        synthetic.write_fields(run / "fields.h5", x, [1.3], lambda t, x: (1 + 0.2 * np.sin(np.pi * (x - t)), one, one))
         loaded = read_run(run)
         error = pointwise_errors(loaded, loaded.snapshots[0], exact_solution(loaded))
         self.assertLess(np.abs(error["rho"]).max(), 1e-14)
@@ -144,13 +142,9 @@ class Pictures(unittest.TestCase):
         run.mkdir()
         (run / "scene.toml").write_text('[verify]\nexact = "reference"\n')
         fine = np.linspace(-1, 1, 2001)
-        reference = dict(
-            zip(("rho", "u", "p"), (1 + fine**2, fine, fine + 2)), x=fine, scheme="z", cells=2001
-        )
+        reference = dict(zip(("rho", "u", "p"), (1 + fine**2, fine, fine + 2)), x=fine, scheme="z", cells=2001)
         x = np.linspace(-0.9, 0.9, 40)
-        synthetic.write_fields(
-            run / "fields.h5", x, [0.1, 0.2], lambda t, x: (1 + x**2, x, x + 2 + t), reference
-        )
+        synthetic.write_fields(run / "fields.h5", x, [0.1, 0.2], lambda t, x: (1 + x**2, x, x + 2 + t), reference)
         loaded = read_run(run)
         exact = exact_solution(loaded)
         self.assertIn("2001 cells", exact.name)
@@ -214,9 +208,7 @@ class Pictures(unittest.TestCase):
         rows = read_run(self.folder).study
         for norm, label in (("energy_balance", "biquadratic"), ("cauchy_area", "biquadratic  order 2.00")):
             with self.subTest(norm):
-                self.assertEqual(
-                    [label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts]
-                )
+                self.assertEqual([label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts])
 
     def test_many_long_labels_of_study_fit(self):
         axes = ("", " lf-global", " lf-single"), ("", " ssprk43"), ("", " split")
@@ -256,7 +248,7 @@ class Pictures(unittest.TestCase):
                     low, high = axes.get_xlim()
                     ticks = [*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks()]
                     boxes = sorted((tick.label1.get_window_extent() for tick in ticks
-                                    if tick.label1.get_text() and low <= tick.get_loc() <= high), key=lambda box: box.x0)  # fmt: skip
+                                    if tick.label1.get_text() and low <= tick.get_loc() <= high), key=lambda box: box.x0)
                     self.assertGreater(len(boxes), 0)
                     for left, right in zip(boxes, boxes[1:]):
                         self.assertLess(left.x1, right.x0)
@@ -360,11 +352,7 @@ class Refusals(unittest.TestCase):
             environment.pop("DROGUE_PLOT_MOVED", None)
             # -S hides the packages of this interpreter.
             done = subprocess.run(
-                [sys.executable, "-S", "-m", "plot", "."],
-                capture_output=True,
-                text=True,
-                env=environment,
-                check=False,
+                [sys.executable, "-S", "-m", "plot", "."], capture_output=True, text=True, env=environment, check=False,
             )
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
             self.assertIn("packages are missing", done.stderr)

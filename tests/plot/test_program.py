@@ -31,7 +31,7 @@ class ProgramTest(unittest.TestCase):
         own = {name: value for name, value in os.environ.items() if name not in absent}
         own |= {"PYTHONPATH": str(packages.SOURCE / "scripts")} | (environment or {})
         return subprocess.Popen([sys.executable, *map(str, words)], stdout=stdout, stderr=subprocess.PIPE, text=True,
-                                env=own, **settings)  # fmt: skip
+                                env=own, **settings)
 
     def plot(self, *words, **settings):
         """Exit code, standard output and standard error."""
@@ -76,7 +76,7 @@ class Signals(ProgramTest):
         encoder.chmod(0o755)
         out = self.folder / "out"
         process = self.start("-m", "plot", run, "--out", out, "--movie", "mp4",
-                             environment={"IMAGEIO_FFMPEG_EXE": str(encoder)})  # fmt: skip
+                             environment={"IMAGEIO_FFMPEG_EXE": str(encoder)})
         while not started.exists() and process.poll() is None:
             time.sleep(0.01)
         process.send_signal(signal.SIGTERM)
@@ -120,7 +120,7 @@ class SeveralRanks(ProgramTest):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         before = sorted(run.iterdir())
         for environment in ({"OMPI_COMM_WORLD_SIZE": "2", "OMPI_COMM_WORLD_RANK": "0"}, {"OMPI_COMM_WORLD_SIZE": "2"},
-                            {"PMI_SIZE": "2", "PMI_RANK": "0"}, {"SLURM_NTASKS": "2", "PMIX_RANK": "0"}):  # fmt: skip
+                            {"PMI_SIZE": "2", "PMI_RANK": "0"}, {"SLURM_NTASKS": "2", "PMIX_RANK": "0"}):
             with self.subTest(environment=environment):
                 code, out, err = self.plot(run, environment=environment)
                 self.assertEqual((code, out, err.count("\n")), (2, "", 1), err)
@@ -133,7 +133,7 @@ class SeveralRanks(ProgramTest):
     def test_accepts_one_rank(self):
         synthetic.write_history(self.folder / "history.csv")
         for environment in ({"OMPI_COMM_WORLD_SIZE": "1", "OMPI_COMM_WORLD_RANK": "0"}, {"SLURM_NTASKS": "64"},
-                            {"OMPI_COMM_WORLD_SIZE": "many"}):  # fmt: skip
+                            {"OMPI_COMM_WORLD_SIZE": "many"}):
             with self.subTest(environment=environment):
                 code, out, err = self.plot(self.folder, environment=environment)
                 self.assertEqual((code, out, err), (0, f"{self.folder / 'history.png'}\n", ""))

@@ -47,11 +47,9 @@ shift 2
 def _write_strip(file, strain, poisson, columns=10, rows=4):
     """Writes a triangulated strip of 0.1 x 0.02 m that is stretched along x and free to contract."""
     place = {(i, j): j * (columns + 1) + i for j in range(rows + 1) for i in range(columns + 1)}
-    rest = np.array(
-        [(0.1 * i / columns, 0.02 * j / rows, 0.0) for j in range(rows + 1) for i in range(columns + 1)]
-    )
+    rest = np.array([(0.1 * i / columns, 0.02 * j / rows, 0.0) for j in range(rows + 1) for i in range(columns + 1)])
     corners = [(place[i, j], place[i + 1, j], place[i, j + 1], place[i + 1, j + 1])
-               for i in range(columns) for j in range(rows)]  # fmt: skip
+               for i in range(columns) for j in range(rows)]
     triangles = [triangle for a, b, c, d in corners for triangle in ((a, b, d), (a, d, c))]
     with h5py.File(file, "w") as h5:
         h5["mesh/vertices"], h5["mesh/triangles"] = rest, np.array(triangles)
@@ -75,7 +73,7 @@ class ParachuteRecords(TemporaryFolder):
         line = ["record_parachute.py", "test", *map(str, folders), "--backends", "serial", *words]
         path = f"{self.folder}{os.pathsep}{os.environ['PATH']}"
         with (mock.patch.object(sys, "argv", line), mock.patch.dict(os.environ, {"PATH": path}),
-              contextlib.redirect_stdout(io.StringIO()) as printed):  # fmt: skip
+              contextlib.redirect_stdout(io.StringIO()) as printed):
             code = record_parachute.main()
         rows = json.loads((self.folder / "parachute-test.json").read_text())["runs"]
         return code, {(row["scene"], row["ranks"]): row for row in rows}, printed.getvalue().splitlines()
@@ -113,7 +111,7 @@ class ParachuteRecords(TemporaryFolder):
         _, _, lines = self.record("--ranks", "1,2", "--skip", "lasts")
         self.assertEqual(["| ranks | backend | passed | failed | refuse several ranks | not run |", "|---:|---|---:|---|---|---|",
                           "| 1 | serial | 2 of 4 | `fails` |  | `lasts` |", "| 2 | serial | 1 of 4 | `fails` | `alone` | `lasts` |"],
-                         [line for line in lines if line.startswith("|")])  # fmt: skip
+                         [line for line in lines if line.startswith("|")])
         self.assertEqual("| 1 | serial | 0 of 1 |  |  | `new` |",
                          record_parachute.table([{"ranks": 1, "backend": "serial", "scene": "old"}], ["new"]).splitlines()[2])
 
@@ -161,9 +159,7 @@ class Records(TemporaryFolder):
         self.assertEqual(["fields.h5 of one run alone"], recording.differing_results(a, b))
         for folder in (a, c):
             (folder / "fields.h5").unlink()
-        self.assertEqual(
-            ([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c))
-        )
+        self.assertEqual(([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c)))
         for folder in (a, b):
             (folder / "history.csv").unlink()
         self.assertEqual(["neither fields nor history"], recording.differing_results(a, b))

@@ -49,7 +49,7 @@ exit "$act"
 HEAD = {"schema": "drogue.perf/1", "check": "passed"}  # of each record
 HOST = ["gas-step/serial/1024", "gas-step/openmp/1024", "gas-step/dense-loop/1024", "ceiling/fp64/serial", "options/serial/1/128x32"]
 CUDA = ["gas-step/cuda/1024", "gas-step/serial/1024", "options/cuda/1/128x32", "options/cuda/4096/128x32", "options/cuda/4096/256x64",
-        "flow-step/cuda/64x64x64/periodic"]  # fmt: skip
+        "flow-step/cuda/64x64x64/periodic"]
 
 
 class Bench(unittest.TestCase):
@@ -274,7 +274,7 @@ class Bench(unittest.TestCase):
         (self.bin / "drogue-plot").write_text("#!/bin/sh\necho 'a.jsonl:1: the line ends within a record' >&2\nexit 3\n")
         broken = subprocess.run(words, capture_output=True, text=True, check=False)
         self.assertEqual((1, "a.jsonl:1: the line ends within a record\nnothing is published: no page can be made of the records, "
-                             "for the reason above\n"), (broken.returncode, broken.stderr))  # fmt: skip
+                             "for the reason above\n"), (broken.returncode, broken.stderr))
         self.assertEqual(["README.md"], [path.name for path in (tree / "docs/evidence").iterdir()])
         (self.bin / "drogue-plot").write_text(noted)
         first = subprocess.run(words, capture_output=True, text=True, check=True)

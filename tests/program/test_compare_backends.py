@@ -40,7 +40,7 @@ class Backends(unittest.TestCase):
     def compare(self, *words, backends="serial,openmp"):
         """Exit code and printed lines of a comparison, of which a rejected one writes its last line to stderr."""
         command = [sys.executable, "-B", SCRIPT, "springs", "--bin", self.folder, "--work", self.folder / "work",
-                   "--backends", backends, *words]  # fmt: skip
+                   "--backends", backends, *words]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         return done.returncode, done.stdout.splitlines() or done.stderr.splitlines()[-1:]
 
@@ -49,7 +49,7 @@ class Backends(unittest.TestCase):
         self.assertEqual((1, "1 of 3 scenes have the same bits on serial, openmp"), (code, lines.pop()))
         self.assertEqual(
             ["differs: other bits than on serial: openmp (1)", "equal: the same bits",
-             "fails: exit codes serial 0, openmp 77: drogue-springs: no such device"], sorted(lines))  # fmt: skip
+             "fails: exit codes serial 0, openmp 77: drogue-springs: no such device"], sorted(lines))
 
     def test_counts_no_scenes_that_are_left_out(self):
         lines = ["equal: the same bits", "1 of 1 scenes have the same bits on serial, openmp"]

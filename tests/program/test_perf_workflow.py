@@ -42,7 +42,7 @@ class Workflow(perf_program.PerfTest):
         # The samples of a run spread by one per cent.
         record = {"schema": "drogue.perf/1", "case": "gas-step/serial/1024", "unit": "s per step", "bound": "", "median": 1.0,
                   "interval": [1.0, 1.0], "samples": "SAMPLES", "error": 1e-3, "check": "passed",
-                  "facts": {"backend": "serial", "cells": 1024}, "provenance": provenance}  # fmt: skip
+                  "facts": {"backend": "serial", "cells": 1024}, "provenance": provenance}
         samples = [f"SCALE0{7 * i % 10}e-3" for i in range(30)]
         line = json.dumps(record).replace('"SAMPLES"', f"[{', '.join(samples)}]")
         (self.folder / "template").write_text(line + "\n", encoding="utf-8")
@@ -62,7 +62,7 @@ class Workflow(perf_program.PerfTest):
         self.tree("old", old)
         self.tree("new", new)
         return {name: subprocess.run(["bash", "-e", "-c", text], cwd=self.folder, capture_output=True, text=True, check=False)
-                for name, text in steps().items()}  # fmt: skip
+                for name, text in steps().items()}
 
     def test_equal_trees_pass(self):
         done = self.run_steps("1.0", "1.0")

@@ -23,5 +23,5 @@ class Smoke(unittest.TestCase):
                 done = subprocess.run(
                     [Path(os.environ["DROGUE_BIN"]) / program, *words],
                     cwd=folder, capture_output=True, text=True, check=False,
-                )  # fmt: skip
+                )
                 self.assertEqual((0, ""), (done.returncode, done.stderr))
