@@ -1,10 +1,6 @@
 """Fault tests of the checks: a tolerance below the error of the run ends with exit code 5."""
 
-import os
 import re
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 

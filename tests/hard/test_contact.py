@@ -1,10 +1,6 @@
 """A contact at rest is preserved bit for bit by every scheme and limiter."""
 
 import itertools
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import hard_cases

@@ -1,11 +1,7 @@
 """Cases that fail without the limiter: each failure is reported, and positivity = "auto" completes the run."""
 
 import math
-import os
 import re
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import hard_cases

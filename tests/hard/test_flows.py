@@ -2,10 +2,6 @@
 """Every shipped small scene of drogue-parachute meets its tolerances, and flows in hard conditions stay sound."""
 
 import math
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import parachute_program

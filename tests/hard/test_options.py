@@ -1,11 +1,7 @@
 """The hard cases of drogue-options: finite differences meet their tolerances against the Fourier methods, whose prices are kept."""
 
 import csv
-import os
 import pathlib
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import options_program
 

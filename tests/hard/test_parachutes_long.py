@@ -1,10 +1,6 @@
 """Every shipped small scene of a parachute meets its bounds."""
 
 import math
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import parachute_program

@@ -1,10 +1,5 @@
 """Shu-Osher and the blast against a run on 3200 cells, for every scheme, on up to 400 cells."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import reference_tolerances
 

@@ -1,10 +1,5 @@
 """Every shipped gas scene meets its tolerances unchanged."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 
 

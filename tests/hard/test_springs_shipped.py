@@ -1,10 +1,6 @@
 """Every shipped springs scene meets its tolerances unchanged."""
 
 import math
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import springs_program

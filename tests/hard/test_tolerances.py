@@ -1,10 +1,5 @@
 """Hard cases with a closed form meet their tolerances, for every scheme, on up to 401 cells."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import hard_cases
 

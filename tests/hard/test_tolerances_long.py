@@ -1,10 +1,5 @@
 """Finest rows of tolerances.csv: 800 cells and more, and published references on 12800 cells."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import hard_cases
 import reference_tolerances

@@ -1,10 +1,5 @@
 """Invalid rows of a batch are reported as `invalid`, all others are priced; an invalid file ends with exit code 3."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import bad_batches
 import options_program
 from options_program import FAST, HEADER, batch, row

@@ -1,10 +1,6 @@
 """Invalid scenes of drogue-parachute end with exit code 3 and a sentence that names file, line and key."""
 
-import os
 import re
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import bad_bodies
 import bad_canopies

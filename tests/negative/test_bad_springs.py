@@ -1,10 +1,5 @@
 """Invalid springs scenes and meshes end with exit code 3 and a sentence that names file, line and part."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import bad_springs
 import mutations
 import springs_program

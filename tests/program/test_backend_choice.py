@@ -4,10 +4,7 @@ import json
 import os
 import resource
 import subprocess
-import sys
 import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import options_program

@@ -5,9 +5,6 @@ import pathlib
 import re
 import shutil
 import subprocess
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 

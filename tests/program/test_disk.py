@@ -4,9 +4,6 @@ import os
 import resource
 import shutil
 import subprocess
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import small_disk

@@ -1,10 +1,5 @@
 """Checks of columns of history.csv, [[verify.history]], in all programs that run scenes."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import parachute_program
 import springs_program

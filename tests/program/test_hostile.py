@@ -3,11 +3,7 @@
 
 import itertools
 import math
-import os
 import random
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 SOURCE = os.environ["DROGUE_SOURCE"]
-sys.path[:0] = [SOURCE + "/tests/support", SOURCE + "/scripts/studies"]
+sys.path.insert(0, SOURCE + "/scripts/studies")
 
 import fit_error_estimate
 import gas_program

@@ -8,11 +8,8 @@ import re
 import resource
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import options_program

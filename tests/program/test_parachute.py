@@ -14,8 +14,6 @@ import sys
 import time
 import xml.etree.ElementTree
 
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/negative")
 
 import bad_bodies

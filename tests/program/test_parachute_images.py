@@ -1,11 +1,6 @@
 # ctest-label: no-sanitizer
 """drogue-parachute: sheets that reach images beyond periodic sides, where contact does not act."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import parachute_program
 from parachute_program import DRIFT
 

@@ -2,10 +2,6 @@
 """drogue-parachute: steps that nothing in the scene names, of every kind of drive, against exact solutions."""
 
 import math
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import parachute_program
 from parachute_program import CANOPY, statistic

@@ -13,8 +13,6 @@ import subprocess
 import sys
 import unittest
 
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import perf_program
 from rank_processes import LAUNCHER, RANK_ENVIRONMENT

@@ -4,12 +4,9 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 SOURCE = Path(os.environ["DROGUE_SOURCE"])
-sys.path.insert(0, str(SOURCE / "tests/support"))
-
 import perf_program
 
 # The build of the history: a program whose times and error are those of the file `speed` of the commit.

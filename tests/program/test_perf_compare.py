@@ -4,9 +4,6 @@ import json
 import os
 import re
 import subprocess
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 

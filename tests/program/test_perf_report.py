@@ -6,9 +6,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 

@@ -5,10 +5,7 @@ import os
 import pathlib
 import re
 import subprocess
-import sys
 import textwrap
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 

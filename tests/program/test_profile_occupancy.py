@@ -3,9 +3,6 @@
 import os
 import pathlib
 import subprocess
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 

@@ -1,11 +1,7 @@
 """Contents of result.json, history.csv, fields.h5 and fields.xdmf after successful and failed runs."""
 
 import math
-import os
-import sys
 import xml.etree.ElementTree
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 

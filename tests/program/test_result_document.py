@@ -1,12 +1,8 @@
 """result.json of all programs: docs/result.md has every key, its times add up, its flags are those of the compile commands."""
 
 import json
-import os
 import re
 import shlex
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import options_program

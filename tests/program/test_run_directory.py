@@ -1,12 +1,8 @@
 # ctest-label: no-sanitizer
 """Run directories: their files, treatment of former runs, and terminal output."""
 
-import os
 import subprocess
-import sys
 import time
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 

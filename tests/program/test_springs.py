@@ -3,12 +3,8 @@
 
 import json
 import math
-import os
 import re
 import resource
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import springs_program

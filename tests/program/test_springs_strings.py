@@ -2,11 +2,7 @@
 
 import array
 import math
-import os
-import sys
 import xml.etree.ElementTree
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import springs_program
 

@@ -6,10 +6,7 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import springs_program

@@ -1,12 +1,8 @@
 # ctest-label: no-sanitizer
 """Runs that are interrupted after a whole step and continued equal uninterrupted runs bit for bit."""
 
-import os
 import signal
-import sys
 import time
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import restarting

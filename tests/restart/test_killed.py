@@ -1,11 +1,6 @@
 # ctest-label: no-sanitizer
 """Runs that are killed and continued equal uninterrupted runs bit for bit."""
 
-import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import restarting
 

@@ -2,9 +2,6 @@
 
 import fcntl
 import os
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 

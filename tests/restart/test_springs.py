@@ -1,15 +1,11 @@
 # ctest-label: no-sanitizer
 """Springs runs that are killed or interrupted and continued equal uninterrupted runs bit for bit."""
 
-import os
 import random
 import shutil
 import signal
 import subprocess
-import sys
 import time
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import springs_program

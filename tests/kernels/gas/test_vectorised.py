@@ -2,11 +2,9 @@
 
 import os
 import pathlib
-import sys
 import unittest
 
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-import disassembly  # noqa: E402
+import disassembly
 
 BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
 # WENO-JS in full precision, all stages in one kernel.
