@@ -119,7 +119,7 @@ def chord_table(program, backend, work):
 def drum_table(program, backend, work, largest, sets):
     """Table 5.3, with springs along edges as in [Shi], and with the biquadratic membrane."""
     meshes = DRUM if largest else DRUM[:-1]
-    lists = ("meshes=" + ":".join(str(points) for points, _ in meshes) + ",models=edge:biquadratic,masses=equal:area")
+    lists = "meshes=" + ":".join(str(points) for points, _ in meshes) + ",models=edge:biquadratic,masses=equal:area"
     found = study(program, "drum-cone", backend, work / "drum-cone-study", lists, *sets)
     if not found:
         return None
@@ -231,45 +231,20 @@ def print_tables(record):
         return ", ".join(f"{value:.3g}" for value in values)
 
     if record["table_5_2"]:
-        print_markdown(
-            "Table 5.2",
-            ("points", "mass", "[Shi]", "its stiffness", "the same, RMS", "E A kept"),
-            [
-                (
-                    str(r["points"]), r["mass"], triple(r["dissertation"]), triple(r["cauchy"]["stiffness"]),
-                    triple(r["cauchy"]["stiffness_rms"]), triple(r["cauchy"]["axial_stiffness"]),
-                )
-                for r in record["table_5_2"]
-            ],
-        )
+        rows = [(str(r["points"]), r["mass"], triple(r["dissertation"]),
+                 *(triple(r["cauchy"][name]) for name in ("stiffness", "stiffness_rms", "axial_stiffness")))
+                for r in record["table_5_2"]]
+        print_markdown("Table 5.2", ("points", "mass", "[Shi]", "its stiffness", "the same, RMS", "E A kept"), rows)
     for key, title in (("table_5_3", "Table 5.3"), ("table_5_3_small_steps", "Table 5.3, z < 0.1, 2 s")):
-        if not record.get(key):
-            continue
-        print_markdown(
-            title,
-            ("points", "model", "mass", "[Shi]", "here", "energy drift"),
-            [
-                (
-                    str(r["vertices"]), r["model"], r["mass"], triple(r["dissertation"]), triple(r["cauchy"]),
-                    r["energy_drift"],
-                )
-                for r in record[key]
-            ],
-        )
+        if record.get(key):
+            rows = [(str(r["vertices"]), r["model"], r["mass"], triple(r["dissertation"]), triple(r["cauchy"]), r["energy_drift"])
+                    for r in record[key]]
+            print_markdown(title, ("points", "model", "mass", "[Shi]", "here", "energy drift"), rows)
     if record["table_5_4"]:
-        keys = (
-            ("dissertation", "modulus"), ("clamped", "modulus_without_a_corner"), ("clamped", "modulus"),
-            ("free", "modulus"), ("dissertation", "poisson"), ("clamped", "largest_poisson"),
-            ("clamped", "poisson"), ("free", "poisson"),
-        )
-        print_markdown(
-            "Table 5.4",
-            ("nu", "E (GPa)", *(f"{a} {b.replace('_', ' ')}" for a, b in keys)),
-            [
-                (f"{r['poisson']:.2f}", f"{r['modulus'] / 1e9:.1f}", *(f"{r[a][b]:.5f}" for a, b in keys))
-                for r in record["table_5_4"]
-            ],
-        )
+        keys = (("dissertation", "modulus"), ("clamped", "modulus_without_a_corner"), ("clamped", "modulus"), ("free", "modulus"),
+                ("dissertation", "poisson"), ("clamped", "largest_poisson"), ("clamped", "poisson"), ("free", "poisson"))
+        rows = [(f"{r['poisson']:.2f}", f"{r['modulus'] / 1e9:.1f}", *(f"{r[a][b]:.5f}" for a, b in keys)) for r in record["table_5_4"]]
+        print_markdown("Table 5.4", ("nu", "E (GPa)", *(f"{a} {b.replace('_', ' ')}" for a, b in keys)), rows)
 
 
 def main():

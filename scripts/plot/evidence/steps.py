@@ -158,10 +158,7 @@ def _goal_row(goal: Goal, record: Record, by_case: dict[tuple, Record]) -> list[
     values = measured(goal, record, by_case.get((goal.compared_case, *record.run_id)))
     if values is None:
         return [
-            _case_label(goal, record),
-            goal.measure,
-            "",
-            *limits,
+            _case_label(goal, record), goal.measure, "", *limits,
             f"{_short(goal.compared_case)} is not in the same run",
         ]
     words = verdict(goal, values[0])

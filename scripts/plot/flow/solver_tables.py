@@ -29,15 +29,10 @@ def _pressure_row(record: Record) -> list[str]:
     if more and "tolerance" not in record.facts:
         tolerance = float(more[0])
     return [
-        BACKENDS.get(backend, backend),
-        grid,
-        sides,
-        _NAMES.get(solver, solver),
-        "round-off" if tolerance is None else f"{tolerance:g}",
-        html_page.format_number(1e3 * record.median),
+        BACKENDS.get(backend, backend), grid, sides, _NAMES.get(solver, solver),
+        "round-off" if tolerance is None else f"{tolerance:g}", html_page.format_number(1e3 * record.median),
         html_page.format_number(1e9 * record.median / record.facts["cells"]),
-        "" if iterations is None else str(iterations),
-        html_page.format_number(record.error),
+        "" if iterations is None else str(iterations), html_page.format_number(record.error),
     ]
 
 

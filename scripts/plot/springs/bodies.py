@@ -94,9 +94,7 @@ def outlines(scene: dict, projection: np.ndarray) -> list[np.ndarray]:
 def facets(scene: dict, points: np.ndarray) -> np.ndarray:
     """Facets (n, 4, 3) of all contact bodies of a resolved scene; `points` (n, 3) are positions of the cloth, m."""
     make = {
-        "disk": _disk,
-        "sphere": _sphere,
-        "plane": lambda body: _plane(body, points),
+        "disk": _disk, "sphere": _sphere, "plane": lambda body: _plane(body, points),
         "level-set": lambda body: _level_set(body, points),
     }
     bodies = scene.get("contact", {}).get("objects", [])
