@@ -20,15 +20,6 @@ MINUTES_SERIALLY = {"taylor-green-3d", "c9-flat"}
 
 
 class Shipped(parachute_program.FlowTest):
-    def assert_all_pass(self, backend, scenes):
-        self.assertGreaterEqual(len(scenes), 7)
-        for scene in scenes:
-            with self.subTest(scene):
-                self.expect(0, scene, "--backend", backend)
-                reported = self.result(f"out/{scene}")
-                self.assertEqual(("ok", backend, scene), (reported["status"], reported["backend"], reported["scene"]))
-                self.assertGreaterEqual(len(reported["checks"]), 1)
-
     def test_serial_meets_the_tolerances(self):
         left_out = MINUTES_SERIALLY | OTHER_PARACHUTES
         self.assert_all_pass("serial", [name for name in parachute_program.SMALL_SCENES if name not in left_out])

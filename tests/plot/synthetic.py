@@ -136,17 +136,8 @@ def write_springs_study(file, order=2.0, checks=("frequency", "equilibrium")):
             cauchy = ["", "", ""] if rings == 32 else [error, 2 * error, 3 * error]
             table.writerow(
                 [
-                    "biquadratic",
-                    "biquadratic",
-                    "area",
-                    "rk4",
-                    "serial",
-                    vertices,
-                    100 * rings,
-                    1e-3 * rings**3,
-                    *[error, 1e-9][: len(checks)],
-                    *cauchy,
-                    "ok",
+                    "biquadratic", "biquadratic", "area", "rk4", "serial", vertices, 100 * rings, 1e-3 * rings**3,
+                    *[error, 1e-9][: len(checks)], *cauchy, "ok",
                 ]
             )
     return file

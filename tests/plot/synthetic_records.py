@@ -87,11 +87,7 @@ def step(case, seconds, machine, cells, **changes):
     """A step with its work: 1300 FLOP and 72 bytes per cell."""
     words = case.split("/")
     facts = {
-        "backend": words[0],
-        "cells": cells,
-        "variant": "/".join(words[2:]),
-        "flops": 1300 * cells,
-        "bytes": 72 * cells,
+        "backend": words[0], "cells": cells, "variant": "/".join(words[2:]), "flops": 1300 * cells, "bytes": 72 * cells,
     }
     return record(f"gas-step/{case}", seconds, machine, facts, **changes)
 

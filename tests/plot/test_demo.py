@@ -2,23 +2,20 @@
 
 import os
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 from pathlib import Path
 from types import SimpleNamespace
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 from plot.demo.__main__ import BATCH, SHOWN
 from plot.demo.page import pictures_by_role
 
 
-class Demo(unittest.TestCase):
+class Demo(FolderTest):
     def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         fake = Path(__file__).with_name("fake_app.py")
         program = self.folder / "bin" / "drogue-gas"
         program.parent.mkdir()
@@ -28,14 +25,7 @@ class Demo(unittest.TestCase):
     def _demo(self, *words, failure=""):
         environment = os.environ | {"PYTHONPATH": str(packages.SOURCE / "scripts"), "FAKE_FAILURE": failure}
         command = [
-            sys.executable,
-            "-m",
-            "plot.demo",
-            "--bin",
-            self.folder / "bin",
-            "--out",
-            self.folder / "out",
-            *words,
+            sys.executable, "-m", "plot.demo", "--bin", self.folder / "bin", "--out", self.folder / "out", *words,
         ]
         return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
 

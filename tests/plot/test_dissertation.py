@@ -1,21 +1,14 @@
 """Figures of the dissertation from runs of this build."""
 
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 
 
-class Dissertation(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class Dissertation(FolderTest):
     def draw(self, figures):
         command = [sys.executable, packages.SOURCE / "scripts/studies/draw_dissertation.py", "--bin", os.environ["DROGUE_BIN"],
                    "--figures", figures, "--work", self.folder / "runs", "--to", self.folder]

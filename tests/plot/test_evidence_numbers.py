@@ -141,11 +141,7 @@ class Solutions(Folder):
         self.assertEqual([len(axes.lines) for axes in figure.axes], [6, 6, 6])
         figure.canvas.draw()
         renderer = figure.canvas.get_renderer()
-        boxes = [text.get_window_extent(renderer) for text in figure.texts]
-        for index, box in enumerate(boxes):
-            self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width)
-            for other in boxes[:index]:
-                self.assertFalse(box.overlaps(other))
+        self.assert_apart(figure.texts, figure.bbox)
         for axes in figure.axes:
             self.assertGreaterEqual(axes.yaxis.label.get_window_extent(renderer).x0, 0)
 
@@ -233,12 +229,7 @@ class Devices(Folder):
         tops, found = (ceilings(evidence.select(machine, "ceiling")), points(evidence.select(machine, "gas-step")))
         self.assertEqual([point.cells for point in found], [1024, 8192, 65536, 1 << 20, 1 << 24])
         figure = roofline_figure("Roofline", machine, tops, found)
-        renderer = figure.canvas.get_renderer()
-        boxes = [text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_rotation() == 0]
-        for index, box in enumerate(boxes):
-            self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width)
-            for other in boxes[:index]:
-                self.assertFalse(box.overlaps(other))
+        self.assert_apart([text for text in figure.axes[0].texts if text.get_rotation() == 0], figure.bbox)
 
     def test_transfers_show_times_and_factors_of_dissertation(self):
         page, files = self.page(records.transfers())

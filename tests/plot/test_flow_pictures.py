@@ -1,21 +1,15 @@
 """Figures of synthetic runs of drogue-parachute."""
 
-import contextlib
 import dataclasses
-import io
-import shutil
-import tempfile
-import unittest
 import warnings
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
 import h5py
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.text import Text
+from drawn import PictureTest, texts_of
 from PIL import Image
-from plot import cli, style
+from plot import cli
 from plot.flow.history_figure import flow_history_figure, keeps_energy
 from plot.flow.plane import plane_of
 from plot.flow.quantities import Quantity, default_names, quantities
@@ -44,21 +38,7 @@ def shear(time, x, y, z):
     }
 
 
-class FlowPictures(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(style.plt.close, "all")
-
-    def pictures(self, run):
-        return {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")}
-
-    def refusal(self, run, *words):
-        with contextlib.redirect_stderr(io.StringIO()) as errors:
-            self.assertEqual(2, cli.main([str(run), *words]))
-        self.assertEqual(set(), self.pictures(run))
-        return errors.getvalue()
-
+class FlowPictures(PictureTest):
     def test_draws_two_dimensional_run_whole(self):
         """The plane is normal to the axis with one cell, whichever it is."""
         for normal, right, up in ((0, 1, 2), (1, 0, 2), (2, 0, 1)):
@@ -182,14 +162,7 @@ class FlowPictures(unittest.TestCase):
         run = read_run(write_flow(self.folder / "run", (8, 8, 1), (1.0, 1.0, 1.0), shear))
         view = View(plane_of(run), list(quantities(run).values()))
         figure = slices_figure(view, run.snapshots[0])
-        figure.canvas.draw()
-        texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
-        boxes = [text.get_window_extent() for text in texts]
-        self.assertGreater(len(boxes), 50)
-        for k, box in enumerate(boxes):
-            self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1)
-            for other in boxes[:k]:
-                self.assertFalse(box.overlaps(other), (box, other))
+        self.assertGreater(len(self.assert_apart(texts_of(figure), figure.bbox)), 50)
 
     def test_signed_values_get_symmetric_diverging_colours(self):
         signed = np.linspace(-1, 3, 101)

@@ -4,11 +4,10 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 import synthetic
 
 _SHADOWED = ("plot", "csv", "json", "numpy", "matplotlib", "h5py", "PIL", "runpy", "sitecustomize", "usercustomize")
@@ -26,10 +25,10 @@ def write_launcher(folder, python=sys.executable, package=packages.SOURCE / "scr
     return launcher
 
 
-class Isolation(unittest.TestCase):
+class Isolation(FolderTest):
     def setUp(self):
-        self.folder = Path(tempfile.mkdtemp()).resolve()
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
+        self.folder = self.folder.resolve()
         self.here = self.folder / "here"
         self.here.mkdir()
         self.mark = self.folder / "executed"

@@ -100,12 +100,7 @@ class Batches(Folder):
     def test_labels_of_published_results_are_within_the_panel_and_apart(self):
         figure = figure_of(self, records.H200, "cuda")
         figure.canvas.draw()
-        renderer, panel = figure.canvas.get_renderer(), figure.axes[0]
-        boxes = [text.get_window_extent(renderer) for text in panel.texts]
-        self.assertGreater(len(boxes), 3)
-        for index, box in enumerate(boxes):
-            self.assertTrue(panel.bbox.x0 <= box.x0 and box.x1 <= panel.bbox.x1, panel.texts[index].get_text())
-            self.assertFalse(any(box.overlaps(other) for other in boxes[:index]), panel.texts[index].get_text())
+        self.assertGreater(len(self.assert_apart(figure.axes[0].texts, figure.axes[0].bbox)), 3)
 
     def test_draws_transfers_without_times_of_dissertation(self):
         lines = [line | {"facts": line["facts"] | {"thesis": {}}} for line in records.options_transfers()]

@@ -1,16 +1,13 @@
 """drogue-plot as a process: signals, ranks of a launcher, lost output, and the version."""
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-import unittest
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 import synthetic
 from PIL import Image
 from plot import style
@@ -20,11 +17,7 @@ _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMI_S
 _INTERRUPTED = r"\Adrogue-plot: interrupted by a signal; .*\.\n\Z"
 
 
-class ProgramTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class ProgramTest(FolderTest):
     def start(self, *words, stdout=subprocess.PIPE, environment=None, **settings):
         """Starts the interpreter with `words`, as users do: with a buffered standard output."""
         absent = ("PYTHONUNBUFFERED", *_LAUNCHERS)

@@ -4,14 +4,11 @@ import contextlib
 import io
 import json
 import os
-import shutil
 import sys
-import tempfile
-import unittest
-from pathlib import Path
 from unittest import mock
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 import h5py
 import numpy as np
 import record_parachute
@@ -57,13 +54,7 @@ def _write_strip(file, strain, poisson, columns=10, rows=4):
         h5["steps/000001/position"] = rest * [1 + strain, 1 - poisson * strain, 1.0]
 
 
-class TemporaryFolder(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-
-class ParachuteRecords(TemporaryFolder):
+class ParachuteRecords(FolderTest):
     def record(self, *words):
         """Exit code, rows by scene and ranks, and printed lines of a record of a stand-in for the program."""
         for name, text in (("drogue-parachute", PROGRAM), ("mpirun", LAUNCHER)):
@@ -123,7 +114,7 @@ class ParachuteRecords(TemporaryFolder):
         self.assertTrue(table + "\n" in text, f"the README lacks:\n{table}")
 
 
-class Records(TemporaryFolder):
+class Records(FolderTest):
     def test_response_of_strip_is_that_of_material(self):
         _write_strip(self.folder / "fields.h5", 1e-6, 0.3)
         found = record_springs.response(self.folder / "fields.h5", 5000.0, 0.3)

@@ -1,15 +1,10 @@
 """Figures of synthetic runs of cloth, strings and contact bodies."""
 
-import contextlib
-import io
-import shutil
-import tempfile
-import unittest
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
 import h5py
 import numpy as np
+from drawn import PictureTest
 from PIL import Image, ImageSequence
 from plot import cli, style
 from plot.run_directory import read_run
@@ -48,17 +43,10 @@ TRIANGLES = [[0, 1, 2], [0, 2, 3]]
 EDGES = [[0, 1], [1, 2], [2, 3], [0, 3], [0, 2]]
 
 
-class SpringsPictures(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class SpringsPictures(PictureTest):
     def assert_drawn(self, run):
         self.assertEqual(0, cli.main([str(run), "--quiet"]))
-        self.assertEqual(
-            {"fields.png", "fields.gif", "history.png"},
-            {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")},
-        )
+        self.assertEqual({"fields.png", "fields.gif", "history.png"}, self.pictures(run))
 
     def test_draws_cloth_in_space(self):
         raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
@@ -71,12 +59,6 @@ class SpringsPictures(unittest.TestCase):
         self.assertGreater(view.projection[1] @ [0, 0, 1], 0.5, "the vertical axis must point upwards")
         with Image.open(run / "fields.gif") as movie:
             self.assertEqual(2, movie.n_frames)
-
-    def refusal(self, run, *words):
-        with contextlib.redirect_stderr(io.StringIO()) as errors:
-            self.assertEqual(2, cli.main([str(run), *words]))
-        self.assertEqual([], [file.name for file in run.iterdir() if file.suffix in (".png", ".gif")])
-        return errors.getvalue()
 
     def test_rejects_unknown_field_with_nearest_name(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE], [[1.0, 1.0]])

@@ -11,12 +11,11 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
-import unittest
 
 SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
 sys.path.insert(0, str(SOURCE / "scripts"))
 
+from folder_test import FolderTest
 import publish_records
 
 BENCH = SOURCE / "scripts/bench.sh"
@@ -52,11 +51,9 @@ CUDA = ["gas-step/cuda/1024", "gas-step/serial/1024", "options/cuda/1/128x32", "
         "flow-step/cuda/64x64x64/periodic"]
 
 
-class Bench(unittest.TestCase):
+class Bench(FolderTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.bin, self.out = self.folder / "bin", self.folder / "out"
         self.bin.mkdir()
         (self.bin / "drogue-perf").write_text(PROGRAM)

@@ -6,8 +6,8 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
-import unittest
+
+from folder_test import FolderTest
 
 SCRIPT = pathlib.Path(os.environ["DROGUE_SOURCE"]) / "scripts" / "compare_backends.py"
 # One scene with equal histories, one whose history names the backend, one that fails on OpenMP without a result, and one that
@@ -28,11 +28,9 @@ if scene == "fails" and backend == "openmp":
 """
 
 
-class Backends(unittest.TestCase):
+class Backends(FolderTest):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         program = self.folder / "drogue-springs"
         program.write_text(PROGRAM)
         program.chmod(0o755)

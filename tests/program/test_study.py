@@ -1,8 +1,6 @@
 # ctest-label: no-sanitizer
 """Option --study: tables of errors and times over meshes and schemes."""
 
-import csv
-import json
 import os
 import signal
 import subprocess
@@ -21,10 +19,7 @@ class StudyTest(gas_program.GasTest):
         return run
 
     def tables(self, directory):
-        folder = self.folder / directory
-        with (folder / "study.csv").open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        return rows, json.loads((folder / "study.json").read_text(encoding="utf-8"))
+        return self.table(f"{directory}/study.csv"), self.document(f"{directory}/study.json")
 
     def assert_interrupted(self, scene, lists, sets, begun):
         line = gas_program.arguments(scene, "--backend", "serial", "--study", lists, "--out", "study", sets=sets,
