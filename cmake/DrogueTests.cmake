@@ -112,7 +112,8 @@ endif()
 endfunction()
 
 # drogue_add_python_test(<file> <label>): a unittest module, run with the standard library's runner.
-# Its environment names the programs (DROGUE_BIN), the sources (DROGUE_SOURCE) and the build folder (DROGUE_BUILD).
+# Its environment names the programs (DROGUE_BIN), the sources (DROGUE_SOURCE), the build folder (DROGUE_BUILD) and the folder of
+# the modules that tests share (PYTHONPATH).
 # A line `# ctest-label: NAME...` before its docstring adds labels.
 function(drogue_add_python_test file label)
   cmake_path(GET file PARENT_PATH _folder)
@@ -133,7 +134,7 @@ function(drogue_add_python_test file label)
     COMMAND "${Python3_EXECUTABLE}" -B -m unittest discover -v -s "${_folder}" -t "${_folder}" -p "${_filename}")
   # Python tests take longest: first, so that none runs alone at the end. Waiting threads yield their cores to other tests.
   set_tests_properties("${_name}" PROPERTIES LABELS "${_labels}" COST 100 TIMEOUT ${_timeout} ENVIRONMENT
-    "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};OMP_NUM_THREADS=2;OMP_WAIT_POLICY=passive")
+    "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};PYTHONPATH=${PROJECT_SOURCE_DIR}/tests/support;OMP_NUM_THREADS=2;OMP_WAIT_POLICY=passive")
 endfunction()
 
 # drogue_first_include(result <header>): the own header that a header includes first, or nothing.

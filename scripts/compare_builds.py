@@ -52,9 +52,7 @@ def batch_difference(programs, words, backend, work):
     for side, program in zip(("old", "new"), programs, strict=True):
         file = work / f"{side}.csv"
         file.unlink(missing_ok=True)
-        subprocess.run(
-            [program, *words, "--backend", backend, "--out", file], capture_output=True, check=False
-        )
+        subprocess.run([program, *words, "--backend", backend, "--out", file], capture_output=True, check=False)
         prices.append(file.read_bytes() if file.exists() else None)
     return [] if prices[0] is not None and prices[0] == prices[1] else ["prices"]
 
@@ -102,9 +100,7 @@ def compare_speed(programs, words, rounds, fail_on, work):
         for side in sides if turn % 2 == 0 else reversed(sides):
             file = work / "run.jsonl"
             # Exit code 5: a case failed its check, which the comparison reports.
-            done = subprocess.run(
-                [sides[side], "run", *words, "--out", file], stdout=subprocess.DEVNULL, check=False
-            )
+            done = subprocess.run([sides[side], "run", *words, "--out", file], stdout=subprocess.DEVNULL, check=False)
             if done.returncode not in (0, 5):
                 raise SystemExit(f"{sides[side]} run failed")
             with (work / f"{side}.jsonl").open("a") as records:
@@ -112,9 +108,7 @@ def compare_speed(programs, words, rounds, fail_on, work):
             file.unlink()
     done = subprocess.run(
         [sides["new"], "compare", work / "old.jsonl", work / "new.jsonl", "--fail-on", fail_on],
-        stdout=subprocess.PIPE,
-        text=True,
-        check=False,
+        stdout=subprocess.PIPE, text=True, check=False,
     )
     (work / "compare.txt").write_text(done.stdout)
     print(done.stdout, end="")
@@ -122,16 +116,12 @@ def compare_speed(programs, words, rounds, fail_on, work):
 
 
 def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old", type=pathlib.Path)
     parser.add_argument("new", type=pathlib.Path)
     parser.add_argument("--backend", default="serial")
     parser.add_argument("--only", default="", help="regular expression for PROGRAM/SCENE")
-    parser.add_argument(
-        "--speed", metavar="FILTER", help="compare the speed of these cases of drogue-perf instead"
-    )
+    parser.add_argument("--speed", metavar="FILTER", help="compare the speed of these cases of drogue-perf instead")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--quick", action="store_true", help="as in drogue-perf run")
     parser.add_argument("--fail-on", default="slower", help="as in drogue-perf compare")

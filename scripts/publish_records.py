@@ -88,7 +88,7 @@ def unlisted(evidence):
 def without_rows(text, files):
     """The text of the page without the rows of the files in its first table."""
     return "".join(line for line in text.splitlines(keepends=True)
-                   if not ((file := re.match(r"\| `([^`]+)` \|", line)) and file[1] in files))  # fmt: skip
+                   if not ((file := re.match(r"\| `([^`]+)` \|", line)) and file[1] in files))
 
 
 def identity(record):
@@ -139,7 +139,7 @@ def quick_records(folder):
     """Names of the records that were made with --quick, by their commands."""
     commands = {path: path.read_text(encoding="utf-8").partition("\n")[0] for path in folder.rglob("*.txt")}
     return sorted(path.stem for path, command in commands.items()
-                  if path.with_suffix(".jsonl").exists() and "--quick" in shlex.split(command))  # fmt: skip
+                  if path.with_suffix(".jsonl").exists() and "--quick" in shlex.split(command))
 
 
 def copy_records(folder, machine, evidence):
@@ -188,7 +188,7 @@ def publish(folder, machine, programs):
     missing, unnamed = unlisted(evidence)
     if missing or unnamed:
         sys.exit(f"{page} has rows without a file ({', '.join(missing) or 'none'}), or files have no row ({', '.join(unnamed) or 'none'}): "
-                 "mend its list")  # fmt: skip
+                 "mend its list")
 
 
 def main():
@@ -196,7 +196,7 @@ def main():
     parser.add_argument("folder", metavar="FOLDER", nargs="?", type=pathlib.Path, help="records of scripts/bench.sh, here or brought from the machine")
     parser.add_argument("machine", metavar="MACHINE", nargs="?", help="part of the names of files, such as h200")
     parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/host/bin",
-                        help="folder of drogue-plot, which makes the pages (default: build/host/bin)")  # fmt: skip
+                        help="folder of drogue-plot, which makes the pages (default: build/host/bin)")
     parser.add_argument("--tables", action="store_true", help="renew the tables alone")
     parser.add_argument("--check", action="store_true", help="with --tables: write nothing, and fail if a table differs")
     options = parser.parse_args()

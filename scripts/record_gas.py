@@ -18,14 +18,7 @@ import pathlib
 import sys
 
 from recording import (
-    argument_parser,
-    assignments,
-    differing_datasets,
-    exact_rows,
-    run,
-    scene_runs,
-    summary,
-    write_record,
+    argument_parser, assignments, differing_datasets, exact_rows, run, scene_runs, summary, write_record,
 )
 
 BASELINE_MESHES = (1024, 2048, 3072, 4096, 5120, 6144, 7168, 8192)
@@ -37,32 +30,16 @@ def baseline_rows(program, backend, work):
     rows = []
     for cells in BASELINE_MESHES:
         end_time = 200 * 0.6 * 2.0 / cells / 2.2
-        result = run(
-            program,
-            "sod",
-            backend,
-            work / f"seed-{cells}",
-            "--seed-mode",
-            "--set",
-            f"mesh.cells={cells}",
-            "--set",
-            f"run.end_time={end_time}",
-            "--set",
-            f"output.times=[{end_time}]",
-            "--set",
-            # The error after 208 steps is 1.2986/cells on every mesh.
-            f"verify.l1_density={1.36 / cells}",
-            "--set",
-            "output.history_every=0",
-        )
+        # The error after 208 steps is 1.2986/cells on every mesh.
+        sets = assignments(f"mesh.cells={cells}", f"run.end_time={end_time}", f"output.times=[{end_time}]",
+                           f"verify.l1_density={1.36 / cells}", "output.history_every=0")
+        result = run(program, "sod", backend, work / f"seed-{cells}", "--seed-mode", *sets)
         steps, timing = result.get("steps", 0), result.get("timing", {})
         if result["exit_code"] != 0 or steps == 0:
             rows.append({"cells": cells, "exit_code": result["exit_code"], "message": result["message"]})
             continue
         phases = {name: 1e6 * timing[f"{name}_s"] / steps for name in ("h2d", "compute", "d2h")}
-        rows.append(
-            {"cells": cells, "steps": steps, "exit_code": 0} | {f"{k}_us": v for k, v in phases.items()}
-        )
+        rows.append({"cells": cells, "steps": steps, "exit_code": 0} | {f"{k}_us": v for k, v in phases.items()})
     return rows
 
 
@@ -76,22 +53,13 @@ def long_rows(program, backend, work, largest):
         dt = 0.4 * 2.0 / cells / 2.2
         end_time = steps * dt
         folders = [work / f"long-{cells}-{turn}" for turn in (1, 2)]
+        # The exact solution has no walls; 10^6 steps change the sums by 2.3e-13.
         sets = assignments(
-            f"mesh.cells={cells}",
-            f"scheme.fixed_dt={dt}",
-            f"run.end_time={end_time}",
-            "run.max_steps=2000000",
-            'boundary.left="reflecting"',
-            'boundary.right="reflecting"',
-            f"output.times=[{end_time}]",
-            "output.history_every=0",
-            # The exact solution has no walls; 10^6 steps change the sums by 2.3e-13.
-            "verify={conservation=1e-12}",
-        )
+            f"mesh.cells={cells}", f"scheme.fixed_dt={dt}", f"run.end_time={end_time}", "run.max_steps=2000000",
+            'boundary.left="reflecting"', 'boundary.right="reflecting"', f"output.times=[{end_time}]",
+            "output.history_every=0", "verify={conservation=1e-12}")
         results = [run(program, "sod", backend, folder, *sets) for folder in folders]
-        same = not any(r["exit_code"] for r in results) and not differing_datasets(
-            *(folder / "fields.h5" for folder in folders)
-        )
+        same = not any(r["exit_code"] for r in results) and not differing_datasets(*(folder / "fields.h5" for folder in folders))
         rows.append(summary(results[0]) | {"cells": cells, "identical": same})
     return rows
 
@@ -113,32 +81,15 @@ def main():
         record["exact"] = exact_rows(arguments.exact / "drogue-gas", backends, work)
         failed += [row for row in record["exact"] if not row["identical"]]
     if arguments.largest:
-        result = run(
-            program,
-            "sod",
-            backends[-1],
-            work / "largest",
-            "--set",
-            f"mesh.cells={2**28}",
-            "--set",
-            "run.end_time=1e-9",
-            "--set",
-            "output.times=[1e-9]",
-            "--set",
-            'output.fields=["rho"]',
-        )
+        sets = assignments(f"mesh.cells={2**28}", "run.end_time=1e-9", "output.times=[1e-9]", 'output.fields=["rho"]')
+        result = run(program, "sod", backends[-1], work / "largest", *sets)
         bytes_a_cell = result.get("peak_bytes", {}).get("device", 0) / 2**28
         record["largest"] = summary(result) | {"device_bytes_a_cell": bytes_a_cell}
         failed += [record["largest"]] if result["exit_code"] != 0 else []
     if arguments.long:
         record["long"] = long_rows(program, backends[-1], work, arguments.largest)
         failed += [row for row in record["long"] if not row["identical"]]
-    return write_record(
-        record,
-        arguments.to / f"gas-{arguments.machine}.json",
-        failed,
-        ("seed_mode", "exact", "largest", "long"),
-    )
+    return write_record(record, arguments.to / f"gas-{arguments.machine}.json", failed, ("seed_mode", "exact", "largest", "long"))
 
 
 if __name__ == "__main__":

@@ -28,10 +28,10 @@ from recording import argument_parser, assignments, exact_rows, run, scene_runs,
 # Tables 5.1 and 5.2: number of points, spring stiffness (N/m), and Cauchy errors to the next mesh of length (m),
 # kinetic and spring energy (J).
 CHORD = ((60, 5000, (0.00374, 0.01664, 0.03464)), (123, 10000, (0.00184, 0.00821, 0.01726)),
-         (248, 20000, (0.000918, 0.00406, 0.008614)), (498, 40000, None))  # fmt: skip
+         (248, 20000, (0.000918, 0.00406, 0.008614)), (498, 40000, None))
 # Tables 5.1 and 5.3: number of points, and Cauchy errors of area (m^2), kinetic and spring energy (J).
 DRUM = ((266, (0.02528, 1.91810, 1.97967)), (990, (0.01507, 1.21784, 1.21772)), (3790, (0.00604, 0.53550, 0.52837)),
-        (14841, None))  # fmt: skip
+        (14841, None))
 # Table 5.4: Poisson's ratio, then for each Young's modulus (Pa) the measured modulus and Poisson's ratio.
 STRIP = (
     (0.14, ((1e8, 0.0963016606e9, 0.141887), (2e8, 0.1926061554e9, 0.141920), (3e8, 0.2888656609e9, 0.141910),
@@ -40,7 +40,7 @@ STRIP = (
             (4e8, 0.3829895385e9, 0.223349), (5e8, 0.4784196259e9, 0.223365))),
     (0.30, ((1e8, 0.0953452395e9, 0.305362), (2e8, 0.1906619377e9, 0.305342), (3e8, 0.2860538596e9, 0.305343),
             (4e8, 0.3814011184e9, 0.305359), (5e8, 0.4767297379e9, 0.305355))),
-)  # fmt: skip
+)
 STRIP_VERTICES = 1300  # about 2468 triangles, one of the meshes of figure 5.5
 THICKNESS = 1e-4  # m; not given in [Shi], and without influence on the ratios
 GRIPS = 'pin=[{where="x==0"},{where="x>0.1-1e-9",motion={x=1e-6}},{where="1",axes="z"}]'
@@ -57,18 +57,7 @@ def until(end_time):
 
 def study(program, scene, backend, folder, lists, *sets):
     """Rows of a study, each with its time series and its row of study.csv; empty if the study failed."""
-    command = [
-        program,
-        scene,
-        "--backend",
-        backend,
-        "--overwrite",
-        "--quiet",
-        "--out",
-        folder,
-        "--study",
-        lists,
-    ]
+    command = [program, scene, "--backend", backend, "--overwrite", "--quiet", "--out", folder, "--study", lists]
     words = [str(word) for word in [*command, *assignments(*sets)]]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -103,24 +92,14 @@ def chord_table(program, backend, work):
     sets = until(END_TIME)
     own = [
         study(
-            program,
-            "swing-chord",
-            backend,
-            work / f"chord-{points}",
-            "masses=equal:area",
-            *sets,
-            f"mesh.string.vertices={points}",
-            f"material.stiffness={stiffness}",
+            program, "swing-chord", backend, work / f"chord-{points}", "masses=equal:area", *sets,
+            f"mesh.string.vertices={points}", f"material.stiffness={stiffness}",
         )
         for points, stiffness, _ in CHORD
     ]
     kept = study(
-        program,
-        "swing-chord",
-        backend,
-        work / "chord-kept",
-        "meshes=" + ":".join(str(points) for points, *_ in CHORD) + ",masses=equal:area",
-        *sets,
+        program, "swing-chord", backend, work / "chord-kept",
+        "meshes=" + ":".join(str(points) for points, *_ in CHORD) + ",masses=equal:area", *sets,
     )
     if not all(own) or not kept:
         return None
@@ -133,28 +112,15 @@ def chord_table(program, backend, work):
                 "stiffness_rms": cauchy(*pair, power=2),
                 "axial_stiffness": cauchy(kept[4 * turn + k], kept[4 * turn + k + 1], "length"),
             }
-            rows.append(
-                table_row(points, mass, printed, found, stiffness=stiffness, average_mass_g=0.5 / points)
-            )
+            rows.append(table_row(points, mass, printed, found, stiffness=stiffness, average_mass_g=0.5 / points))
     return rows
 
 
 def drum_table(program, backend, work, largest, sets):
     """Table 5.3, with springs along edges as in [Shi], and with the biquadratic membrane."""
     meshes = DRUM if largest else DRUM[:-1]
-    lists = (
-        "meshes="
-        + ":".join(str(points) for points, _ in meshes)
-        + ",models=edge:biquadratic,masses=equal:area"
-    )
-    found = study(
-        program,
-        "drum-cone",
-        backend,
-        work / "drum-cone-study",
-        lists,
-        *sets,
-    )
+    lists = "meshes=" + ":".join(str(points) for points, _ in meshes) + ",models=edge:biquadratic,masses=equal:area"
+    found = study(program, "drum-cone", backend, work / "drum-cone-study", lists, *sets)
     if not found:
         return None
     rows = []
@@ -163,15 +129,9 @@ def drum_table(program, backend, work, largest, sets):
             row = found[first + k]
             rows.append(
                 table_row(
-                    points,
-                    row["mass"],
-                    printed,
-                    cauchy(row, found[first + k + 1], "area"),
-                    model=row["model"],
-                    vertices=row["vertices"],
-                    average_mass_g=380.0 / points,
-                    energy_at_start=row["series"]["elastic"][0],
-                    energy_drift=row["errors"]["energy_drift"],
+                    points, row["mass"], printed, cauchy(row, found[first + k + 1], "area"),
+                    model=row["model"], vertices=row["vertices"], average_mass_g=380.0 / points,
+                    energy_at_start=row["series"]["elastic"][0], energy_drift=row["errors"]["energy_drift"],
                 )
             )
     return rows
@@ -239,10 +199,8 @@ def strip_table(program, backend, work):
             membrane = modulus * THICKNESS
             # Statics do not depend on the mass, which is chosen such that the number of steps equals that of the scene.
             sets = [
-                f"material.poisson={poisson}",
-                f"material.membrane_modulus={membrane!r}",
-                f"material.area_density={1e-4 * membrane!r}",
-                f"mesh.strip.vertices={STRIP_VERTICES}",
+                f"material.poisson={poisson}", f"material.membrane_modulus={membrane!r}",
+                f"material.area_density={1e-4 * membrane!r}", f"mesh.strip.vertices={STRIP_VERTICES}",
             ]
             row = {
                 "poisson": poisson,
@@ -273,58 +231,20 @@ def print_tables(record):
         return ", ".join(f"{value:.3g}" for value in values)
 
     if record["table_5_2"]:
-        print_markdown(
-            "Table 5.2",
-            ("points", "mass", "[Shi]", "its stiffness", "the same, RMS", "E A kept"),
-            [
-                (
-                    str(r["points"]),
-                    r["mass"],
-                    triple(r["dissertation"]),
-                    triple(r["cauchy"]["stiffness"]),
-                    triple(r["cauchy"]["stiffness_rms"]),
-                    triple(r["cauchy"]["axial_stiffness"]),
-                )
-                for r in record["table_5_2"]
-            ],
-        )
+        rows = [(str(r["points"]), r["mass"], triple(r["dissertation"]),
+                 *(triple(r["cauchy"][name]) for name in ("stiffness", "stiffness_rms", "axial_stiffness")))
+                for r in record["table_5_2"]]
+        print_markdown("Table 5.2", ("points", "mass", "[Shi]", "its stiffness", "the same, RMS", "E A kept"), rows)
     for key, title in (("table_5_3", "Table 5.3"), ("table_5_3_small_steps", "Table 5.3, z < 0.1, 2 s")):
-        if not record.get(key):
-            continue
-        print_markdown(
-            title,
-            ("points", "model", "mass", "[Shi]", "here", "energy drift"),
-            [
-                (
-                    str(r["vertices"]),
-                    r["model"],
-                    r["mass"],
-                    triple(r["dissertation"]),
-                    triple(r["cauchy"]),
-                    r["energy_drift"],
-                )
-                for r in record[key]
-            ],
-        )
+        if record.get(key):
+            rows = [(str(r["vertices"]), r["model"], r["mass"], triple(r["dissertation"]), triple(r["cauchy"]), r["energy_drift"])
+                    for r in record[key]]
+            print_markdown(title, ("points", "model", "mass", "[Shi]", "here", "energy drift"), rows)
     if record["table_5_4"]:
-        keys = (
-            ("dissertation", "modulus"),
-            ("clamped", "modulus_without_a_corner"),
-            ("clamped", "modulus"),
-            ("free", "modulus"),
-            ("dissertation", "poisson"),
-            ("clamped", "largest_poisson"),
-            ("clamped", "poisson"),
-            ("free", "poisson"),
-        )
-        print_markdown(
-            "Table 5.4",
-            ("nu", "E (GPa)", *(f"{a} {b.replace('_', ' ')}" for a, b in keys)),
-            [
-                (f"{r['poisson']:.2f}", f"{r['modulus'] / 1e9:.1f}", *(f"{r[a][b]:.5f}" for a, b in keys))
-                for r in record["table_5_4"]
-            ],
-        )
+        keys = (("dissertation", "modulus"), ("clamped", "modulus_without_a_corner"), ("clamped", "modulus"), ("free", "modulus"),
+                ("dissertation", "poisson"), ("clamped", "largest_poisson"), ("clamped", "poisson"), ("free", "poisson"))
+        rows = [(f"{r['poisson']:.2f}", f"{r['modulus'] / 1e9:.1f}", *(f"{r[a][b]:.5f}" for a, b in keys)) for r in record["table_5_4"]]
+        print_markdown("Table 5.4", ("nu", "E (GPa)", *(f"{a} {b.replace('_', ' ')}" for a, b in keys)), rows)
 
 
 def main():

@@ -150,25 +150,17 @@ def scene_runs(program, backends, work):
         for scene in list_scenes(program)
         for backend in backends
     ]
-    return {
-        "provenance": runs[0].get("provenance"),
-        "git": runs[0].get("git"),
-        "runs": [summary(r) for r in runs],
-    }
+    return {"provenance": runs[0].get("provenance"), "git": runs[0].get("git"), "runs": [summary(r) for r in runs]}
 
 
 def argument_parser(description):
     """Parser with the options that all recording scripts share."""
-    parser = argparse.ArgumentParser(
-        description=description, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("machine")
     parser.add_argument("--bin", type=pathlib.Path, required=True)
     parser.add_argument("--backends", default="serial,openmp")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/record"))
-    parser.add_argument(
-        "--to", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs/evidence"
-    )
+    parser.add_argument("--to", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs/evidence")
     return parser
 
 

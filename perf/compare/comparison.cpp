@@ -83,7 +83,7 @@ std::optional<std::string> why_not_comparable(const MeasuredCase& before, const 
   if (auto found = difference("number of threads", "threads", old_origin, new_origin)) return found;
   if (auto found = difference("compiler flags", "flags", old_origin, new_origin)) return found;
   if (before.cold_caches != after.cold_caches)
-    return std::string("other caches: ") + (before.cold_caches ? "cold, now warm" : "warm, now cold");
+    return printed("other caches: %s", before.cold_caches ? "cold, now warm" : "warm, now cold");
   if (before.unit != after.unit) return "other unit: '" + before.unit + "', now '" + after.unit + "'";
   for (const char* fact : size_facts)
     if (auto found = difference(fact, fact, before.facts, after.facts)) return found;

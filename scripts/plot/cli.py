@@ -21,9 +21,7 @@ _MOVIES = {"gif": ("gif",), "mp4": ("mp4",), "both": ("gif", "mp4"), "none": ()}
 def _version() -> str:
     folder = Path(__file__).resolve().parent
     git = subprocess.run(
-        ["git", "-C", str(folder), "rev-parse", "--short=12", "HEAD"],
-        capture_output=True,
-        text=True,
+        ["git", "-C", str(folder), "rev-parse", "--short=12", "HEAD"], capture_output=True, text=True,
         check=False,
     )
     import h5py
@@ -60,15 +58,11 @@ def arguments(words: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "directory", metavar="DIR", nargs="?", type=Path,
         help="run directory, or one with study.csv, surface.csv, boundary.csv or records (*.jsonl)",
-    )  # fmt: skip
+    )
     parser.add_argument("--out", type=Path, help="folder of the pictures (default: DIR)")
     parser.add_argument("--field", default="", help="fields to draw, by commas (default: all)")
-    parser.add_argument(
-        "--time", type=float, help="draw the snapshot nearest to this time in s (default: the last)"
-    )
-    parser.add_argument(
-        "--format", choices=("png", "pdf", "svg"), default="png", help="kind of the still pictures"
-    )
+    parser.add_argument("--time", type=float, help="draw the snapshot nearest to this time in s (default: the last)")
+    parser.add_argument("--format", choices=("png", "pdf", "svg"), default="png", help="kind of the still pictures")
     parser.add_argument(
         "--movie", choices=_MOVIES, default="gif", help="kind of the moving picture; both: GIF and MP4 (default: gif)"
     )
@@ -203,9 +197,7 @@ def _flow_pictures(run, options, out, save):
 
 def _require_templates():
     if importlib.util.find_spec("jinja2") is None:
-        raise Failure(
-            USAGE, "a page of records needs the Python package jinja2: run scripts/setup.sh, or install it."
-        )
+        raise Failure(USAGE, "a page of records needs the Python package jinja2: run scripts/setup.sh, or install it.")
 
 
 def _evidence_pages(options, evidence, out):
@@ -304,9 +296,7 @@ def main(words: list[str] | None = None) -> int:
             if not options.quiet:
                 write_line(str(file))
         if drawn == 0:
-            raise Failure(
-                USAGE, f"{options.directory} holds nothing to draw: no fields, and too short a history."
-            )
+            raise Failure(USAGE, f"{options.directory} holds nothing to draw: no fields, and too short a history.")
     except Failure as failure:
         print(failure if failure.code == INVALID else f"drogue-plot: {failure}", file=sys.stderr)
         return failure.code

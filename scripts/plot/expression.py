@@ -26,19 +26,12 @@ _FUNCTIONS = {
     "min": lambda *a: np.minimum.reduce(np.broadcast_arrays(*a)),
     "max": lambda *a: np.maximum.reduce(np.broadcast_arrays(*a)),
     "sum": lambda *a: sum(a), "avg": lambda *a: sum(a) / len(a),
-}  # fmt: skip
+}
 
 _BINARY = [
     {"||": lambda a, b: (a != 0) | (b != 0)},
     {"&&": lambda a, b: (a != 0) & (b != 0)},
-    {
-        "<": np.less,
-        ">": np.greater,
-        "<=": np.less_equal,
-        ">=": np.greater_equal,
-        "==": np.equal,
-        "!=": np.not_equal,
-    },
+    {"<": np.less, ">": np.greater, "<=": np.less_equal, ">=": np.greater_equal, "==": np.equal, "!=": np.not_equal},
     {"+": np.add, "-": np.subtract},
     {"*": np.multiply, "/": np.divide},
 ]

@@ -51,11 +51,8 @@ def write(file: Path, template: str, filters: dict, **values) -> Path:
     Raises Failure (IO_ERROR) if the file cannot be written.
     """
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
+        loader=jinja2.FileSystemLoader(Path(__file__).parent), autoescape=True,
+        undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )
     environment.filters.update(
         data_url=data_url, seconds=format_seconds, number=format_number, grouped=format_grouped, **filters

@@ -51,9 +51,7 @@ def _common_palette(frames) -> np.ndarray:
     """
     counts = Counter()
     for pixels in frames:
-        counts.update(
-            dict(zip(*(part.tolist() for part in np.unique(_pack_rgb(pixels), return_counts=True))))
-        )
+        counts.update(dict(zip(*(part.tolist() for part in np.unique(_pack_rgb(pixels), return_counts=True)))))
     candidates = np.array([colour for colour, _ in counts.most_common(_CANDIDATES)])
     colours = _unpack_rgb(candidates)
     nearest, chosen = np.full(len(colours), np.inf), []  # squared distance to the chosen ones
@@ -91,7 +89,7 @@ def _write_mp4(file: Path, frames: list[np.ndarray]) -> None:
     command = [
         imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
         "-s", f"{width}x{height}", "-r", str(rate), "-i", "-", "-pix_fmt", "yuv420p", str(file),
-    ]  # fmt: skip
+    ]
     stream = b"".join(pixels.tobytes() for pixels in frames)
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as ffmpeg:
         at_signal.append(ffmpeg.kill)

@@ -88,9 +88,7 @@ def _text(value) -> str:
 
 def _datasets(group) -> dict[str, Field]:
     return {
-        name: Field(
-            name, item[()], _text(item.attrs.get("units", "")), _text(item.attrs.get("description", ""))
-        )
+        name: Field(name, item[()], _text(item.attrs.get("units", "")), _text(item.attrs.get("description", "")))
         for name, item in group.items()
         if isinstance(item, h5py.Dataset)
     }
@@ -167,9 +165,7 @@ def read_run(path: Path) -> Run:
         raise Failure(USAGE, f"{path} is not a run directory: no such folder.")
     run = Run(path)
     if not any((path / name).is_file() for name in READABLE) and not any(path.glob(RECORDS)):
-        raise Failure(
-            USAGE, f"{path} holds nothing to draw: none of {', '.join(READABLE)}, {RECORDS} is there."
-        )
+        raise Failure(USAGE, f"{path} holds nothing to draw: none of {', '.join(READABLE)}, {RECORDS} is there.")
     readers = {
         "scene.toml": lambda file: setattr(run, "scene", tomllib.loads(file.read_text())),
         "result.json": lambda file: setattr(run, "result", _read_object(file)),

@@ -19,12 +19,12 @@ TITLES = {
     "cauchy_area": "difference of area to the next mesh (m$^2$)",
     "cauchy_kinetic": "difference of kinetic energy to the next mesh (J)",
     "cauchy_elastic": "difference of elastic energy to the next mesh (J)",
-}  # fmt: skip
+}
 # Errors of flow are means over faces or cells, with the unit of the field.
 _FLOW_TITLES = {
     "l1_velocity": "mean error of velocity (m/s)", "l2_velocity": "rms error of velocity (m/s)",
     "linf_velocity": "largest error of velocity (m/s)", "l2_pressure": "rms error of pressure (Pa)",
-}  # fmt: skip
+}
 _FLOW_WORDS = {"weno-js": "WENO-JS", "weno-z": "WENO-Z", "ab2": "AB2", "rk3": "RK3"}
 SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
@@ -96,9 +96,7 @@ def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray
     omitted = [f"{failed} of {len(rows)} runs failed"] if failed else []
     omitted += [f"{exact} of {len(rows)} have error 0"] if exact else []
     if finest and not curves:  # its finest mesh has no Cauchy error
-        omitted.append(
-            f"{finest} of {len(rows)} have no finer mesh to be compared with and nothing to verify"
-        )
+        omitted.append(f"{finest} of {len(rows)} have no finer mesh to be compared with and nothing to verify")
     return {label: np.array(sorted(points)) for label, points in curves.items()}, omitted
 
 
@@ -133,7 +131,7 @@ def _draw(axes, curves, column: int, labels: dict[str, str]) -> None:
         axes.plot(
             points[:, column], points[:, 2], "-" + marker, color=colour, markersize=4, markerfacecolor="white",
             markeredgewidth=1.1, linewidth=1.2,
-        )  # fmt: skip
+        )
         if label in labels:
             ends.append(((points[-1, column], points[-1, 2]), labels[label], colour))
     axes.set_xscale("log")
@@ -145,17 +143,12 @@ def _draw(axes, curves, column: int, labels: dict[str, str]) -> None:
 def _fit_labels(figure, labels: list[str]) -> None:
     """Sizes a figure of two axes such that the labels fit at its right."""
     left, axes_width, bottom, top = 0.82, 5.66, 0.5, 0.72
-    width = (
-        left + axes_width + 0.2 + max(style.text_width(figure, words, style.LABEL_SIZE) for words in labels)
-    )
+    width = (left + axes_width + 0.2 + max(style.text_width(figure, words, style.LABEL_SIZE) for words in labels))
     axes_height = max(2.38, style.LABEL_STEP * len(labels))
     height = bottom + axes_height + top
     figure.set_size_inches(width, height)
     figure.subplots_adjust(
-        left=left / width,
-        right=(left + axes_width) / width,
-        bottom=bottom / height,
-        top=1 - top / height,
+        left=left / width, right=(left + axes_width) / width, bottom=bottom / height, top=1 - top / height,
         wspace=0.1,
     )
 
@@ -173,9 +166,7 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = ""):
     except (KeyError, TypeError, ValueError) as error:
         raise Failure(IO_ERROR, f"The study of {name} has a row that cannot be read: {error}.") from None
     if not curves:
-        raise Failure(
-            IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(omitted) or 'it is empty'}."
-        )
+        raise Failure(IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(omitted) or 'it is empty'}.")
     figure, (by_time, by_mesh) = plt.subplots(1, 2, sharey=True)
     labels = {
         label: label if norm in INVARIANTS else label + _order(points, _dimension(rows))

@@ -34,12 +34,12 @@ matplotlib.rcParams.update(
         "figure.facecolor": "white", "savefig.facecolor": "white", "pdf.fonttype": 42, "svg.fonttype": "none",
         "axes.formatter.useoffset": False, "axes.formatter.limits": (-4, 5), "axes.formatter.use_mathtext": True,
     }
-)  # fmt: skip
+)
 
 _SYMBOLS = {
     "rho": "density", "u": "velocity", "p": "pressure", "energy": "total energy", "mass": "mass",
     "momentum": "momentum", "dt": "time step", "x": "x",
-}  # fmt: skip
+}
 
 
 def format_units(units: str) -> str:
@@ -153,9 +153,7 @@ def label_curves(axes, ends) -> None:
     axes.get_xlim(), axes.get_ylim()
     box = axes.get_window_extent()
     step = LABEL_STEP * axes.figure.dpi
-    levels = sorted(
-        (axes.transData.transform(point)[1] - box.y0, words, colour) for point, words, colour in ends
-    )
+    levels = sorted((axes.transData.transform(point)[1] - box.y0, words, colour) for point, words, colour in ends)
     placed = -np.inf
     for index, (pixel, words, colour) in enumerate(levels):
         # The remaining labels must fit below the top of the axes.
@@ -164,7 +162,7 @@ def label_curves(axes, ends) -> None:
         axes.annotate(
             words, (1.03, placed / box.height), xycoords="axes fraction", color=colour, va="center",
             fontsize=LABEL_SIZE, annotation_clip=False,
-        )  # fmt: skip
+        )
 
 
 def decimate(x: np.ndarray, y: np.ndarray, buckets: int = 2000) -> tuple[np.ndarray, np.ndarray]:

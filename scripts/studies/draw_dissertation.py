@@ -78,7 +78,7 @@ def chord(runs, to):
         runs.series("swing-chord", f"chord-{points}", "masses=equal", "time.end_time=2", times_of(2), "verify={}",
                     "output.history_every=100000", f"mesh.string.vertices={points}", f"material.stiffness={stiffness}")[0]
         for points, stiffness, _ in CHORD[:3]
-    ]  # fmt: skip
+    ]
     figure, axes = new_figure(2, 2, (7.2, 4.8), "Chord that swings with 1 kg", "figure 5.2 of [Shi]: its stiffnesses, equal masses, 2 s")
     draw_convergence(axes, found, [f"{points} points" for points, *_ in CHORD], "length", "m")
     for first, second in zip(found, found[1:]):
@@ -103,7 +103,7 @@ def drum(runs, to):
                 axis.set(xlabel="x (m)", ylabel="z (m)", title=f"t = {time} s")
                 axis.legend(fontsize=7, frameon=False)
         found += runs.series("drum-cone", f"drum-series-{points}", "masses=equal", "time.end_time=2", times_of(2), "verify={}",
-                             "output.history_every=100000", f"mesh.disk.vertices={points}")  # fmt: skip
+                             "output.history_every=100000", f"mesh.disk.vertices={points}")
     draw_convergence(axes[1:], found, [f"{row['vertices']} points" for row in found], "area", "m$^2$")
     figure.savefig(to / "shi-5-3.png", dpi=80)
 
@@ -117,7 +117,7 @@ def strip(runs, to):
         for strain in STRAINS:
             sets = (f"material.poisson={POISSON}", f"material.membrane_modulus={membrane!r}",
                     f"material.area_density={1e-4 * membrane!r}", f"mesh.strip.vertices={vertices}",
-                    GRIPS.replace("1e-6", f"{0.1 * strain!r}"), f'initial.displacement.x="{strain!r}*x"', "verify={equilibrium=1e-4}")  # fmt: skip
+                    GRIPS.replace("1e-6", f"{0.1 * strain!r}"), f'initial.displacement.x="{strain!r}*x"', "verify={equilibrium=1e-4}")
             folder, _ = runs.scene("drogue-springs", "strip", "strip", *sets)
             rows.append(response(folder / "fields.h5", membrane, POISSON))
         with h5py.File(folder / "fields.h5") as h5:
@@ -162,10 +162,10 @@ def wave(runs, to):
     figure, axes = new_figure(len(SPEED_TIMES), 2, (7.2, 3.6), "Stress waves along a sheet", "figure 5.8 of [Shi]: von Mises stress (N/m), sides held along y (left), a narrow strip with free sides (right)")
     narrow = ("mesh.rectangle={width=1.0,height=0.02,vertices=4000}", 'pin=[{where="x > 1-1e-9",axes="x"},{where="1",axes="z"}]',
               "output.probes=[{at=[0.3,0.01,0.0]},{at=[0.8,0.01,0.0]}]",
-              "verify={front_speed={value=100.0,tolerance=4e-3}}")  # fmt: skip
+              "verify={front_speed={value=100.0,tolerance=4e-3}}")
     for column, (name, sets) in enumerate((("wide", ()), ("narrow", narrow))):
         folder, result = runs.scene("drogue-springs", "stress-wave", f"wave-{name}", 'output.fields=["position","von_mises"]',
-                                    f"output.times={list(SPEED_TIMES)}", *sets)  # fmt: skip
+                                    f"output.times={list(SPEED_TIMES)}", *sets)
         print("5.8", name, "error of the front's speed", f"{result['errors']['front_speed']:.3g}")
         for row, time in enumerate(SPEED_TIMES):
             axis = axes[row, column]

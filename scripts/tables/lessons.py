@@ -36,13 +36,13 @@ def section(file):
     facts = first.facts
     rows = [[f"`{record.facts['rung']}`", microseconds(record.facts["predicted_s"]), record.facts["predicted_bound"],
              microseconds(record.median), f"[{' .. '.join(map(microseconds, record.interval))}]",
-             f"{first.median / record.median:.2f}", f"{record.error:.2g}"] for record in records]  # fmt: skip
+             f"{first.median / record.median:.2f}", f"{record.error:.2g}"] for record in records]
     return "\n".join([
         f"\n## `{facts['ladder']}` on {facts['backend']}\n",
         f"{first.device(facts['backend'] == 'cuda')}, {first.run_id[0][:10]}, size {facts['cells']}, {first.unit.removeprefix('s ')} "
         f"([record](../evidence/ladders/{file.name}))\n",
         *table(["rung", "predicted", "bound", "measured", "95 % interval", "faster", "error"], rows, (0, 2, 4)), "", picture(first),
-    ])  # fmt: skip
+    ])
 
 
 def page():

@@ -71,7 +71,7 @@ def gas_table(evidence):
         *table(["cells", *(f"{name}: error" for name in schemes.values()), *(f"{name}, ms" for name in schemes.values())], rows), "",
         f"The schemes cost nearly the same here (within {100 * max(ratios):.0f} %): at these meshes a step is latency, so the "
         "error decides.",
-    ]  # fmt: skip
+    ]
 
 
 def springs_table(evidence):
@@ -102,7 +102,7 @@ def options_table(evidence):
     return [
         gpu.source("drogue-perf run --filter '^options/cuda/N/'"), "This is run for each number N of options alone.",
         host.source("drogue-perf run --filter '^options/serial'"), "", *table(heading, rows),
-    ]  # fmt: skip
+    ]
 
 
 def flow_table(evidence):
@@ -128,13 +128,13 @@ def canopy_table(evidence):
         rows.append([str(cells), *(text for record in own for text in (error_of(record, 3), time_of(record, 1e3)))])
     # A sample is the time of a millisecond of flight.
     small, contact, large = (time_of(flights(f"parachute-flight/cuda/{case}"), 1e3)
-                             for case in ("60x60x120/c9", "60x60x120/c9-contact", "120x120x240/c9"))  # fmt: skip
+                             for case in ("60x60x120/c9", "60x60x120/c9-contact", "120x120x240/c9"))
     return [
         solutions.source("drogue-perf work-precision --app parachute --backend cuda"), "",
         *table(["cells across", "error", "ms", "with an inset: error", "ms"], rows), "",
         f"A second of flight of a C-9 in its stream takes {small} s on 60x60x120 cells, {contact} s with contact, and {large} s on "
         "120x120x240. " + flights.source("drogue-perf run --filter '^parachute-flight/cuda'"),
-    ]  # fmt: skip
+    ]
 
 
 TABLES = {"gas": gas_table, "springs": springs_table, "options": options_table, "flow": flow_table, "canopy": canopy_table}

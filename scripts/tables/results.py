@@ -37,7 +37,7 @@ def scenes(title, name, backend, program, **more):
             sys.exit(f"{EVIDENCE / name}: {run['scene']} failed on {backend}")
         checks = (f"{check['name']} {number(check['value'])} ({number(check['tolerance'])})" for check in run["checks"])
         rows.append([f"`{run['scene']}`", str(run["steps"]), ", ".join(checks), *(str(run["limiter"][key]) for key in more.values()),
-                     f"{run['wall_s']:.2g}"])  # fmt: skip
+                     f"{run['wall_s']:.2g}"])
     first = runs[0] if "provenance" in runs[0] else record
     device = runs[0]["device"].replace("(R)", "")
     place = f"One {device}" if backend == "cuda" else f"One core of an {device}"
@@ -61,7 +61,7 @@ def cases(title, name, group, unit, factor, note=""):
     place = f"One {first.device(True)}" if on_gpu else f"One core of an {first.device(False)}"
     origin = f"{place}, {date[:10]}, commit {commit} ([record](evidence/{name}))"
     return ["", f"### {title}", f"{origin}: `drogue-perf run --filter '^{group}/{backend}'`{note}.", "",
-            *table(["case", unit, "95 % interval", "error"], rows, (0, 2))]  # fmt: skip
+            *table(["case", unit, "95 % interval", "error"], rows, (0, 2))]
 
 
 def page():
@@ -76,5 +76,5 @@ def page():
         *cases("Batches on a GPU", "alone/options-h100.jsonl", "options", "ms per batch", 1e3, ", one run for each number of options"),
         *cases("Batches on a core", "options-xeon-2.jsonl", "options", "ms per batch", 1e3),
         *scenes("Flow and parachutes", "parachute-h200.json", "cuda", "drogue-parachute"),
-    ]  # fmt: skip
+    ]
     return HEAD + wrapped(lines)

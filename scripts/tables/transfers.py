@@ -112,7 +112,7 @@ def gas_words(rows):
         return words + ": a newer device does not remove them, since each waits for the bus."
     return (words + " here: a newer device does not remove them, since each waits for the bus. What does is a state that stays on "
             f"the device: with 20 steps between two copies a step of ours takes {number(ours[-1].time['total'])} us, copies "
-            f"included ({share(ours[-1].copies, ours[-1].time['total'])}).")  # fmt: skip
+            f"included ({share(ours[-1].copies, ours[-1].time['total'])}).")
 
 
 def springs_words(rows):
@@ -125,7 +125,7 @@ def springs_words(rows):
              f"{number(few.copies)} us, whatever lies between them: {share(few.copies, few.time['total'])} of the total with one step "
              f"between them (`--seed-mode`), {share(many.copies, many.time['total'])} with {many.steps}. What changed is the compute, "
              f"{number(many.time['compute'] / many.steps)} us per step of {many.steps}: persistent packets of vertices instead of "
-             "arrays of structs with stored neighbours (rung `structs` of the [ladder](lessons/tables.md)).")  # fmt: skip
+             "arrays of structs with stored neighbours (rung `structs` of the [ladder](lessons/tables.md)).")
     pinned = pick(rows, size=size, memory="pinned", steps=few.steps)
     return words + (f" From pinned memory the copies take {number(pinned[0].copies)} us." if pinned else "")
 
@@ -142,7 +142,7 @@ def options_words(rows):
             f"{number(ours.time['total'])} us with an error of {error_of(ours.record)}: a fourth of the steps, each on two grids for "
             "a stated error, with the convolution by panels of the jump measure. Copies are "
             f"{share(theirs.copies, theirs.time['total'])} and {share(ours.copies, ours.time['total'])} of the total: a batch moves "
-            "once each way.")  # fmt: skip
+            "once each way.")
 
 
 def parachute_words(rows):
@@ -151,7 +151,7 @@ def parachute_words(rows):
     return (f"[Shi] prints no such table: its table 5.6 is of the fabric alone. A copy moves the whole state of cloth and air. On "
             f"{few.facts['grid']} cells the copies of each step would take {number(few.copies)} us, "
             f"{share(few.copies, few.time['total'])} of the step, from {few.memory} memory; with {many.steps} steps between two copies they take "
-            f"{share(many.copies, many.time['total'])}. Runs copy only for output and restarts.")  # fmt: skip
+            f"{share(many.copies, many.time['total'])}. Runs copy only for output and restarts.")
 
 
 APPS = {

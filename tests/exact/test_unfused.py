@@ -3,12 +3,10 @@
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-import disassembly  # noqa: E402
+import disassembly
 
 BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
 # Sums of products of complex numbers, which gcc 12.2 fuses in spite of -ffp-contract=off where it vectorises them.
@@ -34,7 +32,3 @@ class FusedOperations(unittest.TestCase):
             self.skipTest("this processor has no fused multiply-add")
         options = disassembly.cache(BUILD)["DROGUE_UNFUSED_OPTIONS"].split(";")
         self.assertEqual(0, fused_operations(options), options)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,6 @@
 """Fault tests of the checks: a tolerance below the error of the run ends with exit code 5."""
 
-import os
 import re
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 
@@ -77,7 +72,3 @@ class Fault(gas_program.GasTest):
         run = self.expect(5, "sod", "--out", "run", sets=[*COARSE, *(f"verify.{name}=1e-12" for name in NORMS)])
         self.assertEqual(9, run.stdout.count("FAILED"))
         self.assertEqual(9, sum(not check["passed"] for check in self.result("run")["checks"]))
-
-
-if __name__ == "__main__":
-    unittest.main()

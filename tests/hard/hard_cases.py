@@ -43,6 +43,4 @@ def tolerance_sets(row):
 def unverified(test, case):
     """Shipped scene without [verify], to avoid its reference run, and with at most one output."""
     text = (gas_program.SOURCE / f"miniapps/gas/scenes/{case}.toml").read_text(encoding="utf-8")
-    scene = test.folder / f"{case}.toml"
-    scene.write_text(text[:text.index("[output]")] + "[verify]\nconservation = 1e-12\n", encoding="utf-8")
-    return scene
+    return test.write(text[:text.index("[output]")] + "[verify]\nconservation = 1e-12\n", f"{case}.toml")

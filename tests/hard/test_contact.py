@@ -1,11 +1,6 @@
 """A contact at rest is preserved bit for bit by every scheme and limiter."""
 
 import itertools
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import hard_cases
@@ -42,7 +37,3 @@ class StationaryContact(gas_program.GasTest):
         for sets in choices:
             with self.subTest(sets=sets):
                 self.assert_kept("serial", *sets)
-
-
-if __name__ == "__main__":
-    unittest.main()

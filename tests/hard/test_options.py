@@ -1,12 +1,7 @@
 """The hard cases of drogue-options: finite differences meet their tolerances against the Fourier methods, whose prices are kept."""
 
 import csv
-import os
 import pathlib
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import options_program
 
@@ -76,7 +71,3 @@ class HardCases(options_program.OptionsTest):
         self.expect(0, "price", self.write(options_program.batch(lines)), "--quiet", "--out", "e.csv", *options_program.FAST)
         for row in self.prices("e.csv"):
             self.assertAlmostEqual(float(EXPECTED[row["id"]]["price"]), float(row["price"]), delta=1e-12)
-
-
-if __name__ == "__main__":
-    unittest.main()

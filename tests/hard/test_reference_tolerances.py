@@ -1,11 +1,5 @@
 """Shu-Osher and the blast against a run on 3200 cells, for every scheme, on up to 400 cells."""
 
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import reference_tolerances
 
@@ -22,7 +16,3 @@ class ReferenceTolerances(reference_tolerances.ReferenceTest):
     @gas_program.needs_openmp
     def test_openmp_meets_the_tolerances(self):
         self.assert_all_met([row for row in self.ROWS if (row["scheme"], row["N"]) == ("z1", "200")], "openmp")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,5 @@
 """Hard cases with a closed form meet their tolerances, for every scheme, on up to 401 cells."""
 
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import hard_cases
 
@@ -38,7 +32,3 @@ class Tolerances(gas_program.GasTest):
         for row in once.values():
             with self.subTest(hard_cases.label(row)):
                 self.assert_meets(row, "openmp")
-
-
-if __name__ == "__main__":
-    unittest.main()

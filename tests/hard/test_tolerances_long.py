@@ -1,11 +1,5 @@
 """Finest rows of tolerances.csv: 800 cells and more, and published references on 12800 cells."""
 
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import hard_cases
 import reference_tolerances
@@ -33,7 +27,3 @@ class FineReferenceTolerances(reference_tolerances.ReferenceTest):
         rows = reference_tolerances.rows(lambda row: row["source"] == "published")
         self.assertEqual(21, len(rows))
         self.assert_all_met(rows, "serial")
-
-
-if __name__ == "__main__":
-    unittest.main()

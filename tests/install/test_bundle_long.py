@@ -97,7 +97,3 @@ class Bundle(unittest.TestCase):
     def test_name_of_no_program(self):
         (self.root / "drogue/bin/other").symlink_to("drogue.host")
         self.run_there("/drogue/bin/other", code=2)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -181,7 +181,3 @@ class Install(unittest.TestCase):
             self.assertNotIn(f"{SOURCE}/cmake", text, path)
             for layer in ("common", "kernels", "miniapps"):
                 self.assertNotIn(f"{SOURCE}/{layer}", text, path)
-
-
-if __name__ == "__main__":
-    unittest.main()

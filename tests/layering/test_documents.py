@@ -1,6 +1,5 @@
 """Documents agree with the code: every file that they name exists, and every function stands in its header."""
 
-import json
 import os
 import re
 import unittest
@@ -58,24 +57,6 @@ class Documents(unittest.TestCase):
                     self.assertIn(name, suites.get(suite, ()), f"{document} names {suite}.{name}")
         self.assertGreater(count, 20)
 
-    def test_table_of_flow_in_the_readme_holds_the_numbers_of_its_record(self):
-        lines = (SOURCE / "docs/evidence/flow-step-h100.jsonl").read_text(encoding="utf-8").splitlines()
-        records = {record["case"]: record for record in map(json.loads, lines)}
-        readme = (SOURCE / "README.md").read_text(encoding="utf-8")
-        rows = re.findall(r"^\| (\d+x\d+x\d+) \| (.*) \|$", readme, re.MULTILINE)
-        shown = {}
-        for cells, text in rows:
-            values = [value.strip() for value in text.split("|")]
-            for k, sides in enumerate(("periodic", "tunnel")):
-                if any(values[3 * k:3 * k + 3]):
-                    shown[f"flow-step/cuda/{cells}/{sides}"] = [float(value) for value in values[3 * k:3 * k + 3]]
-        self.assertGreaterEqual(len(shown), 6)
-        for case, values in shown.items():
-            record = records[case]
-            seconds = record["median"]
-            exact = (1e3 * seconds, 1e9 * seconds / record["facts"]["cells"], record["error"])
-            self.assertEqual([float(f"{exact[0]:.3g}"), float(f"{exact[1]:.3g}"), float(f"{exact[2]:.2g}")], values, case)
-
     def test_diagrams_name_classes_of_the_sources(self):
         sources = "\n".join(file.read_text(encoding="utf-8") for folder in ("common", "kernels", "miniapps", "perf")
                             for file in (SOURCE / folder).rglob("*.hpp"))
@@ -90,7 +71,3 @@ class Documents(unittest.TestCase):
                     count += 1
                     self.assertTrue(name in declared, f"{document} draws {name}")
         self.assertGreater(count, 10)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -81,7 +81,3 @@ class FollowsIncludes(unittest.TestCase):
         self.assertEqual(["", ""], rows["kernels/gas/unused"])
         self.assertEqual(["", ""], rows["kernels/gas/row"])
         self.assertEqual(["●", ""], rows["kernels/gas/solver.hpp"])
-
-
-if __name__ == "__main__":
-    unittest.main()

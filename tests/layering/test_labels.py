@@ -1,57 +1,36 @@
-"""Markers of labels belong to tests, and cmake/test_properties.cmake gives their tests the labels."""
+"""Markers of labels have their form, and cmake/test_properties.cmake gives their tests the labels."""
 
 import json
 import os
+import re
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-import labels
 import layers
 
 ROOT = layers.repository(os.environ)
 
 
-def test_sources():
-    for path in sorted((ROOT / "tests").rglob("*")):
-        if path.suffix == ".cpp" or path.match("test_*.py"):
-            yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
+LABELS = "no-sanitizer|exact|smoke"
 
 
 class Repository(unittest.TestCase):
-    def test_markers_belong_to_tests(self):
-        self.assertEqual([], [line for path, text in test_sources() for line in labels.misplaced(path, text)])
-
-    def test_every_label_is_used(self):
-        text = "".join(text for _, text in test_sources())
-        for label in labels.LABELS:
-            self.assertIn(f"ctest-label: {label}\n", text)
-
-
-class EachRuleCatchesItsBreach(unittest.TestCase):
-    HEAD = "// ctest-label: exact\n#include <a>\n"
-    CASE = "// ctest-label: exact no-sanitizer\nTEST(A, B) {}\n"
-
-    def test_markers_that_belong_to_tests(self):
-        for text in (self.HEAD + "TEST(A, B) {}\n", "#include <a>\n" + self.CASE, "#include <a>\n" + self.CASE.replace("TEST(", "TEST_P(")):
-            self.assertEqual([], labels.misplaced("a.cpp", text), text)
-        self.assertEqual([], labels.misplaced("test_a.py", '# ctest-label: no-sanitizer\n"""Text."""\n'))
-
-    def test_markers_that_belong_to_none(self):
-        for path, text, word in (
-            ("a.cpp", self.HEAD, "the source has none"),
-            ("a.cpp", "#include <a>\n// ctest-label: exact\n\nTEST(A, B) {}\n", "belongs to no test"),
-            ("a.cpp", "#include <a>\n// ctest-label: exact\nint a;\nTEST(A, B) {}\n", "belongs to no test"),
-            ("a.cpp", "#include <a>\nTEST(A, B) {}\n// ctest-label: exact", "belongs to no test"),
-            ("a.cpp", "#include <a>\n" + self.CASE.replace("exact", "precise"), "not one of"),
-            ("a.cpp", "#include <a>\n" + self.CASE.replace("label:", "label"), "form"),
-            ("a.cpp", "#include <a>\n  " + self.CASE, "form"),
-            ("test_a.py", '"""Text."""\n# ctest-label: no-sanitizer\n', "belongs to no test"),
-        ):
-            found = labels.misplaced(path, text)
-            self.assertEqual(1, len(found), text)
-            self.assertIn(word, found[0])
+    def test_markers_name_labels_and_belong_to_tests(self):
+        """A marker that stands neither above the first include or docstring nor in front of a TEST is without effect."""
+        used = set()
+        for path in sorted((ROOT / "tests").rglob("*")):
+            if path.suffix == ".cpp" or path.match("test_*.py"):
+                sign, first = ("//", "#include") if path.suffix == ".cpp" else ("#", '"""')
+                text = path.read_text(encoding="utf-8")
+                for marker in re.finditer(rf"^[ \t]*{sign} ctest-label.*$", text, re.MULTILINE):
+                    place = f"{path}: {marker[0]}"
+                    self.assertRegex(marker[0], rf"^{sign} ctest-label: ({LABELS})( ({LABELS}))*$", place)
+                    case = re.compile(r"(TYPED_)?TEST(_F|_P)?\(").match(text, marker.end() + 1)
+                    self.assertTrue(case or marker.start() < text.index(first), f"{place} belongs to no test")
+                    used.update(marker[0].split()[2:])
+        self.assertEqual(set(LABELS.split("|")), used)
 
 
 class PropertiesOfTests(unittest.TestCase):
@@ -92,7 +71,3 @@ class PropertiesOfTests(unittest.TestCase):
         result = self.show("#include <a>\n// ctest-label: exact\nTEST(First, Run) {}\n")
         self.assertNotEqual(0, result.returncode)
         self.assertIn("the program has no such test", " ".join(result.stderr.split()))
-
-
-if __name__ == "__main__":
-    unittest.main()

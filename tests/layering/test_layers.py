@@ -1,6 +1,7 @@
 """The includes respect the layers, and each rule is shown to catch a breach."""
 
 import os
+import re
 import unittest
 
 import layers
@@ -46,6 +47,15 @@ class Repository(unittest.TestCase):
 
     def test_kernels_in_cuda_have_their_folders(self):
         self.refused(layers.is_misplaced_cuda)
+
+    def test_each_rung_of_a_ladder_is_one_file(self):
+        for ladder in ("weno", "springs", "options", "transfers"):
+            own = {path: text for path, text in TEXTS.items() if path.startswith(f"perf/ladders/{ladder}/") and path.endswith(".hpp")}
+            names = {path: re.findall(r'RungText text\{\s*"([^"]+)"', text) for path, text in own.items()}
+            rungs = [(path.split("/")[-1], name.replace("-", "_") + ".hpp") for path, found in names.items() for name in found]
+            self.assertEqual([], [rung for rung in rungs if rung[0] != rung[1]])
+            self.assertEqual(len(re.findall("make_rung<", own[f"perf/ladders/{ladder}/ladder.hpp"])), len(rungs), ladder)
+            self.assertGreater(len(rungs), 3, ladder)
 
 
 class EachRuleCatchesItsBreach(unittest.TestCase):
@@ -106,7 +116,3 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         texts = {"kernels/a.hpp": use, "kernels/b.hpp": "#include <Kokkos_Core.hpp>\n" + use,
                  "kernels/c.hpp": '#include "kernels/b.hpp"\nKOKKOS_FUNCTION void f();\n', "kernels/d.hpp": "// Kokkos::View\n"}
         self.assertEqual(["kernels/a.hpp"], [path for path in texts if layers.uses_kokkos_unseen(path, texts)])
-
-
-if __name__ == "__main__":
-    unittest.main()

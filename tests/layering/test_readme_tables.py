@@ -5,6 +5,7 @@ import json
 import os
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -32,8 +33,10 @@ def scenes(name):
 
 
 class Repository(unittest.TestCase):
-    def test_tables_equal_their_records(self):
-        self.assertEqual(readme.renewed(README), README, "run scripts/publish_records.py --tables")
+    def test_tables_of_all_pages_equal_their_records(self):
+        words = [sys.executable, "-B", ROOT / "scripts/publish_records.py", "--tables", "--check"]
+        process = subprocess.run(words, capture_output=True, text=True, check=False)
+        self.assertEqual(0, process.returncode, process.stderr)
 
     def test_every_table_of_numbers_has_marks(self):
         outside = readme.MARK.sub("", README)
@@ -65,7 +68,7 @@ class Generator(unittest.TestCase):
         self.evidence = Path(folder.name)
         (self.evidence / "alone").mkdir()
         for name in ("gas-solution-h100", "springs-solution-h200", "springs-solution-epyc", "options-epyc", "flow-h200",
-                     "parachute-solution-h200", "flight-h200"):  # fmt: skip
+                     "parachute-solution-h200", "flight-h200"):
             shutil.copy(forms.EVIDENCE / f"{name}.jsonl", self.evidence)
         shutil.copy(forms.EVIDENCE / "alone/options-h200.jsonl", self.evidence / "alone")
 
@@ -110,9 +113,6 @@ class Generator(unittest.TestCase):
 
 
 class Results(unittest.TestCase):
-    def test_page_equals_its_records(self):
-        self.assertEqual(results.page(), (ROOT / "docs/results.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
-
     def test_numbers_are_short(self):
         values = {0.0: "0", 2e-3: "2e-3", 2.026e-3: "2.03e-3", 1e-14: "1e-14", 0.0784: "0.0784", 0.325: "0.325", 43.1: "43.1", 2250.0: "2250"}
         self.assertEqual(list(values.values()), [results.number(value) for value in values])
@@ -135,10 +135,6 @@ class Transfers(unittest.TestCase):
                           "provenance": {"gpu": "a GPU", "cpu": "a core", "date": date, "git": "abc"}})
         text = "".join(json.dumps(line) + "\n" for line in lines)
         (self.evidence / f"{app}-transfers-{machine}.jsonl").write_text(text, encoding="utf-8")
-
-    def test_pages_equal_their_records(self):
-        for name, page in (("transfers", transfers.page), ("transfers-tables", transfers.rows_page)):
-            self.assertEqual(page(), (ROOT / f"docs/{name}.md").read_text(encoding="utf-8"), "run scripts/publish_records.py --tables")
 
     def test_shows_our_scheme_of_gas_beside_that_of_the_dissertation(self):
         thesis = {"h2d_us": 500, "compute_us": 300, "d2h_us": 200, "total_us": 1000}
@@ -220,8 +216,4 @@ class EvidenceRows(unittest.TestCase):
              f"| `alone/options-h200.jsonl` | `drogue-perf run --filter '^options/cuda/N/' --out options-N.jsonl`, one run per N | {machine} |",
              f"| `ladders/weno-cuda-h200.jsonl` | `drogue-perf ladder weno --out weno-cuda-h200.jsonl` | {machine} |",
              "", "End", ""],
-            text.split("\n"))  # fmt: skip
-
-
-if __name__ == "__main__":
-    unittest.main()
+            text.split("\n"))

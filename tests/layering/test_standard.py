@@ -38,7 +38,3 @@ class Check(unittest.TestCase):
 
     def test_text_is_no_use(self):
         self.assertEqual([], self.missing('// std::sort\nconst char* a = "std::vector \\" std::map";\n'))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,5 @@
 """Invalid rows of a batch are reported as `invalid`, all others are priced; an invalid file ends with exit code 3."""
 
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import bad_batches
 import options_program
 from options_program import FAST, HEADER, batch, row
@@ -143,7 +137,3 @@ class BadBatches(options_program.OptionsTest):
     def test_rejects_a_strike_in_a_parameter_set(self):
         message = self.expect(3, "surface", self.write(batch([row("a")])), "--strikes", "1", "--maturities", "1").stderr
         self.assertIn('unknown column "strike"', message)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,10 +3,9 @@
 import os
 import pathlib
 import subprocess
-import tempfile
-import unittest
 
 import bad_scenes
+from folder_test import FolderTest
 
 PROGRAM = pathlib.Path(os.environ["DROGUE_BIN"]) / "drogue-gas"
 
@@ -18,11 +17,10 @@ def check(scene, *sets):
     return subprocess.run(arguments, capture_output=True, timeout=60, check=False)
 
 
-class BadScenes(unittest.TestCase):
+class BadScenes(FolderTest):
     def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self._folder.cleanup)
-        self.scene = pathlib.Path(self._folder.name) / "scene.toml"
+        super().setUp()
+        self.scene = self.folder / "scene.toml"
 
     def write(self, content):
         if isinstance(content, str):
@@ -79,11 +77,7 @@ class BadScenes(unittest.TestCase):
         self.assert_refused(f"{self.scene}:22: ", ["FP32", "1e11", "1e+12"])
 
     def test_missing_files_are_usage_errors(self):
-        for argument, word in (("no-such-scene", "no-such-scene"), ("sodd", '"sod"'), (self._folder.name, "folder")):
+        for argument, word in (("no-such-scene", "no-such-scene"), ("sodd", '"sod"'), (self.folder, "folder")):
             result = check(argument)
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn(word, result.stderr.decode())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,5 @@
 """Invalid springs scenes and meshes end with exit code 3 and a sentence that names file, line and part."""
 
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import bad_springs
 import mutations
 import springs_program
@@ -62,8 +56,7 @@ class BadSprings(springs_program.SpringsTest):
     def test_rejects_stress_without_triangles(self):
         string = ["mesh={string={}}", "material={}", "pin=[{where='x==0'}]", "mass=[{where='x==1',add=1}]"]
         self.expect(0, self.scene, "--check", sets=string)
-        self.assert_refused("--set output.fields", ["von_mises", "triangles"], *string,
-                            'output.fields=["von_mises"]')
+        self.assert_refused("--set output.fields", ["von_mises", "triangles"], *string, 'output.fields=["von_mises"]')
 
     def test_rejects_the_linear_vector_model_with_motion(self):
         cloth = ["mesh={disk={}}", "material={model='linear-vector'}", "mass=[{where='x>0',add=1}]"]
@@ -77,7 +70,3 @@ class BadSprings(springs_program.SpringsTest):
                 process = self.start(self.scene, "--check")
                 self.assertIn(process.returncode, (0, 3), process.stderr)
                 self.assertEqual(1 if process.returncode else 0, len(process.stderr.splitlines()))
-
-
-if __name__ == "__main__":
-    unittest.main()

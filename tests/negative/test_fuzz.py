@@ -3,10 +3,9 @@
 import os
 import pathlib
 import subprocess
-import tempfile
-import unittest
 
 import bad_scenes
+from folder_test import FolderTest
 import mutations
 
 PROGRAM = pathlib.Path(os.environ["DROGUE_BIN"]) / "drogue-gas"
@@ -14,14 +13,13 @@ PROGRAM = pathlib.Path(os.environ["DROGUE_BIN"]) / "drogue-gas"
 SCENES = [text.encode() for text in bad_scenes.SOUND]
 
 
-class Fuzz(unittest.TestCase):
+class Fuzz(FolderTest):
     def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self._folder.cleanup)
-        self.scene = pathlib.Path(self._folder.name) / "scene.toml"
+        super().setUp()
+        self.scene = self.folder / "scene.toml"
 
     def run_program(self, *arguments):
-        return subprocess.run([str(PROGRAM), str(self.scene), *arguments], cwd=self._folder.name, capture_output=True,
+        return subprocess.run([str(PROGRAM), str(self.scene), *arguments], cwd=self.folder, capture_output=True,
                               timeout=120, check=False)
 
     def assert_ends_well(self, result, seed, allowed):
@@ -45,7 +43,3 @@ class Fuzz(unittest.TestCase):
             self.assert_ends_well(result, seed, {0, 3, 4, 5})
             codes.add(result.returncode)
         self.assertLessEqual({0, 3}, codes)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -65,7 +65,3 @@ class Facts(unittest.TestCase):
             self.assertEqual("serial", facts["backend"])
         # 24 bytes and two operations per value.
         self.assertEqual(12 * self.facts("ceiling/cache/serial")["flops"], self.facts("ceiling/cache/serial")["bytes"])
-
-
-if __name__ == "__main__":
-    unittest.main()

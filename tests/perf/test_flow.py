@@ -62,7 +62,3 @@ class Steps(unittest.TestCase):
             self.assertEqual((cells, 304 * cells), (record["facts"]["cells"], record["facts"]["bytes"]))
             # A wrong flux gives an error of order one.
             self.assertTrue(0 < record["facts"]["solution_error"] < 1 / int(case.split("x")[0]))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,10 +4,6 @@ import os
 import pathlib
 import re
 import subprocess
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 
@@ -45,7 +41,3 @@ class Ladder(perf_program.PerfTest):
         self.assertNotIn("broken: ", process.stdout)
         self.assertEqual(4, process.stdout.count("mended"))
         self.assertIn("--solutions", self.expect(2, "ladder", "weno", "--solutions").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

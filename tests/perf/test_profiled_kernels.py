@@ -36,7 +36,3 @@ class ProfiledKernels(unittest.TestCase):
         self.assertGreater(len(records & sources), 90)
         self.assertEqual(sorted(set(table)), sorted(table))
         self.assertEqual(sorted(sources - records), sorted(table))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,15 +1,9 @@
 """Helpers that make pages of synthetic records by drogue-plot and parse them."""
 
-import contextlib
-import io
-import shutil
-import tempfile
-import unittest
 from html.parser import HTMLParser
-from pathlib import Path
 
 import synthetic_records as records
-from plot import cli
+from drawn import PictureTest, plot
 from plot.evidence.records import read_records
 
 
@@ -51,20 +45,8 @@ class Page(HTMLParser):
             self.words += data
 
 
-def plot(*words):
-    """Exit code, names of the files, standard error."""
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        code = cli.main([str(word) for word in words])
-    return code, sorted(Path(line).name for line in out.getvalue().split("\n") if line), err.getvalue()
-
-
-class Folder(unittest.TestCase):
+class Folder(PictureTest):
     """Test case with a temporary folder of records."""
-
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
 
     def page(self, lines, app="gas"):
         """Parsed page of a mini-app, and names of the written files."""

@@ -15,9 +15,7 @@ _TOLERANCE = 6.5e-3
 def main():
     words = sys.argv[1:]
     if words == ["--list-scenes"]:
-        print(
-            "sod         Sod's shock tube.\nlax         Lax's shock tube.\nsod-full    The same, fine. [gpu]"
-        )
+        print("sod         Sod's shock tube.\nlax         Lax's shock tube.\nsod-full    The same, fine. [gpu]")
         return 0
     name, directory = words[0], Path(words[words.index("--out") + 1])
     synthetic.write_sod(directory, cells=60, snapshots=9)
@@ -32,7 +30,7 @@ def main():
         "errors": {"l1_density": value}, "limiter": {"touches": 0}, "timing": {"compute_s": 0.0123},
         "provenance": {"cpu": "a processor", "gpu": "", "compiler": "gcc", "date": "today"},
         "message": f"l1_density is {value:g}, above its tolerance {_TOLERANCE:g}." if fails else "",
-    }  # fmt: skip
+    }
     (directory / "result.json").write_text(json.dumps(result))
     return 5 if fails else 0
 

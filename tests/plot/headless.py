@@ -40,7 +40,7 @@ class Browser:
              "--disable-background-networking", f"--window-size={width},{height}", f"--user-data-dir={self._folder.name}",
              "--remote-debugging-pipe", "about:blank"],
             preexec_fn=connect, pass_fds=(3, 4), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
+        )
         os.close(inner_read)
         os.close(inner_write)
         self._session = None
@@ -110,7 +110,7 @@ class Browser:
     def complaints(self):
         """Texts of the console and of exceptions."""
         named = {"Log.entryAdded": lambda p: p["entry"]["text"], "Runtime.consoleAPICalled": lambda p: str(p["args"]),
-                 "Runtime.exceptionThrown": lambda p: p["exceptionDetails"]["text"]}  # fmt: skip
+                 "Runtime.exceptionThrown": lambda p: p["exceptionDetails"]["text"]}
         return [named[event["method"]](event["params"]) for event in self.events if event.get("method") in named]
 
     def requests(self):

@@ -114,7 +114,7 @@ def write_study(file, meshes=(100, 200, 400, 800), failed=0, settings=("",)):
             rows.append(
                 [label + setting, weno, 1, "lf-stencil", "ssprk3", "double", "serial", cells, 2 * cells, seconds, value,
                  2 * value, value, 1e-15, "ok"]
-            )  # fmt: skip
+            )
     for row in rows[len(rows) - failed :]:
         row[-1] = "numerical-failure"
     with file.open("w", newline="") as stream:
@@ -126,7 +126,7 @@ def write_study(file, meshes=(100, 200, 400, 800), failed=0, settings=("",)):
 def write_springs_study(file, order=2.0, checks=("frequency", "equilibrium")):
     """Writes study.csv of a disk on four meshes with the given order in the edge length."""
     header = ["label", "model", "mass", "integrator", "backend", "vertices", "steps", "compute_s", *checks,
-              "cauchy_area", "cauchy_elastic", "cauchy_kinetic", "status"]  # fmt: skip
+              "cauchy_area", "cauchy_elastic", "cauchy_kinetic", "status"]
     with file.open("w", newline="") as stream:
         table = csv.writer(stream)
         table.writerow(header)
@@ -136,17 +136,8 @@ def write_springs_study(file, order=2.0, checks=("frequency", "equilibrium")):
             cauchy = ["", "", ""] if rings == 32 else [error, 2 * error, 3 * error]
             table.writerow(
                 [
-                    "biquadratic",
-                    "biquadratic",
-                    "area",
-                    "rk4",
-                    "serial",
-                    vertices,
-                    100 * rings,
-                    1e-3 * rings**3,
-                    *[error, 1e-9][: len(checks)],
-                    *cauchy,
-                    "ok",
+                    "biquadratic", "biquadratic", "area", "rk4", "serial", vertices, 100 * rings, 1e-3 * rings**3,
+                    *[error, 1e-9][: len(checks)], *cauchy, "ok",
                 ]
             )
     return file

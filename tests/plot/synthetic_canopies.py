@@ -55,7 +55,7 @@ def canopy_columns(index, payload_speed=0.0):
         name + "payload_velocity_x [m/s]": zero, name + "payload_velocity_y [m/s]": zero,
         name + "payload_velocity_z [m/s]": [payload_speed] * 3,
         name + "projected_area [m^2]": [3.0, 2.0, 2.5], name + "largest_strain": zero, name + "inversion": zero,
-    }  # fmt: skip
+    }
 
 
 def write_canopies(folder, fields=("velocity", "position", "von_mises"), payload_speed=0.0, canopies=1, side=0.0):
@@ -114,7 +114,7 @@ def write_springs_and_flags(folder):
     columns |= {"flag_0_tip_x [m]": [1.0, 0.9, 1.0], "flag_0_tip_y [m]": [0.3, -0.3, 0.2]}
     write_history(folder / "history.csv", {
         "time [s]": [0.0, 1.0, 2.0], "kinetic_energy [J]": [1.0] * 3, "body_0_displacement [m]": [0.0, 0.01, -0.02], **columns,
-    })  # fmt: skip
+    })
     return folder
 
 
@@ -126,7 +126,7 @@ def write_cloth_drop(folder):
     write_history(folder / "history.csv", {
         "time [s]": [0.0, 1.0, 2.0], **columns, "cloth_kinetic_energy [J]": [0.0, 1.0, 2.0],
         "cloth_elastic_energy [J]": [0.0, 4.0, 3.0], "potential_energy [J]": [9.0, 4.0, 4.0], "energy [J]": [9.0] * 3,
-    })  # fmt: skip
+    })
     with h5py.File(folder / "fields.h5", "a") as h5:
         for axis in "xyz":
             del h5[f"mesh/{axis}"]
@@ -151,5 +151,5 @@ def write_bodies(folder):
         "body_0_force_z [N]": [1e-12] * 5,
         **{f"body_1_force_{axis} [N]": [1.0, 2.0, 3.0, 2.0, 1.0] for axis in "xyz"},
         **{f"body_1_outside_force_{axis} [N]": [0.5, 1.0, 1.5, 1.0, 0.5] for axis in "xyz"},
-    })  # fmt: skip
+    })
     return folder

@@ -31,13 +31,11 @@ def write_flow(folder, cells, lengths, fields_at, times=(0.0,), is_open=False):
     folder.mkdir(parents=True, exist_ok=True)
     domain = ", ".join(f"[0.0, {length}]" for length in lengths)
     sides = '["inflow", "outflow"]' if is_open else '"periodic"'
-    (folder / "scene.toml").write_text(
-        SCENE.format(cells=", ".join(map(str, cells)), domain=domain, x=sides)
-    )
+    (folder / "scene.toml").write_text(SCENE.format(cells=", ".join(map(str, cells)), domain=domain, x=sides))
     rows = [f"{0.5 * k},{k},0.5,{4.0 - k * k},{1.0 + k},2,{(k > 0) * 1e-15},{k * 1e-14},-1,1" for k in range(3)]
     header, rows = (HISTORY, rows) if is_open else (
         HISTORY.rsplit(",", 2)[0], [row.rsplit(",", 2)[0] for row in rows]
-    )  # fmt: skip
+    )
     (folder / "history.csv").write_text("\n".join([header, *rows]) + "\n")
     with h5py.File(folder / "fields.h5", "w") as h5:
         for axis, count, length in zip("xyz", cells, lengths):
@@ -55,7 +53,7 @@ def write_flow_study(file):
     """Writes study.csv of two schemes on three meshes, with errors of order 2 and 3; returns its path."""
     header = ["label", "advection", "time_scheme", "pressure", "backend", "cells", "steps", "compute_s", "l1_velocity",
               "l2_velocity", "linf_velocity", "l2_pressure", "order_l2_velocity", "order_l2_pressure", "divergence",
-              "status"]  # fmt: skip
+              "status"]
     with file.open("w", newline="") as stream:
         table = csv.writer(stream)
         table.writerow(header)
@@ -65,5 +63,5 @@ def write_flow_study(file):
                 table.writerow(
                     [f"{advection} {time}", advection, time, "auto", "serial", cells, cells, 1e-6 * cells**3, 2 * error,
                      error, 3 * error, "", order, "", 1e-15, "ok"]
-                )  # fmt: skip
+                )
     return file

@@ -13,12 +13,12 @@ def record(case, seconds, machine, facts=None, **changes):
         "version": "0.1.0", "git": "abcdef123456", "compiler": "GNU 12.2.0", "flags": "-O3 -march=x86-64-v3",
         "kokkos": "4.5.1", "driver": "13.0" if machine["gpu"] else "",
         "date": changes.pop("run", "2026-11-22T05:00:00Z"),
-    }  # fmt: skip
+    }
     document = {
         "schema": "drogue.perf/1", "case": case, "unit": "s per step", "bound": "synthetic", "samples": [seconds] * 3,
         "median": seconds, "interval": seconds and [0.98 * seconds, 1.02 * seconds], "error": 1e-4, "check": "passed",
         "provenance": provenance | machine, "facts": facts or {},
-    }  # fmt: skip
+    }
     return document | changes
 
 
@@ -26,13 +26,13 @@ def record(case, seconds, machine, facts=None, **changes):
 SCHEMES = {
     "js": ("js", 1, 1.0, 1.0), "z": ("z", 1, 0.8, 1.05), "z2": ("z", 2, 0.9, 1.05), "m": ("m", 1, 0.85, 1.3),
     "teno5": ("teno5", 1, 0.7, 1.25), "muscl-hancock": ("muscl-hancock", 1, 2.5, 0.12),
-}  # fmt: skip
+}
 USUAL = ("lf-stencil", "ssprk3", "double")
 # problem -> error of JS at 100 cells, order of the WENO schemes, order of MUSCL-Hancock
 PROBLEMS = {
     "entropy-wave": (3e-4, 5.0, 2.0), "shu-osher": (0.5, 1.6, 1.1), "blast": (0.3, 0.9, 0.8),
     "leblanc": (0.05, 0.95, 0.85), "sod": (0.012, 0.9, 0.85),
-}  # fmt: skip
+}
 # s of a step: a latency and s a cell
 SPEEDS = {"serial": (0.0, 6e-8), "openmp": (4e-6, 4.5e-9), "cuda": (5e-6, 1.2e-10)}
 SECOND_SETTINGS = {"lf-stencil": 1.0, "lf-global": 1.15, "lf-single": 1.3}
@@ -57,16 +57,14 @@ def solution(problem, backend, scheme, settings, cells, machine, **changes):
         "problem": problem, "backend": backend, "weno": weno, "weno_power": power, "splitting": splitting,
         "time_scheme": time_scheme, "precision": precision, "cells": cells, "steps": steps, "status": "ok",
         "message": "",
-    }  # fmt: skip
+    }
     label = " ".join([scheme, *(word for word, usual in zip(settings, USUAL) if word != usual)])
     changes = {"error": error, "unit": "s per solution"} | changes
     facts |= changes.pop("facts", {})
     return record(f"gas-solution/{problem}/{backend}/{label}/{cells}", seconds, machine, facts, **changes)
 
 
-def solutions(
-    machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), meshes=(100, 200, 400, 800, 1600, 3200)
-):
+def solutions(machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), meshes=(100, 200, 400, 800, 1600, 3200)):
     """All schemes with default settings, WENO-Z with all; MUSCL-Hancock on Serial only; TENO5 fails LeBlanc."""
     settings = list(itertools.product(SECOND_SETTINGS, ("ssprk3", "ssprk43"), ("double", "split")))
     found = []
@@ -77,11 +75,7 @@ def solutions(
             changes = {}
             if (problem, scheme) == ("leblanc", "teno5"):
                 message = "negative pressure in cell 41 at x = 2.3, step 12, t = 0.01"
-                changes = {
-                    "facts": {"status": "numerical-failure", "message": message},
-                    "median": None,
-                    "error": None,
-                }
+                changes = {"facts": {"status": "numerical-failure", "message": message}, "median": None, "error": None}
             found.append(solution(problem, backend, scheme, USUAL, cells, machine, **changes))
         for variant in settings:
             if variant != USUAL:
@@ -93,11 +87,7 @@ def step(case, seconds, machine, cells, **changes):
     """A step with its work: 1300 FLOP and 72 bytes per cell."""
     words = case.split("/")
     facts = {
-        "backend": words[0],
-        "cells": cells,
-        "variant": "/".join(words[2:]),
-        "flops": 1300 * cells,
-        "bytes": 72 * cells,
+        "backend": words[0], "cells": cells, "variant": "/".join(words[2:]), "flops": 1300 * cells, "bytes": 72 * cells,
     }
     return record(f"gas-step/{case}", seconds, machine, facts, **changes)
 
@@ -110,7 +100,7 @@ def steps_of_h200():
         f"cuda/{large}": 2019e-6,
         f"cuda/{large}/z": 2100e-6, f"cuda/{large}/teno5": 2544e-6, f"cuda/{large}/split": 1400e-6,
         f"cuda/{large}/auto": 2025e-6, f"cuda/{large}/on": 5815e-6, "cuda/8192/graph": 9.6e-6,
-    }  # fmt: skip
+    }
     return [step(name, seconds, H200, int(name.split("/")[1])) for name, seconds in times.items()]
 
 
@@ -120,7 +110,7 @@ def steps_of_core(machine=EPYC):
     times = {
         "dense-loop/8192": 8 * one * 8192, "serial/8192": one * 8192, "serial/1048576": one * (1 << 20),
         "openmp/8192": 0.6 * one * 8192, "openmp/1048576": one * (1 << 20) / 1.8,
-    }  # fmt: skip
+    }
     return [step(name, seconds, machine, int(name.split("/")[1])) for name, seconds in times.items()]
 
 
@@ -171,7 +161,7 @@ def counted_batches(machine=H200):
         record("options/cuda/4096/256x64", 1e-3, machine, facts | {"variant": "256x64"}),
         record("tridiagonal/cuda/4096/scan/128", 10e-6, machine,
                facts | {"variant": "scan/128", "flops": 33e6, "bytes": 8e-6 * 4.2e12}),
-    ]  # fmt: skip
+    ]
 
 
 def scaling(machine=EPYC):
@@ -180,12 +170,12 @@ def scaling(machine=EPYC):
         record(f"scaling/gas-step/openmp/8192/{count}", 1e-3 / (1.6 if count == 2 else 1.0), machine,
                {"backend": "openmp", "cells": 8192, "variant": "", "threads": count})
         for count in (1, 2)
-    ]  # fmt: skip
+    ]
     ranks = [
         record(f"scaling/flow-step/serial/64x64x{64 * count}/ranks/{count}/weak", 1e-2 * count, machine,
                {"backend": "serial", "cells": count << 18, "ranks": count, "threads": 1, "scaling": "weak"})
         for count in (1, 2)
-    ]  # fmt: skip
+    ]
     return threads + ranks
 
 
@@ -194,7 +184,7 @@ def abstraction(machine=H200):
     found = []
     for kernel, cells, launches, ratio in (
         ("gas-step", 1 << 20, "graph", 1.02), ("gas-step", 1024, "plain", 1.3), ("springs-step", 1 << 20, "graph", 1.08),
-    ):  # fmt: skip
+    ):
         for version, factor in (("kokkos", ratio), ("hand-written", 1.0)):
             facts = {"backend": "cuda", "cells": cells, "version": version, "launches": launches, "block": 128, "steps": 64}
             if version == "kokkos":
@@ -214,7 +204,7 @@ def transfers(machine=H200):
             facts = {
                 "backend": "cuda", "memory": memory, "cells": cells, "h2d_s": 1e-6 * thesis["h2d_us"] * share,
                 "compute_s": 40e-6, "d2h_s": 1e-6 * thesis["d2h_us"] * share, "thesis": thesis,
-            }  # fmt: skip
+            }
             seconds = facts["h2d_s"] + facts["compute_s"] + facts["d2h_s"]
             found.append(record(f"gas-transfers/cuda/{memory}/{cells}", seconds, machine, facts))
             ours = facts | {"method": "ours", "h2d_s": 1e-6, "compute_s": 5e-6, "d2h_s": 1e-6}
@@ -250,12 +240,12 @@ def springs_solutions(machine=EPYC):
         share = 1.0 if integrator == "rk4" else 0.4
         for problem, model, n, order in (
             ("drum", "biquadratic", 60 << doubling, 1.0), ("catenary", "string", 8 << doubling, 2.0),
-        ):  # fmt: skip
+        ):
             error = n**-order if mass == "area" else n ** (-0.5 * order)
             facts = {
                 "problem": problem, "backend": "serial", "model": model, "mass": mass, "integrator": integrator,
                 "cells": n, "steps": 100, "status": "ok", "message": "",
-            }  # fmt: skip
+            }
             case = f"springs-solution/{problem}/serial/{model} {label}/{n}".replace(" /", "/")
             found.append(record(case, share * 1e-6 * n**1.5, machine, facts, error=error))
     return sorted(found, key=lambda line: line["facts"]["problem"], reverse=True)
@@ -267,7 +257,7 @@ def springs_steps(machine=H200):
         "springs-step/cuda/2640": 4.07e-6, "springs-step/cuda/1000000": 350e-6,
         "springs-step/cuda/1000000/quadratic": 434e-6, "springs-step/scatter-loop/2640": 285e-6,
         "springs-contact/cuda/15625": 290e-6, "springs-contact/cuda/246000": 9e-3,
-    }  # fmt: skip
+    }
     return [record(case, seconds, machine) for case, seconds in times.items()]
 
 
@@ -279,7 +269,7 @@ def ladder(name="weno", machine=EPYC, backend="serial"):
         facts = {
             "ladder": name, "rung": rung, "backend": backend, "cells": 8192, "predicted_s": 0.5 * seconds,
             "predicted_bound": "arithmetic", "flops": 1e6, "bytes": 1e6,
-        }  # fmt: skip
+        }
         found.append(record(f"ladder/{name}/{backend}/8192/{rung}", seconds, machine, facts))
     return found
 
@@ -295,10 +285,10 @@ def occupancy(machine=EPYC):
     def facts(architecture, block, registers, blocks, **more):
         limits = {f"blocks_by_{name}": 8 * blocks for name in ("shared_memory", "threads", "limit")}
         return {"architecture": architecture, "block": block, "registers": registers, "shared_bytes": 0, "blocks": blocks,
-                "blocks_by_registers": blocks, **limits, "threads_sm": block * blocks, "occupancy": block * blocks / 2048} | more  # fmt: skip
+                "blocks_by_registers": blocks, **limits, "threads_sm": block * blocks, "occupancy": block * blocks / 2048} | more
 
     printed = {"shared_bytes": 0, "blocks_by_registers": 8, "blocks_by_shared_memory": 64, "blocks_by_limit": 64, "blocks": 8,
-               "threads_sm": 512, "threads_device": 7168, "occupancy_percent": 25.0}  # fmt: skip
+               "threads_sm": 512, "threads_device": 7168, "occupancy_percent": 25.0}
     shi = facts("sm_20", 64, 63, 8, threads_device=7168, thesis=printed)
     found = [untimed("occupancy/sm_20/64", machine, shi), untimed("occupancy/sm_20/544", machine, facts("sm_20", 544, 63, 0, thesis=printed))]
     for architecture, suffix, blocks in (("sm_90", "", 4), ("sm_86", "/gas-step", 2)):
@@ -306,7 +296,7 @@ def occupancy(machine=EPYC):
         found.append(untimed(f"occupancy/{architecture}/128/large-mesh{suffix}", machine, own))
     for kernel, achieved, check in (("StepFunctor", 3, "passed"), ("FluxFunctor", 4, "failed")):
         own = facts("sm_90", 128, 168, 3, kernel=f"drogue::gas::{kernel}", launches=5, limited_by="registers",
-                    achieved={"blocks": achieved, "mean_blocks": 2.875})  # fmt: skip
+                    achieved={"blocks": achieved, "mean_blocks": 2.875})
         found.append(untimed(f"occupancy/sm_90/gas::{kernel}/128/168/0", machine, own, check=check, error=achieved - 3.0))
     return found
 
@@ -314,9 +304,9 @@ def occupancy(machine=EPYC):
 def hardware(machine=H200):
     """The machine of [Shi], and one with a GPU and an unknown L3 cache."""
     host = {"cpu": machine["cpu"], "cores": 16, "clock_hz": 2.1e9, "memory_bytes": 64 << 30, "l1_bytes": 768 << 10,
-            "l2_bytes": 32 << 20, "l3_bytes": None, "os": "Linux 1", "kernel": "6.1"}  # fmt: skip
+            "l2_bytes": 32 << 20, "l3_bytes": None, "os": "Linux 1", "kernel": "6.1"}
     device = {"gpu": machine["gpu"], "multiprocessors": 132, "clock_hz": 1.98e9, "memory_bytes": 141 << 30, "constant_bytes": 1 << 16,
-              "shared_bytes": 228 << 10, "l2_bytes": 60 << 20, "registers": 65536}  # fmt: skip
+              "shared_bytes": 228 << 10, "l2_bytes": 60 << 20, "registers": 65536}
     thesis = {"cpu": "two Xeon E5-2687W", "caches": "L3 2 x 20 MB", "gpu": "two Quadro 6000"}
     return [untimed("machine", machine, {"host": host, "device": device if machine["gpu"] else None, "thesis": thesis})]
 
@@ -328,7 +318,7 @@ def springs_transfers(machine=H200):
         facts = {
             "backend": "cuda", "cells": 2641, "substeps": steps, "h2d_s": 3e-5, "compute_s": 5e-6 * steps,
             "d2h_s": 2e-5, "thesis": thesis,
-        }  # fmt: skip
+        }
         found.append(record(f"springs-transfers/cuda/2641/{steps}", 5e-5 + 5e-6 * steps, machine, facts))
         pinned = facts | {"memory": "pinned", "h2d_s": 1e-5}
         found.append(record(f"springs-transfers/cuda/2641/{steps}/pinned", 3e-5 + 5e-6 * steps, machine, pinned))
@@ -342,7 +332,7 @@ def parachute_transfers(machine=H200):
         facts = {
             "backend": "cuda", "memory": "pinned", "cells": 432000, "grid": "60x60x120", "substeps": steps,
             "h2d_s": 5e-4 / steps, "compute_s": 1e-3, "d2h_s": 5e-4 / steps,
-        }  # fmt: skip
+        }
         found.append(record(f"parachute-transfers/cuda/pinned/60x60x120/{steps}", 1e-3 + 1e-3 / steps, machine, facts))
     return found
 
@@ -357,7 +347,7 @@ def options_solutions(machine=EPYC, backend="serial"):
 
     def add(method, n, seconds, error, **settings):
         facts = {"problem": "thesis", "backend": backend, "method": method, "cells": n, "steps": n, "status": "ok",
-                 "message": "", "exercise": "", "grids": ""} | settings  # fmt: skip
+                 "message": "", "exercise": "", "grids": ""} | settings
         label = " ".join([method, *settings.values()])
         case = f"options-solution/thesis/{backend}/{label}/{n}"
         found.append(record(case, seconds, machine, facts, error=error, unit="s per option"))
@@ -379,7 +369,7 @@ def options_batches(machine=H200):
     times = {
         "options/cuda/4096/128x32": 3e-4, "options/cuda/1/128x32": 2e-4, "tridiagonal/cuda/4096/pttrf/128": 4e-5,
         "tridiagonal/cuda/4096/scan/128": 1e-5,
-    }  # fmt: skip
+    }
     return [record(case, seconds, machine) for case, seconds in times.items()]
 
 
@@ -406,7 +396,7 @@ def options_transfers(machine=H200):
         facts = {
             "backend": "cuda", "method": method, "cells": options, "mesh": mesh, "h2d_s": 0.1 * seconds,
             "compute_s": 0.8 * seconds, "d2h_s": 0.1 * seconds, "thesis": thesis,
-        }  # fmt: skip
+        }
         for memory, factor in (("pageable", 1.0), ("pinned", 0.9)):
             own = facts | {"memory": memory, "h2d_s": factor * facts["h2d_s"]}
             case = f"options-transfers/cuda/{method}/{options}/{mesh}/{memory}"
@@ -431,7 +421,7 @@ def flow_solutions(machine=H200, backend="cuda"):
             facts = {
                 "problem": problem, "backend": backend, "advection": advection, "time_scheme": time,
                 "pressure": pressure, "diffusion": diffusion, "cells": n, "steps": n, "status": "ok", "message": "",
-            }  # fmt: skip
+            }
             label = f"{advection} {time} {pressure} {diffusion}"
             error = factor * 10.0 * n**-2.0 * (0.1 if time == "rk3" else 1.0)
             found.append(
@@ -447,7 +437,7 @@ def cavity_solutions(machine=H200):
         facts = {
             "problem": "cavity", "backend": "cuda", "advection": "weno-z", "time_scheme": time,
             "pressure": "diagonalization", "diffusion": "explicit", "cells": n, "steps": n, "status": "ok", "message": "",
-        }  # fmt: skip
+        }
         seconds = (3e-7 if time == "rk3" else 1e-7) * n**4
         case = f"flow-solution/cavity/cuda/weno-z {time} diagonalization/{n}"
         found.append(record(case, seconds, machine, facts, error=10.0 * n**-2.0))
@@ -480,7 +470,7 @@ def openings(machine=H200):
         facts = {
             "problem": problem, "backend": "cuda", "kernel": kernel, "time": "ab2 0.25", "edge": edge, "cells": n,
             "steps": n, "status": "ok", "message": "",
-        }  # fmt: skip
+        }
         case = f"parachute-solution/{problem}/cuda/{kernel} ab2 0.25 edge {edge}/{n}"
         seconds = 1e-5 * n**3 * (2.0 if edge == "0.35" else 1.0)
         found.append(record(case, seconds, machine, facts, error=2.0 / n))
@@ -498,7 +488,7 @@ def flow_solvers(machine=H200):
         record("flow-memory/cuda/64x64x64/periodic", None, machine,
                facts | {"variant": "periodic", "array_bytes": 124 * cells, "driver_bytes": 140 * cells},
                samples=[], interval=None),
-    ]  # fmt: skip
+    ]
 
 
 def write(file, records):

@@ -1,6 +1,5 @@
 """Bounds of a step by the measured ceilings, scaling, and the cost of Kokkos, on pages of synthetic records."""
 
-import unittest
 
 import packages  # before modules that need the packages  isort: skip
 import synthetic_records as records
@@ -59,13 +58,13 @@ class Numbers(Folder):
     def test_names_no_latency_where_work_is_not_counted(self):
         [step] = self.evidence([dict(line, samples=[100 * s for s in line["samples"]], median=100 * line["median"],
                                      interval=[100 * s for s in line["interval"]])
-                                for line in records.counted_steps() if line["case"] == "springs-step/cuda/1000000"]).records  # fmt: skip
+                                for line in records.counted_steps() if line["case"] == "springs-step/cuda/1000000"]).records
         [row] = bounds_table([step], self.tops).rows
         self.assertEqual("none of those known (memory, 0.8 %)", row[-1])
 
     def test_threads_reach_no_less_than_one_core(self):
         lines = [line for backend, cache in (("serial", 368e9), ("openmp", 356e9))
-                 for line in records.ceilings(backend, records.EPYC, 1e11, 1e10, cache)]  # fmt: skip
+                 for line in records.ceilings(backend, records.EPYC, 1e11, 1e10, cache)]
         found = self.evidence(lines).records
         tops, note = backend_ceilings(found, "openmp")
         self.assertAlmostEqual(368e9, tops["cache"], delta=1)
@@ -141,20 +140,20 @@ class Counts(Folder):
         page = self.page_of(300e6)
         self.assertNotIn("memory, ", " ".join(row[-1] for row in page.tables.get((H200, "Bounds of a step, CUDA"), [])))
         self.assertIn("1 record has no bounds: their counts of work differ from the latest ones of the same case: springs-step/cuda/1000000 on NVIDIA H200",
-                      page.words)  # fmt: skip
+                      page.words)
 
     def test_latest_count_is_right(self):
         for page in (self.page_of(415e6), self.page_of(300e6, (27, 25))):
             verdicts = {row[0]: row[-1] for row in page.tables[H200, "Bounds of a step, CUDA"]}
             self.assertIn("memory, ", verdicts["1000000"])
             self.assertNotIn("no bounds: their counts of work differ from the latest ones of the same case: springs-step/cuda/1000000 on NVIDIA H200",
-                             page.words)  # fmt: skip
+                             page.words)
 
     def test_committed_records_agree_on_counted_work(self):
         """Only records of the H200 from before a correction of the traffic of flow may be left out."""
         evidence = read_records(packages.SOURCE / "docs" / "evidence")
         self.assertLessEqual({(record.kind, record.machine.gpu, record.run_id[0][:10]) for record in evidence.outdated},
-                             {("flow-step", "NVIDIA H200", "2026-11-25")})  # fmt: skip
+                             {("flow-step", "NVIDIA H200", "2026-11-25")})
         counts = {}
         for record in evidence.records:
             for name in ("flops", "bytes", "instructions"):
@@ -164,7 +163,7 @@ class Counts(Folder):
         for case, found in counts.items():
             self.assertLessEqual(max(found), 1.02 * min(found), case)
         [table] = [table for machine, sections in machine_sections("flow", evidence.for_app("flow")) if machine.gpu == "NVIDIA H200"
-                   for section in sections if section.title.startswith("Bounds") for table in section.tables[:1]] or [None]  # fmt: skip
+                   for section in sections if section.title.startswith("Bounds") for table in section.tables[:1]] or [None]
         self.assertTrue(table is None or not evidence.outdated, table)
 
 
@@ -203,7 +202,3 @@ class Scaling(Folder):
     def test_without_one_unit_there_is_no_efficiency(self):
         page, _ = self.page(records.scaling()[1:2], app="gas")
         self.assertNotIn("efficiency", page.tables["AMD EPYC", "Scaling"][0])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -42,7 +42,7 @@ class Pages(Folder):
 
     def test_pages_open_in_silence_and_alone(self):
         records.write(self.folder / "a.jsonl", [*records.steps_of_h200(), *records.ceilings(), *records.transfers(),
-                                                *records.options_transfers()])  # fmt: skip
+                                                *records.options_transfers()])
         for words in (["--report"], []):
             self.assertEqual((0, ""), plot(self.folder, "--dpi", 50, *words)[::2])
         with headless.Browser() as browser:
@@ -72,7 +72,3 @@ class Pages(Folder):
             for page in pages:
                 for text, drawn, data in self.opened(browser, page):
                     self.assertTrue(drawn and data and len(text) > 20, (page.name, text, drawn, data))
-
-
-if __name__ == "__main__":
-    unittest.main()

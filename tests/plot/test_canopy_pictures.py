@@ -1,11 +1,7 @@
 """Figures of synthetic runs of drogue-parachute with canopies and bodies."""
 
 import dataclasses
-import shutil
 import subprocess
-import tempfile
-import unittest
-from pathlib import Path
 from unittest import mock
 
 import packages  # before modules that need the packages  isort: skip
@@ -14,7 +10,7 @@ import imageio_ffmpeg
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle
-from matplotlib.text import Text
+from drawn import PictureTest, texts_of
 from PIL import Image, ImageSequence
 from plot import cli, shading, style
 from plot.checks import check_caption, failure_caption
@@ -37,42 +33,21 @@ def panel_of(figure, words):
     return axes
 
 
-class CanopyPictures(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(style.plt.close, "all")
-
+class CanopyPictures(PictureTest):
     def view(self, run, normal="y"):
         known = quantities(run)
         return View(Canopies(run), plane_of(run, normal), [known["speed"]] if "speed" in known else [])
 
     def assert_no_text_overlaps_or_leaves(self, figure):
-        figure.canvas.draw()
-        hidden = set()  # labels of ticks beyond the ends of their axis
-        for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
-            low, high = sorted(axis.get_view_interval())
-            hidden |= {tick.label1 for tick in axis.get_major_ticks() if not low <= tick.get_loc() <= high}
-        texts = [
-            text
-            for text in figure.findobj(Text)
-            if text.get_visible() and text.get_text() and text not in hidden and text.axes in (None, *figure.axes)
-        ]
-        boxes = [text.get_window_extent() for text in texts]
-        for k, box in enumerate(boxes):
-            words = texts[k].get_text()
-            self.assertTrue(box.x0 >= 0 and box.y0 >= 0, words)
-            self.assertTrue(box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1, words)
-            for other, text in zip(boxes[:k], texts):
-                self.assertFalse(box.overlaps(other), (words, text.get_text()))
+        self.assert_apart(texts_of(figure), figure.bbox)
 
     def test_draws_pictures_whatever_fields_run_has(self):
         for fields in (("velocity", "position", "von_mises"), ("velocity", "position"), ("position",),
-                       ("position", "von_mises")):  # fmt: skip
+                       ("position", "von_mises")):
             with self.subTest(fields):
                 run = write_canopies(self.folder / "-".join(fields), fields)
                 self.assertEqual(0, cli.main([str(run), "--quiet", "--dpi", "40"]))
-                names = {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")}
+                names = self.pictures(run)
                 self.assertEqual({"fields.png", "fields.gif", "history.png", "canopies.png"}, names)
                 with Image.open(run / "fields.gif") as movie:
                     self.assertEqual(3, movie.n_frames)
@@ -98,7 +73,7 @@ class CanopyPictures(unittest.TestCase):
                 drawing = CanopyFigure(View(Canopies(run), plane_of(run, "y"), [shown]), run.snapshots).figure
                 box, height = panel_of(drawing, shown.label).get_window_extent(), drawing.bbox.height
                 rows, columns = (slice(int(low) + 2, int(high) - 2) for low, high in
-                                 ((height - box.y1, height - box.y0), (box.x0, box.x1)))  # fmt: skip
+                                 ((height - box.y1, height - box.y0), (box.x0, box.x1)))
                 frames = self.frames_of(path, *words)
                 self.assertEqual(3, len(frames))
                 for frame in frames:
@@ -117,7 +92,7 @@ class CanopyPictures(unittest.TestCase):
             for snapshot in run.snapshots:
                 drawing.show(snapshot)
                 (lines,) = [item for item in panel_of(drawing.figure, "speed").collections
-                            if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]  # fmt: skip
+                            if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]
                 self.assertEqual(0, max(np.ptp(segment[:, 0]) for segment in lines.get_segments()))
                 drawn.append(sorted({segment[0, 0] for segment in lines.get_segments()}))
         self.assertGreater(len(drawn[0]), 10)
@@ -130,7 +105,7 @@ class CanopyPictures(unittest.TestCase):
         raw = subprocess.run(
             [imageio_ffmpeg.get_ffmpeg_exe(), "-loglevel", "error", "-i", path / "fields.mp4", "-f", "rawvideo",
              "-pix_fmt", "rgb24", "-"], capture_output=True, check=True,
-        ).stdout  # fmt: skip
+        ).stdout
         decoded = np.frombuffer(raw, np.uint8).reshape(-1, *frames[0].shape).astype(int)
         self.assertEqual(len(frames), len(decoded))
         differences = [[np.abs(a - b).mean() for b in decoded] for a in frames]
@@ -141,8 +116,7 @@ class CanopyPictures(unittest.TestCase):
     def test_cloth_drop_is_drawn_without_a_flow(self):
         folder = write_cloth_drop(self.folder / "drop")
         self.assertEqual(0, cli.main([str(folder), "--quiet", "--dpi", "40"]))
-        self.assertEqual({"fields.png", "fields.gif", "canopies.png"},
-                         {file.name for file in folder.iterdir() if file.suffix in (".png", ".gif")})  # fmt: skip
+        self.assertEqual({"fields.png", "fields.gif", "canopies.png"}, self.pictures(folder))
         run = read_run(folder)
         self.assert_no_text_overlaps_or_leaves(canopy_figure(View(Canopies(run), None, []), run.snapshots[-1]))
         figure = canopies_history_figure(run)
@@ -290,7 +264,7 @@ class CanopyPictures(unittest.TestCase):
         run = read_run(write_canopies(self.folder / "run", payload_speed=1.0))
         failed = {"name": "divergence", "value": 2e-6, "tolerance": 1e-9, "passed": False}
         run.result["checks"] = [{"name": "canopy_0_drag_coefficient_mean", "value": 0.03, "tolerance": 0.1, "passed": True}, failed,
-                                failed | {"name": "momentum", "value": 2e-9}]  # fmt: skip
+                                failed | {"name": "momentum", "value": 2e-9}]
         words = ", FAILED: divergence 2e-06 (tolerance 1e-09)"
         for figure in (canopy_figure(self.view(run), run.snapshots[2]), canopies_history_figure(run)):
             self.assertTrue(any(text.get_text().endswith(words) for text in figure.texts))
@@ -413,7 +387,3 @@ class CanopyPictures(unittest.TestCase):
     def test_panel_of_undefined_values_has_a_range(self):
         low, high = Panel("", {"": np.full(3, np.nan)}).limits(np.arange(3.0))
         self.assertLess(low, high)
-
-
-if __name__ == "__main__":
-    unittest.main()

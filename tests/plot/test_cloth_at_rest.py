@@ -88,7 +88,3 @@ class ClothAtRest(unittest.TestCase):
         }
         for name, value in found.items():
             self.assertAlmostEqual(1.0, value / values[name], delta=2e-7, msg=name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,23 +2,20 @@
 
 import os
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 from pathlib import Path
 from types import SimpleNamespace
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 from plot.demo.__main__ import BATCH, SHOWN
 from plot.demo.page import pictures_by_role
 
 
-class Demo(unittest.TestCase):
+class Demo(FolderTest):
     def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         fake = Path(__file__).with_name("fake_app.py")
         program = self.folder / "bin" / "drogue-gas"
         program.parent.mkdir()
@@ -28,14 +25,7 @@ class Demo(unittest.TestCase):
     def _demo(self, *words, failure=""):
         environment = os.environ | {"PYTHONPATH": str(packages.SOURCE / "scripts"), "FAKE_FAILURE": failure}
         command = [
-            sys.executable,
-            "-m",
-            "plot.demo",
-            "--bin",
-            self.folder / "bin",
-            "--out",
-            self.folder / "out",
-            *words,
+            sys.executable, "-m", "plot.demo", "--bin", self.folder / "bin", "--out", self.folder / "out", *words,
         ]
         return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
 
@@ -61,16 +51,12 @@ class Demo(unittest.TestCase):
         self.assertEqual(page.count("data:image/png"), 4)
         self.assertEqual(page.count("data:image/gif"), 2)
         self.assertNotIn("sod-full", page)
-        self.assertEqual(
-            re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*", page), [], "the page refers to another file"
-        )
+        self.assertEqual(re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*", page), [], "the page refers to another file")
 
     def test_reports_failed_scene_in_message_table_and_page(self):
         done = self._demo("lax", failure="lax")
         self.assertEqual(done.returncode, 5)
-        self.assertEqual(
-            done.stderr, "demo: drogue-gas lax failed: l1_density is 0.013, above its tolerance 0.0065.\n"
-        )
+        self.assertEqual(done.stderr, "demo: drogue-gas lax failed: l1_density is 0.013, above its tolerance 0.0065.\n")
         self.assertRegex(done.stdout, r"lax .*FAILED")
         page = (self.folder / "out/index.html").read_text()
         self.assertIn("0 of 1 scenes verified", page)
@@ -89,7 +75,3 @@ class Demo(unittest.TestCase):
         done = self._demo("sood")
         self.assertEqual(done.returncode, 2)
         self.assertIn("sod, lax", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

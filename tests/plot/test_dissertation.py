@@ -1,24 +1,17 @@
 """Figures of the dissertation from runs of this build."""
 
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 
 
-class Dissertation(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class Dissertation(FolderTest):
     def draw(self, figures):
         command = [sys.executable, packages.SOURCE / "scripts/studies/draw_dissertation.py", "--bin", os.environ["DROGUE_BIN"],
-                   "--figures", figures, "--work", self.folder / "runs", "--to", self.folder]  # fmt: skip
+                   "--figures", figures, "--work", self.folder / "runs", "--to", self.folder]
         return subprocess.run(command, capture_output=True, text=True, check=False)
 
     def test_draws_sod_and_prints_its_errors(self):
@@ -30,7 +23,3 @@ class Dissertation(unittest.TestCase):
         done = self.draw("5.9")
         self.assertNotEqual(0, done.returncode)
         self.assertIn("no figure 5.9: 5.2, 5.3, 5.5", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import json
 import re
-import unittest
 
 import packages  # noqa: F401, before modules that need the packages  isort: skip
 import synthetic
@@ -13,9 +12,7 @@ from evidence_pages import Folder, plot
 class Contents(Folder):
     def test_sections_appear_only_with_records_of_their_kind(self):
         kinds = {
-            "Sod: error against time": records.solutions(
-                problems=("sod",), backends=("serial",), meshes=(100, 200)
-            ),
+            "Sod: error against time": records.solutions(problems=("sod",), backends=("serial",), meshes=(100, 200)),
             "A step": records.steps_of_h200(),
             "Roofline, CUDA": records.ceilings(),
             "Transfers of a step, CUDA": records.transfers(),
@@ -63,24 +60,17 @@ class Contents(Folder):
 
     def test_machines_have_separate_sections_and_pictures(self):
         other = records.H200 | {"cpu": "AMD EPYC"}
-        lines = [
-            records.step("cuda/8192", 5e-6, records.H200, 8192),
-            records.step("cuda/8192", 7e-6, other, 8192),
-        ]
+        lines = [records.step("cuda/8192", 5e-6, records.H200, 8192), records.step("cuda/8192", 7e-6, other, 8192)]
         page, _ = self.page([*lines, *records.steps_of_core()])
         steps = {
             machine: [row[rows[0].index("\u00b5s per step")] for row in rows if len(row) == len(rows[0])][1:]
             for (machine, _), rows in page.tables.items()
         }
-        self.assertEqual(
-            list(steps), ["NVIDIA H200, Intel Xeon Processor", "NVIDIA H200, AMD EPYC", "AMD EPYC"]
-        )
+        self.assertEqual(list(steps), ["NVIDIA H200, Intel Xeon Processor", "NVIDIA H200, AMD EPYC", "AMD EPYC"])
         self.assertEqual([times[0].split()[0] for times in steps.values()], ["5", "7", "410"])
         self.assertEqual([len(times) for times in steps.values()], [1, 1, 5])
         _, files = self.page(records.ceilings() + records.ceilings(machine=other))
-        self.assertEqual(
-            files, ["gas.html", "roofline_cuda_nvidia-h200-2.png", "roofline_cuda_nvidia-h200.png"]
-        )
+        self.assertEqual(files, ["gas.html", "roofline_cuda_nvidia-h200-2.png", "roofline_cuda_nvidia-h200.png"])
 
     def test_obeys_format_and_out_and_draws_study_beside_records(self):
         records.write(self.folder / "in" / "a.jsonl", records.ceilings())
@@ -88,9 +78,7 @@ class Contents(Folder):
         code, files, _ = plot(self.folder / "in", "--out", self.folder / "out", "--format", "svg")
         roofline = "roofline_cuda_nvidia-h200"
         self.assertEqual((code, files), (0, ["gas.html", f"{roofline}.png", f"{roofline}.svg", "study.svg"]))
-        self.assertEqual(
-            sorted(file.name for file in (self.folder / "in").iterdir()), ["a.jsonl", "study.csv"]
-        )
+        self.assertEqual(sorted(file.name for file in (self.folder / "in").iterdir()), ["a.jsonl", "study.csv"])
 
 
 class Refusals(Folder):
@@ -145,7 +133,3 @@ class Refusals(Folder):
         code, files, sentence = plot(self.folder, "--norm", "l1_density")
         self.assertEqual((code, files), (2, []))
         self.assertIn("no study", sentence)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -14,13 +14,7 @@ from plot.evidence.steps import measured, vector_bits, verdict
 from plot.evidence.transfers import core_times, transfers_figure
 from plot.evidence.transfers import times as transfer_times
 from plot.evidence.work_precision import (
-    TimeToError,
-    best_scheme,
-    curves,
-    faster_range,
-    speed_up,
-    target_errors,
-    time_to_error,
+    TimeToError, best_scheme, curves, faster_range, speed_up, target_errors, time_to_error,
 )
 from plot.evidence.work_precision_figure import solution_figure
 from plot.gas.goals import GOALS
@@ -72,7 +66,7 @@ class Numbers(unittest.TestCase):
             (time, 5.01, "missed by 0.2 %"), (rate, 8.5, "goal met"), (rate, 11.0, "stretch met"),
             (rate, 6.8, "missed by 20 %"), (time, 1.5, "stretch met 2 times over"), (time, 0.1, "stretch met 30 times over"),
             (goals.Goal("c", goals.RATE, 8.0), 40.0, "goal met 5 times over"),
-        ]  # fmt: skip
+        ]
         for goal, value, words in cases:
             self.assertEqual(verdict(goal, value), words)
 
@@ -147,11 +141,7 @@ class Solutions(Folder):
         self.assertEqual([len(axes.lines) for axes in figure.axes], [6, 6, 6])
         figure.canvas.draw()
         renderer = figure.canvas.get_renderer()
-        boxes = [text.get_window_extent(renderer) for text in figure.texts]
-        for index, box in enumerate(boxes):
-            self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width)
-            for other in boxes[:index]:
-                self.assertFalse(box.overlaps(other))
+        self.assert_apart(figure.texts, figure.bbox)
         for axes in figure.axes:
             self.assertGreaterEqual(axes.yaxis.label.get_window_extent(renderer).x0, 0)
 
@@ -191,7 +181,7 @@ class Steps(Folder):
         for flags, facts, wanted in (
             ("-O3 -march=x86-64-v4", {}, 512), ("-mavx512f -mprefer-vector-width=256", {}, 256), ("-O3", {}, None),
             ("-O3", {"vector_bits": 512}, 512),
-        ):  # fmt: skip
+        ):
             lines[0]["provenance"]["flags"] = flags
             lines[0]["facts"] = facts
             self.assertEqual(vector_bits(self.evidence(lines).records[0]), wanted)
@@ -236,20 +226,10 @@ class Devices(Folder):
     def test_labels_of_roofline_fit_and_do_not_overlap(self):
         evidence = self.evidence(records.ceilings() + records.steps_of_h200())
         machine = evidence.machines[0]
-        tops, found = (
-            ceilings(evidence.select(machine, "ceiling")),
-            points(evidence.select(machine, "gas-step")),
-        )
+        tops, found = (ceilings(evidence.select(machine, "ceiling")), points(evidence.select(machine, "gas-step")))
         self.assertEqual([point.cells for point in found], [1024, 8192, 65536, 1 << 20, 1 << 24])
         figure = roofline_figure("Roofline", machine, tops, found)
-        renderer = figure.canvas.get_renderer()
-        boxes = [
-            text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_rotation() == 0
-        ]
-        for index, box in enumerate(boxes):
-            self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width)
-            for other in boxes[:index]:
-                self.assertFalse(box.overlaps(other))
+        self.assert_apart([text for text in figure.axes[0].texts if text.get_rotation() == 0], figure.bbox)
 
     def test_transfers_show_times_and_factors_of_dissertation(self):
         page, files = self.page(records.transfers())
@@ -334,13 +314,9 @@ class Springs(Folder):
 
     def test_table_shows_times_to_fixed_errors(self):
         page, files = self.springs_page(records.springs_solutions())
-        self.assertEqual(
-            files, [f"solution_{name}_amd-epyc.png" for name in ("catenary", "drum")] + ["springs.html"]
-        )
+        self.assertEqual(files, [f"solution_{name}_amd-epyc.png" for name in ("catenary", "drum")] + ["springs.html"])
         rows = page.tables["AMD EPYC", "Drum: error against time"]
-        self.assertEqual(
-            rows[0], ["backend", "scheme", "vertices", "order", "to 0.01", "to 1×10−3", "to 1×10−4"]
-        )
+        self.assertEqual(rows[0], ["backend", "scheme", "vertices", "order", "to 0.01", "to 1×10−3", "to 1×10−4"])
         by_scheme = {row[1]: row for row in rows}
         # Error 1 / n of n vertices, a step of 1e-7 n s, 10 sqrt(n) steps: to 0.001 in 1e-6 n^1.5 s.
         seconds = 1e-6 * 1000**1.5
@@ -370,9 +346,7 @@ class Springs(Folder):
         quadratic = "CUDA, 1000000 vertices, quadratic, against cuda/1000000"
         self.assertEqual(verdicts[quadratic, "times as long"], "goal met")
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step in contact"]
-        self.assertEqual(
-            [row[-1] for row in rows][-3:], ["verdict", "stretch met", "missed by 50 %"]
-        )
+        self.assertEqual([row[-1] for row in rows][-3:], ["verdict", "stretch met", "missed by 50 %"])
 
     def test_transfers_show_panel_per_number_of_steps_and_no_ratio(self):
         page, files = self.springs_page(records.springs_transfers())
@@ -389,7 +363,3 @@ class Springs(Folder):
         page, files = self.springs_page(lines)
         self.assertEqual([name for name in files if name.endswith("html")], ["gas.html", "springs.html"])
         self.assertEqual(len(page.tables), 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

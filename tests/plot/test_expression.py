@@ -29,15 +29,9 @@ class Expressions(unittest.TestCase):
     def test_bessel_function_matches_table(self):
         # Abramowitz and Stegun, table 9.1
         for order, at, value in ((0, 1.0, 0.7651976866), (1, 5.0, -0.3275791376), (2, 17.5, 0.0844338303)):
-            self.assertAlmostEqual(
-                float(evaluate(f"besselj({order}, x)", x=np.array(at))), value, delta=1e-10
-            )
+            self.assertAlmostEqual(float(evaluate(f"besselj({order}, x)", x=np.array(at))), value, delta=1e-10)
 
     def test_rejects_invalid_expressions(self):
         for text in ("1 +", "sin(x", "q + 1", "x x", "x ? 1"):
             with self.subTest(text), self.assertRaises(Failure):
                 evaluate(text, x=np.zeros(2))
-
-
-if __name__ == "__main__":
-    unittest.main()

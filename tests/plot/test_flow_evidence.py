@@ -1,6 +1,5 @@
 """Page of synthetic records of flow."""
 
-import unittest
 
 import packages  # before modules that need the packages  isort: skip
 import synthetic_records as records
@@ -97,7 +96,3 @@ class Page(Folder):
         seconds, error = PUBLISHED_RESULTS[0].points[0]
         self.assertAlmostEqual(5.22e-9 * 128**3 * 81.5, seconds, delta=0.01 * seconds)
         self.assertEqual(1.7e-5, error)
-
-
-if __name__ == "__main__":
-    unittest.main()

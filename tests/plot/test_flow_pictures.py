@@ -1,21 +1,15 @@
 """Figures of synthetic runs of drogue-parachute."""
 
-import contextlib
 import dataclasses
-import io
-import shutil
-import tempfile
-import unittest
 import warnings
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
 import h5py
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.text import Text
+from drawn import PictureTest, texts_of
 from PIL import Image
-from plot import cli, style
+from plot import cli
 from plot.flow.history_figure import flow_history_figure, keeps_energy
 from plot.flow.plane import plane_of
 from plot.flow.quantities import Quantity, default_names, quantities
@@ -44,21 +38,7 @@ def shear(time, x, y, z):
     }
 
 
-class FlowPictures(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(style.plt.close, "all")
-
-    def pictures(self, run):
-        return {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")}
-
-    def refusal(self, run, *words):
-        with contextlib.redirect_stderr(io.StringIO()) as errors:
-            self.assertEqual(2, cli.main([str(run), *words]))
-        self.assertEqual(set(), self.pictures(run))
-        return errors.getvalue()
-
+class FlowPictures(PictureTest):
     def test_draws_two_dimensional_run_whole(self):
         """The plane is normal to the axis with one cell, whichever it is."""
         for normal, right, up in ((0, 1, 2), (1, 0, 2), (2, 0, 1)):
@@ -131,10 +111,8 @@ class FlowPictures(unittest.TestCase):
             return lambda time, x, y, z: {"velocity": vectors(value + 0 * x, 0 * x, 0 * x)}
 
         for value, cells, lengths, has_lines in (
-            (1.0, (16, 16, 1), (1.0, 1.0, 0.1), True),
-            (0.0, (16, 16, 1), (1.0, 1.0, 0.1), False),
-            (np.nan, (16, 16, 1), (1.0, 1.0, 0.1), False),
-            (np.inf, (16, 16, 1), (1.0, 1.0, 0.1), False),
+            (1.0, (16, 16, 1), (1.0, 1.0, 0.1), True), (0.0, (16, 16, 1), (1.0, 1.0, 0.1), False),
+            (np.nan, (16, 16, 1), (1.0, 1.0, 0.1), False), (np.inf, (16, 16, 1), (1.0, 1.0, 0.1), False),
             (1.0, (64, 4, 1), (64.0, 1.0, 0.1), False),
         ):
             with self.subTest((value, cells)), warnings.catch_warnings():
@@ -142,7 +120,7 @@ class FlowPictures(unittest.TestCase):
                 run = read_run(write_flow(self.folder / f"{value}-{cells[0]}", cells, lengths, flow(value)))
                 figure = slices_figure(View(plane_of(run), [quantities(run)["speed"]]), run.snapshots[0])
                 lines = [item for axes in figure.axes for item in axes.collections
-                         if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]  # fmt: skip
+                         if isinstance(item, LineCollection) and np.all(item.get_color() == 1)]
                 self.assertEqual(has_lines, bool(lines) and len(lines[0].get_segments()) > 10)
                 self.assertEqual(has_lines, bool(lines))
 
@@ -155,7 +133,7 @@ class FlowPictures(unittest.TestCase):
         self.assertEqual(1, sentence.count("\n"))
         # Vorticity is no misspelt velocity.
         still = write_flow(self.folder / "still", (4, 4, 1), (1.0, 1.0, 1.0),
-                           lambda time, x, y, z: {"velocity": vectors(x, y, z)})  # fmt: skip
+                           lambda time, x, y, z: {"velocity": vectors(x, y, z)})
         self.assertIn("no field 'vorticity'; it has speed, velocity_x", self.refusal(still, "--field", "vorticity"))
 
     def test_quantities_are_components_and_magnitudes(self):
@@ -164,7 +142,7 @@ class FlowPictures(unittest.TestCase):
         known, snapshot = quantities(run), run.snapshots[0]
         x, y, z = 0.625, 0.375, 0.875
         expected = {"speed": np.sqrt(y * y + 4 + 4 * z * z), "velocity_y": 2.0, "velocity_z": 2 * z,
-                    "pressure": 100 * x + 10 * y + z, "vorticity": np.sqrt(18), "vorticity_z": -3.0}  # fmt: skip
+                    "pressure": 100 * x + 10 * y + z, "vorticity": np.sqrt(18), "vorticity_z": -3.0}
         for name, value in expected.items():
             self.assertAlmostEqual(value, known[name].values(snapshot)[2, 1, 3], msg=name)
 
@@ -184,14 +162,7 @@ class FlowPictures(unittest.TestCase):
         run = read_run(write_flow(self.folder / "run", (8, 8, 1), (1.0, 1.0, 1.0), shear))
         view = View(plane_of(run), list(quantities(run).values()))
         figure = slices_figure(view, run.snapshots[0])
-        figure.canvas.draw()
-        texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
-        boxes = [text.get_window_extent() for text in texts]
-        self.assertGreater(len(boxes), 50)
-        for k, box in enumerate(boxes):
-            self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1)
-            for other in boxes[:k]:
-                self.assertFalse(box.overlaps(other), (box, other))
+        self.assertGreater(len(self.assert_apart(texts_of(figure), figure.bbox)), 50)
 
     def test_signed_values_get_symmetric_diverging_colours(self):
         signed = np.linspace(-1, 3, 101)
@@ -229,7 +200,7 @@ class FlowPictures(unittest.TestCase):
         run = read_run(
             write_flow(self.folder / "run", (8, 8, 1), (1.0, 1.0, 1.0),
                        lambda time, x, y, z: {"velocity": vectors(0 * x, 1 + 0 * x, 0 * x)})
-        )  # fmt: skip
+        )
         known = quantities(run)
         without = slices_figure(View(plane_of(run), [known["velocity_x"]]), run.snapshots[0])
         self.assertEqual(0, len(without.axes[0].collections))
@@ -244,7 +215,7 @@ class FlowPictures(unittest.TestCase):
         """A mode of amplitude A adds the energy A^2 / 4 per mass to the shell nearest to its wave vector's size."""
         cases = (((16, 16, 16), (1.0, 1.0, 1.0), (3, 0, 0), 3), ((16, 18, 20), (1.0, 1.0, 1.0), (2, 3, 4), 5),
                  ((16, 12, 1), (1.0, 1.0, 5.0), (3, -4, 0), 5), ((1, 15, 16), (1.0, 2.0, 1.0), (0, 4, 1), 4),
-                 ((16, 1, 8), (4.0, 1.0, 2.0), (1, 0, 1), 2), ((9, 9, 9), (1.0, 1.0, 1.0), (0, 0, -4), 4))  # fmt: skip
+                 ((16, 1, 8), (4.0, 1.0, 2.0), (1, 0, 1), 2), ((9, 9, 9), (1.0, 1.0, 1.0), (0, 0, -4), 4))
         for cells, lengths, mode, shell in cases:
             with self.subTest(cells=cells, mode=mode):
                 phase = sum(
@@ -320,14 +291,12 @@ class FlowPictures(unittest.TestCase):
         self.assertAlmostEqual(axes.transData.transform(end)[1], (box.y0 + box.y1) / 2, delta=2)
 
     def test_spectrum_needs_periodic_sides_and_several_modes(self):
-        opened = read_run(
-            write_flow(self.folder / "opened", (8, 8, 1), (1.0, 1.0, 1.0), shear, is_open=True)
-        )
+        opened = read_run(write_flow(self.folder / "opened", (8, 8, 1), (1.0, 1.0, 1.0), shear, is_open=True))
         self.assertFalse(is_periodic(opened))
         still = read_run(
             write_flow(self.folder / "still", (8, 8, 1), (1.0, 1.0, 1.0),
                        lambda time, x, y, z: {"velocity": vectors(np.sin(2 * np.pi * y), 0 * x, 0 * x)})
-        )  # fmt: skip
+        )
         self.assertTrue(is_periodic(still))
         self.assertIsNone(spectrum_figure(still, still.snapshots[0]))
 
@@ -393,7 +362,3 @@ class FlowPictures(unittest.TestCase):
         history = run / "history.csv"
         history.write_text("\n".join(history.read_text().splitlines()[:2]) + "\n")
         self.assertIsNone(flow_history_figure(read_run(run)))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,16 +1,9 @@
 """Velocities of synthetic flows along lines, compared with those that their scenes expect."""
 
-import contextlib
-import io
-import shutil
-import tempfile
-import unittest
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
 import numpy as np
-from matplotlib.text import Text
-from plot import cli, style
+from drawn import PictureTest, plot, texts_of
 from plot.flow.profiles import SampledLine, comparisons, sample
 from plot.flow.profiles_figure import profiles_figure
 from plot.run_directory import read_run
@@ -52,12 +45,7 @@ def exact(time, x, y, z):
     return {"velocity": np.stack([y * time + 0.25 * (y > 0.5), 3 + 0 * x, np.sin(np.pi * x)], axis=-1)}
 
 
-class FlowProfiles(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(style.plt.close, "all")
-
+class FlowProfiles(PictureTest):
     def run_of(self, fields_at, verify, cells=(16, 8, 1), times=(2.0,), **options):
         """Path of a run directory whose scene ends in END and `verify`."""
         folder = write_flow(self.folder / "run", cells, LENGTHS, fields_at, times, **options)
@@ -140,9 +128,8 @@ class FlowProfiles(unittest.TestCase):
     def test_program_draws_profiles_at_end(self):
         folder = self.run_of(linear, POINTS, times=(0.0, 2.0))
         for words, expected in ((("--time", "0"), False), ((), True)):
-            with contextlib.redirect_stdout(io.StringIO()) as printed:
-                self.assertEqual(0, cli.main([str(folder), "--movie", "none", *words]))
-            self.assertEqual(expected, "profiles.png" in printed.getvalue())
+            code, files, _ = plot(folder, "--movie", "none", *words)
+            self.assertEqual((0, expected), (code, "profiles.png" in files))
 
     def test_shows_deviation_with_tolerance(self):
         run = read_run(self.run_of(exact, EXACT))
@@ -161,25 +148,9 @@ class FlowProfiles(unittest.TestCase):
 
     def assert_is_legible(self, figure):
         """No drawn text overlaps another one or an axis line above it, or leaves the figure."""
-        figure.canvas.draw()
-        # Matplotlib keeps the labels of ticks beyond the limits, and does not draw them.
-        hidden = [
-            tick.label1
-            for axes in figure.axes
-            for axis in (axes.xaxis, axes.yaxis)
-            for tick in axis.get_major_ticks()
-            if not min(axis.get_view_interval()) <= tick.get_loc() <= max(axis.get_view_interval())
-        ]
-        shown = [text for text in figure.findobj(Text) if text.get_visible() and text not in hidden]
-        texts = [text for text in shown if text.get_text()]
-        boxes = [text.get_window_extent() for text in texts]
-        for k, box in enumerate(boxes):
-            words = texts[k].get_text()
-            self.assertTrue(box.x0 >= 0 and box.y0 >= 0, words)
-            self.assertTrue(box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1, words)
-            self.assertFalse(any(box.overlaps(axes.bbox) for axes in figure.axes), words)
-            for other, text in zip(boxes[:k], texts):
-                self.assertFalse(box.overlaps(other), (words, text.get_text()))
+        texts = texts_of(figure)
+        for box, text in zip(self.assert_apart(texts, figure.bbox), texts):
+            self.assertFalse(any(box.overlaps(axes.bbox) for axes in figure.axes), text.get_text())
         return texts
 
     def test_text_is_legible(self):
@@ -195,7 +166,3 @@ class FlowProfiles(unittest.TestCase):
         verify = '[verify]\nlinf_velocity = 1.12e-3\nexact = { x = "y", y = 0, z = 0 }\n'
         run = read_run(self.run_of(shifted, verify))
         self.assert_is_legible(profiles_figure(run, run.snapshots[0]))
-
-
-if __name__ == "__main__":
-    unittest.main()

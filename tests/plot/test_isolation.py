@@ -4,11 +4,10 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 import synthetic
 
 _SHADOWED = ("plot", "csv", "json", "numpy", "matplotlib", "h5py", "PIL", "runpy", "sitecustomize", "usercustomize")
@@ -26,10 +25,10 @@ def write_launcher(folder, python=sys.executable, package=packages.SOURCE / "scr
     return launcher
 
 
-class Isolation(unittest.TestCase):
+class Isolation(FolderTest):
     def setUp(self):
-        self.folder = Path(tempfile.mkdtemp()).resolve()
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
+        self.folder = self.folder.resolve()
         self.here = self.folder / "here"
         self.here.mkdir()
         self.mark = self.folder / "executed"
@@ -37,7 +36,7 @@ class Isolation(unittest.TestCase):
 
     def start(self, *words, environment=None):
         return subprocess.run([str(word) for word in words], capture_output=True, text=True, cwd=self.here,
-                              env=os.environ | (environment or {}), timeout=300, check=False)  # fmt: skip
+                              env=os.environ | (environment or {}), timeout=300, check=False)
 
     def assert_draws(self, environment=None, launcher=None):
         """Asserts that the history in the working folder is drawn as in an empty one, without a word of Python or matplotlib."""
@@ -92,7 +91,7 @@ class Isolation(unittest.TestCase):
         self.assertEqual(plain, self.assert_draws({
             "PYTHONHOME": str(other), "PYTHONSTARTUP": str(other / "start.py"), "PYTHONINSPECT": "1", "PYTHONPLATLIBDIR": "none",
             "PYTHONOPTIMIZE": "2", "PYTHONUSERBASE": str(other), "PYTHONIOENCODING": "ascii",
-        }))  # fmt: skip
+        }))
 
     def test_settings_of_matplotlib_change_nothing(self):
         plain = self.assert_draws()
@@ -137,7 +136,3 @@ class Isolation(unittest.TestCase):
         done = self.start(launcher, ".", environment={"PYTHONPATH": str(broken)})
         self.assertEqual((2, 1), (done.returncode, done.stderr.count("\n")), done.stderr)
         self.assertIn("compiled for another Python", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,5 @@
 """Pages of records of options: curves and settings, published results, goals, and tables of [Shi]."""
 
-import unittest
 
 import packages  # noqa: F401, before modules that need the packages  isort: skip
 import synthetic_records as records
@@ -45,18 +44,14 @@ class Solutions(Folder):
             return {text.get_text() for text in figure.axes[0].texts}
 
         core, gpu = labels(figure_of(self)), labels(figure_of(self, records.H200, "cuda"))
-        self.assertEqual(
-            {"[Shi], one option", "[Shi], 4096 options", "hand-written AVX-512", "PROJ"}, core
-        )
+        self.assertEqual({"[Shi], one option", "[Shi], 4096 options", "hand-written AVX-512", "PROJ"}, core)
         self.assertEqual(core | {"hand-written CUDA"}, gpu)
 
     def test_published_results_have_problem_backend_and_source(self):
         for result in PUBLISHED_RESULTS:
             self.assertIn(result.problem, FAMILY.problems)
             self.assertIn(result.backend, perf_record.BACKENDS)
-            self.assertTrue(
-                result.source and all(seconds > 0 and error > 0 for seconds, error in result.points)
-            )
+            self.assertTrue(result.source and all(seconds > 0 and error > 0 for seconds, error in result.points))
 
     def test_table_shows_times_to_target_errors(self):
         page, files = self.page(records.options_solutions(), "options")
@@ -97,7 +92,7 @@ class Batches(Folder):
         self.assertEqual(["options-transfers_cuda_nvidia-h200.png", "options.html"], files)
         rows = page.tables[MACHINE, "Tables 5.7 and 5.8, CUDA"]
         self.assertEqual([5, 5, 6], [sum(row[:2] == place for row in rows) for place in (
-            ["1", "128"], ["1", "256"], ["32", "128"])])  # fmt: skip
+            ["1", "128"], ["1", "256"], ["32", "128"])])
         pageable, pinned = (row for row in rows if row[:3] == ["32", "128", "ours, two solves for an error"])
         self.assertEqual(["pageable", "20", "160", "20", "200", "19\u2009478", "1\u00d710\u22124"], pageable[3:])
         self.assertEqual(["pinned", "18", "160", "20", "198"], pinned[3:8])
@@ -105,12 +100,7 @@ class Batches(Folder):
     def test_labels_of_published_results_are_within_the_panel_and_apart(self):
         figure = figure_of(self, records.H200, "cuda")
         figure.canvas.draw()
-        renderer, panel = figure.canvas.get_renderer(), figure.axes[0]
-        boxes = [text.get_window_extent(renderer) for text in panel.texts]
-        self.assertGreater(len(boxes), 3)
-        for index, box in enumerate(boxes):
-            self.assertTrue(panel.bbox.x0 <= box.x0 and box.x1 <= panel.bbox.x1, panel.texts[index].get_text())
-            self.assertFalse(any(box.overlaps(other) for other in boxes[:index]), panel.texts[index].get_text())
+        self.assertGreater(len(self.assert_apart(figure.axes[0].texts, figure.axes[0].bbox)), 3)
 
     def test_draws_transfers_without_times_of_dissertation(self):
         lines = [line | {"facts": line["facts"] | {"thesis": {}}} for line in records.options_transfers()]
@@ -118,7 +108,3 @@ class Batches(Folder):
         rows = transfers.transfer_rows(evidence.records)
         self.assertEqual({"seed", "pide"}, {row.source for row in rows})
         transfers.transfers_figure("title", evidence.machines[0], evidence.records)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,13 +1,8 @@
 """Figures of the output of drogue-options, and the comparison of its prices in the demo."""
 
-import contextlib
-import io
-import shutil
-import tempfile
-import unittest
-from pathlib import Path
-
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
+from drawn import plot
 from PIL import Image
 from plot import cli
 from plot.demo.options import largest_difference
@@ -19,11 +14,7 @@ SURFACE = "id,strike,maturity,price\na,1,0.5,0.1\na,2,0.5,1.1\na,1,1,0.2\na,2,1,
 BOUNDARY = "id,time,spot,maturity\na,0,0.8,1\na,0.5,0.9,1\n"
 
 
-class OptionsPictures(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class OptionsPictures(FolderTest):
     def write(self, **files):
         for name, text in files.items():
             (self.folder / f"{name}.csv").write_text(text)
@@ -61,10 +52,10 @@ class OptionsPictures(unittest.TestCase):
     def test_rejects_file_in_place_of_folder(self):
         self.write(prices="id,price\na,1\n", surface=SURFACE)
         for name, hint in (("prices", "surface.csv"), ("surface", str(self.folder))):
-            with contextlib.redirect_stderr(io.StringIO()) as errors:
-                self.assertEqual(2, cli.main([str(self.folder / f"{name}.csv")]))
-            self.assertIn("takes the folder", errors.getvalue())
-            self.assertIn(hint, errors.getvalue())
+            code, _, errors = plot(self.folder / f"{name}.csv")
+            self.assertEqual(2, code)
+            self.assertIn("takes the folder", errors)
+            self.assertIn(hint, errors)
 
     def test_draws_nothing_without_prices(self):
         self.write(surface="id,strike,maturity,price\nbad,,,\n")
@@ -76,12 +67,6 @@ class OptionsPictures(unittest.TestCase):
             self.assertEqual(6, cli.main([str(self.folder), "--quiet"]))
 
     def test_demo_finds_largest_difference_of_prices(self):
-        self.write(
-            batch="id,strike\na,1\nb,100\n", one="id,price\na,0.1\nb,5\n", other="id,price\na,0.2\nb,6\n"
-        )
+        self.write(batch="id,strike\na,1\nb,100\n", one="id,price\na,0.1\nb,5\n", other="id,price\na,0.2\nb,6\n")
         files = [self.folder / f"{name}.csv" for name in ("one", "other", "batch")]
         self.assertAlmostEqual(0.1, largest_difference(*files))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,5 @@
 """drogue-plot on synthetic run directories: written files, their content, and exit codes."""
 
-import contextlib
-import io
 import itertools
 import json
 import os
@@ -9,15 +7,14 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 import numpy as np
 import synthetic
+from drawn import plot
 from PIL import Image
-from plot import cli
 from plot.failure import Failure
 from plot.gas.exact_solution import exact_solution, pointwise_errors
 from plot.gas.fields_figure import View, fields_figure, set_range, space_time_figure
@@ -30,14 +27,6 @@ from plot.style import plt
 _COLOURS = {"run": (0, 0x72, 0xB2), "error": (0xD5, 0x5E, 0)}
 
 
-def _plot(*words):
-    """Exit code, names of the pictures, and standard error."""
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        code = cli.main([str(word) for word in words])
-    return code, sorted(Path(line).name for line in out.getvalue().split("\n") if line), err.getvalue()
-
-
 def _pixels_of(file, colour):
     """Number of pixels of a picture that are close to a colour."""
     with Image.open(file) as image:
@@ -45,14 +34,10 @@ def _pixels_of(file, colour):
     return int((np.abs(pixels - colour).max(-1) < 40).sum())
 
 
-class Pictures(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class Pictures(FolderTest):
     def test_many_snapshots_give_all_pictures(self):
         run = synthetic.write_sod(self.folder / "sod", cells=100, snapshots=8)
-        code, files, _ = _plot(run)
+        code, files, _ = plot(run)
         self.assertEqual(code, 0)
         self.assertEqual(files, ["fields.gif", "fields.png", "history.png", "space_time_rho.png"])
         for file in files:
@@ -65,12 +50,12 @@ class Pictures(unittest.TestCase):
 
     def test_single_snapshot_gives_no_movie_and_no_map(self):
         run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=1)
-        self.assertEqual(_plot(run)[:2], (0, ["fields.png", "history.png"]))
+        self.assertEqual(plot(run)[:2], (0, ["fields.png", "history.png"]))
 
     def test_obeys_format_field_and_out(self):
         run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=2)
         before = sorted(run.iterdir())
-        code, files, _ = _plot(
+        code, files, _ = plot(
             run, "--out", self.folder / "deep" / "er", "--field", "p", "--format", "pdf", "--movie", "mp4"
         )
         self.assertEqual((code, files), (0, ["fields.mp4", "fields.pdf", "history.pdf"]))
@@ -79,7 +64,7 @@ class Pictures(unittest.TestCase):
 
     def test_movie_both_gives_gif_and_mp4(self):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=2)
-        self.assertEqual((0, ["fields.gif", "fields.mp4", "fields.png", "history.png"]), _plot(run, "--movie", "both")[:2])
+        self.assertEqual((0, ["fields.gif", "fields.mp4", "fields.png", "history.png"]), plot(run, "--movie", "both")[:2])
 
     def test_error_is_zero_for_exact_values_and_equals_disturbance(self):
         run = self.folder / "run"
@@ -90,7 +75,7 @@ class Pictures(unittest.TestCase):
         loaded = read_run(run)
         for error in pointwise_errors(loaded, loaded.snapshots[0], exact_solution(loaded)).values():
             np.testing.assert_array_equal(error, 0)
-        self.assertEqual(_plot(run, "--movie", "none")[0], 0)
+        self.assertEqual(plot(run, "--movie", "none")[0], 0)
         self.assertEqual(_pixels_of(run / "fields.png", _COLOURS["error"]), 0)
         loaded.snapshots[1].fields["p"].values[7] += 0.25
         error = pointwise_errors(loaded, loaded.snapshots[1], exact_solution(loaded))["p"]
@@ -118,7 +103,7 @@ class Pictures(unittest.TestCase):
 
     def test_empty_history_is_refused(self):
         (self.folder / "history.csv").touch()
-        code, files, errors = _plot(self.folder)
+        code, files, errors = plot(self.folder)
         self.assertEqual((6, []), (code, files))
         self.assertIn("history.csv cannot be read: it is empty", errors)
 
@@ -131,32 +116,26 @@ class Pictures(unittest.TestCase):
             '[boundary]\nleft = "periodic"\nright = "periodic"\n[verify]\nexact = "advection"\n'
         )
         one = np.ones_like(x)
-        synthetic.write_fields(
-            run / "fields.h5", x, [1.3], lambda t, x: (1 + 0.2 * np.sin(np.pi * (x - t)), one, one)
-        )
+        synthetic.write_fields(run / "fields.h5", x, [1.3], lambda t, x: (1 + 0.2 * np.sin(np.pi * (x - t)), one, one))
         loaded = read_run(run)
         error = pointwise_errors(loaded, loaded.snapshots[0], exact_solution(loaded))
         self.assertLess(np.abs(error["rho"]).max(), 1e-14)
-        self.assertEqual(_plot(run)[0], 0)
+        self.assertEqual(plot(run)[0], 0)
 
     def test_reference_run_applies_at_final_time_only(self):
         run = self.folder / "blast"
         run.mkdir()
         (run / "scene.toml").write_text('[verify]\nexact = "reference"\n')
         fine = np.linspace(-1, 1, 2001)
-        reference = dict(
-            zip(("rho", "u", "p"), (1 + fine**2, fine, fine + 2)), x=fine, scheme="z", cells=2001
-        )
+        reference = dict(zip(("rho", "u", "p"), (1 + fine**2, fine, fine + 2)), x=fine, scheme="z", cells=2001)
         x = np.linspace(-0.9, 0.9, 40)
-        synthetic.write_fields(
-            run / "fields.h5", x, [0.1, 0.2], lambda t, x: (1 + x**2, x, x + 2 + t), reference
-        )
+        synthetic.write_fields(run / "fields.h5", x, [0.1, 0.2], lambda t, x: (1 + x**2, x, x + 2 + t), reference)
         loaded = read_run(run)
         exact = exact_solution(loaded)
         self.assertIn("2001 cells", exact.name)
         self.assertEqual(pointwise_errors(loaded, loaded.snapshots[0], exact), {})
         np.testing.assert_allclose(pointwise_errors(loaded, loaded.snapshots[1], exact)["p"], 0.2)
-        self.assertEqual(_plot(run)[:2], (0, ["fields.gif", "fields.png"]))
+        self.assertEqual(plot(run)[:2], (0, ["fields.gif", "fields.png"]))
 
     def test_conservation_accounts_for_outflow_at_ends(self):
         synthetic.write_history(self.folder / "history.csv")
@@ -169,11 +148,11 @@ class Pictures(unittest.TestCase):
         cells[3] = str(float(cells[3]) * 0.99)
         (self.folder / "history.csv").write_text("\n".join(lost[:-1] + [",".join(cells)]))
         self.assertAlmostEqual(conservation(read_run(self.folder))["mass"][-1], -0.01, delta=1e-12)
-        self.assertEqual(_plot(self.folder)[:2], (0, ["history.png"]))
+        self.assertEqual(plot(self.folder)[:2], (0, ["history.png"]))
 
     def test_study_shows_observed_orders_and_failures(self):
         synthetic.write_study(self.folder / "study.csv", failed=1)
-        self.assertEqual(_plot(self.folder)[:2], (0, ["study.png"]))
+        self.assertEqual(plot(self.folder)[:2], (0, ["study.png"]))
         figure = study_figure("sod", read_run(self.folder).study)
         words = [text.get_text() for text in figure.texts + figure.axes[1].texts]
         self.assertIn("WENO-JS  order 0.90", words)
@@ -181,7 +160,7 @@ class Pictures(unittest.TestCase):
 
     def test_study_of_cloth_measures_order_in_edge_length(self):
         synthetic.write_springs_study(self.folder / "study.csv")
-        self.assertEqual(_plot(self.folder)[:2], (0, ["study.png"]))
+        self.assertEqual(plot(self.folder)[:2], (0, ["study.png"]))
         rows = read_run(self.folder).study
         for norm, title, count in (("", "frequency", 4), ("cauchy_area", "next mesh (m$^2$)", 3)):
             with self.subTest(norm):
@@ -191,7 +170,7 @@ class Pictures(unittest.TestCase):
                 self.assertIn(title, by_time.get_ylabel())
                 self.assertEqual("vertices", by_mesh.get_xlabel())
                 self.assertEqual(count, len(by_mesh.lines[0].get_xdata()))
-        self.assertEqual(_plot(self.folder, "--norm", "cauchy_kinetic")[:2], (0, ["study.png"]))
+        self.assertEqual(plot(self.folder, "--norm", "cauchy_kinetic")[:2], (0, ["study.png"]))
 
     def test_study_of_invariants_shows_differences_of_meshes(self):
         synthetic.write_springs_study(self.folder / "study.csv", checks=("energy_drift",))
@@ -214,9 +193,7 @@ class Pictures(unittest.TestCase):
         rows = read_run(self.folder).study
         for norm, label in (("energy_balance", "biquadratic"), ("cauchy_area", "biquadratic  order 2.00")):
             with self.subTest(norm):
-                self.assertEqual(
-                    [label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts]
-                )
+                self.assertEqual([label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts])
 
     def test_many_long_labels_of_study_fit(self):
         axes = ("", " lf-global", " lf-single"), ("", " ssprk43"), ("", " split")
@@ -233,7 +210,7 @@ class Pictures(unittest.TestCase):
         for box in boxes:
             self.assertLessEqual(box.x1, figure.bbox.width)
             self.assertLessEqual(box.y1, figure.axes[1].get_window_extent().y1 + box.height)
-        self.assertEqual(_plot(self.folder, "--norm", "l1_pressure")[:2], (0, ["study.png"]))
+        self.assertEqual(plot(self.folder, "--norm", "l1_pressure")[:2], (0, ["study.png"]))
 
     def test_labels_max_density_as_deviation(self):
         run = synthetic.write_sod(self.folder / "sedov", cells=20, snapshots=1)
@@ -256,7 +233,7 @@ class Pictures(unittest.TestCase):
                     low, high = axes.get_xlim()
                     ticks = [*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks()]
                     boxes = sorted((tick.label1.get_window_extent() for tick in ticks
-                                    if tick.label1.get_text() and low <= tick.get_loc() <= high), key=lambda box: box.x0)  # fmt: skip
+                                    if tick.label1.get_text() and low <= tick.get_loc() <= high), key=lambda box: box.x0)
                     self.assertGreater(len(boxes), 0)
                     for left, right in zip(boxes, boxes[1:]):
                         self.assertLess(left.x1, right.x0)
@@ -296,11 +273,7 @@ class Names(unittest.TestCase):
             self.assertIn(f"`{name}.png`", table)
 
 
-class Installed(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class Installed(FolderTest):
     def test_copy_of_package_prints_version_and_draws(self):
         share = self.folder / "share" / "drogue"
         shutil.copytree(packages.SOURCE / "scripts" / "plot", share / "plot")
@@ -313,13 +286,9 @@ class Installed(unittest.TestCase):
             self.assertIn(output, done.stdout)
 
 
-class Refusals(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class Refusals(FolderTest):
     def _refused(self, code, words, *arguments):
-        got, files, sentence = _plot(*arguments)
+        got, files, sentence = plot(*arguments)
         self.assertEqual((got, files), (code, []), sentence)
         self.assertEqual(sentence.count("\n"), 1, sentence)
         for word in words:
@@ -360,20 +329,14 @@ class Refusals(unittest.TestCase):
             environment.pop("DROGUE_PLOT_MOVED", None)
             # -S hides the packages of this interpreter.
             done = subprocess.run(
-                [sys.executable, "-S", "-m", "plot", "."],
-                capture_output=True,
-                text=True,
-                env=environment,
-                check=False,
+                [sys.executable, "-S", "-m", "plot", "."], capture_output=True, text=True, env=environment, check=False,
             )
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
             self.assertIn("packages are missing", done.stderr)
 
     def test_rejects_damaged_files(self):
         cases = {
-            "fields.h5": b"\x89HDF\r\n\x1a\nnot really",
-            "scene.toml": b"[mesh\n",
-            "result.json": b"{",
+            "fields.h5": b"\x89HDF\r\n\x1a\nnot really", "scene.toml": b"[mesh\n", "result.json": b"{",
             "history.csv": b"time,dt [s]\n0.1,none\n",
             "study.csv": b"label,cells,compute_s,l1_density,status\nz,100,,,ok\n",
         }
@@ -381,7 +344,7 @@ class Refusals(unittest.TestCase):
             with self.subTest(name):
                 run = synthetic.write_sod(self.folder / name, cells=20, snapshots=1)
                 (run / name).write_bytes(content)
-                code, _, sentence = _plot(run)
+                code, _, sentence = plot(run)
                 self.assertEqual(code, 6, sentence)
                 self.assertEqual(sentence.count("\n"), 1, sentence)
 
@@ -395,7 +358,3 @@ class Refusals(unittest.TestCase):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         (self.folder / "file").write_text("")
         self._refused(6, ["cannot be written"], run, "--out", self.folder / "file" / "pictures")
-
-
-if __name__ == "__main__":
-    unittest.main()

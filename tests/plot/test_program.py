@@ -1,16 +1,13 @@
 """drogue-plot as a process: signals, ranks of a launcher, lost output, and the version."""
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-import unittest
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 import synthetic
 from PIL import Image
 from plot import style
@@ -20,18 +17,14 @@ _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMI_S
 _INTERRUPTED = r"\Adrogue-plot: interrupted by a signal; .*\.\n\Z"
 
 
-class ProgramTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class ProgramTest(FolderTest):
     def start(self, *words, stdout=subprocess.PIPE, environment=None, **settings):
         """Starts the interpreter with `words`, as users do: with a buffered standard output."""
         absent = ("PYTHONUNBUFFERED", *_LAUNCHERS)
         own = {name: value for name, value in os.environ.items() if name not in absent}
         own |= {"PYTHONPATH": str(packages.SOURCE / "scripts")} | (environment or {})
         return subprocess.Popen([sys.executable, *map(str, words)], stdout=stdout, stderr=subprocess.PIPE, text=True,
-                                env=own, **settings)  # fmt: skip
+                                env=own, **settings)
 
     def plot(self, *words, **settings):
         """Exit code, standard output and standard error."""
@@ -76,7 +69,7 @@ class Signals(ProgramTest):
         encoder.chmod(0o755)
         out = self.folder / "out"
         process = self.start("-m", "plot", run, "--out", out, "--movie", "mp4",
-                             environment={"IMAGEIO_FFMPEG_EXE": str(encoder)})  # fmt: skip
+                             environment={"IMAGEIO_FFMPEG_EXE": str(encoder)})
         while not started.exists() and process.poll() is None:
             time.sleep(0.01)
         process.send_signal(signal.SIGTERM)
@@ -120,7 +113,7 @@ class SeveralRanks(ProgramTest):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         before = sorted(run.iterdir())
         for environment in ({"OMPI_COMM_WORLD_SIZE": "2", "OMPI_COMM_WORLD_RANK": "0"}, {"OMPI_COMM_WORLD_SIZE": "2"},
-                            {"PMI_SIZE": "2", "PMI_RANK": "0"}, {"SLURM_NTASKS": "2", "PMIX_RANK": "0"}):  # fmt: skip
+                            {"PMI_SIZE": "2", "PMI_RANK": "0"}, {"SLURM_NTASKS": "2", "PMIX_RANK": "0"}):
             with self.subTest(environment=environment):
                 code, out, err = self.plot(run, environment=environment)
                 self.assertEqual((code, out, err.count("\n")), (2, "", 1), err)
@@ -133,7 +126,7 @@ class SeveralRanks(ProgramTest):
     def test_accepts_one_rank(self):
         synthetic.write_history(self.folder / "history.csv")
         for environment in ({"OMPI_COMM_WORLD_SIZE": "1", "OMPI_COMM_WORLD_RANK": "0"}, {"SLURM_NTASKS": "64"},
-                            {"OMPI_COMM_WORLD_SIZE": "many"}):  # fmt: skip
+                            {"OMPI_COMM_WORLD_SIZE": "many"}):
             with self.subTest(environment=environment):
                 code, out, err = self.plot(self.folder, environment=environment)
                 self.assertEqual((code, out, err), (0, f"{self.folder / 'history.png'}\n", ""))
@@ -154,7 +147,3 @@ class Output(ProgramTest):
         code, out, err = self.plot("--version")
         self.assertEqual((code, err), (0, ""))
         self.assertIn(f"(git {commit})\n", out)
-
-
-if __name__ == "__main__":
-    unittest.main()

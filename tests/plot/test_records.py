@@ -4,14 +4,11 @@ import contextlib
 import io
 import json
 import os
-import shutil
 import sys
-import tempfile
-import unittest
-from pathlib import Path
 from unittest import mock
 
 import packages  # before modules that need the packages  isort: skip
+from folder_test import FolderTest
 import h5py
 import numpy as np
 import record_parachute
@@ -47,11 +44,9 @@ shift 2
 def _write_strip(file, strain, poisson, columns=10, rows=4):
     """Writes a triangulated strip of 0.1 x 0.02 m that is stretched along x and free to contract."""
     place = {(i, j): j * (columns + 1) + i for j in range(rows + 1) for i in range(columns + 1)}
-    rest = np.array(
-        [(0.1 * i / columns, 0.02 * j / rows, 0.0) for j in range(rows + 1) for i in range(columns + 1)]
-    )
+    rest = np.array([(0.1 * i / columns, 0.02 * j / rows, 0.0) for j in range(rows + 1) for i in range(columns + 1)])
     corners = [(place[i, j], place[i + 1, j], place[i, j + 1], place[i + 1, j + 1])
-               for i in range(columns) for j in range(rows)]  # fmt: skip
+               for i in range(columns) for j in range(rows)]
     triangles = [triangle for a, b, c, d in corners for triangle in ((a, b, d), (a, d, c))]
     with h5py.File(file, "w") as h5:
         h5["mesh/vertices"], h5["mesh/triangles"] = rest, np.array(triangles)
@@ -59,13 +54,7 @@ def _write_strip(file, strain, poisson, columns=10, rows=4):
         h5["steps/000001/position"] = rest * [1 + strain, 1 - poisson * strain, 1.0]
 
 
-class TemporaryFolder(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-
-class ParachuteRecords(TemporaryFolder):
+class ParachuteRecords(FolderTest):
     def record(self, *words):
         """Exit code, rows by scene and ranks, and printed lines of a record of a stand-in for the program."""
         for name, text in (("drogue-parachute", PROGRAM), ("mpirun", LAUNCHER)):
@@ -75,7 +64,7 @@ class ParachuteRecords(TemporaryFolder):
         line = ["record_parachute.py", "test", *map(str, folders), "--backends", "serial", *words]
         path = f"{self.folder}{os.pathsep}{os.environ['PATH']}"
         with (mock.patch.object(sys, "argv", line), mock.patch.dict(os.environ, {"PATH": path}),
-              contextlib.redirect_stdout(io.StringIO()) as printed):  # fmt: skip
+              contextlib.redirect_stdout(io.StringIO()) as printed):
             code = record_parachute.main()
         rows = json.loads((self.folder / "parachute-test.json").read_text())["runs"]
         return code, {(row["scene"], row["ranks"]): row for row in rows}, printed.getvalue().splitlines()
@@ -113,7 +102,7 @@ class ParachuteRecords(TemporaryFolder):
         _, _, lines = self.record("--ranks", "1,2", "--skip", "lasts")
         self.assertEqual(["| ranks | backend | passed | failed | refuse several ranks | not run |", "|---:|---|---:|---|---|---|",
                           "| 1 | serial | 2 of 4 | `fails` |  | `lasts` |", "| 2 | serial | 1 of 4 | `fails` | `alone` | `lasts` |"],
-                         [line for line in lines if line.startswith("|")])  # fmt: skip
+                         [line for line in lines if line.startswith("|")])
         self.assertEqual("| 1 | serial | 0 of 1 |  |  | `new` |",
                          record_parachute.table([{"ranks": 1, "backend": "serial", "scene": "old"}], ["new"]).splitlines()[2])
 
@@ -125,7 +114,7 @@ class ParachuteRecords(TemporaryFolder):
         self.assertTrue(table + "\n" in text, f"the README lacks:\n{table}")
 
 
-class Records(TemporaryFolder):
+class Records(FolderTest):
     def test_response_of_strip_is_that_of_material(self):
         _write_strip(self.folder / "fields.h5", 1e-6, 0.3)
         found = record_springs.response(self.folder / "fields.h5", 5000.0, 0.3)
@@ -161,13 +150,7 @@ class Records(TemporaryFolder):
         self.assertEqual(["fields.h5 of one run alone"], recording.differing_results(a, b))
         for folder in (a, c):
             (folder / "fields.h5").unlink()
-        self.assertEqual(
-            ([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c))
-        )
+        self.assertEqual(([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c)))
         for folder in (a, b):
             (folder / "history.csv").unlink()
         self.assertEqual(["neither fields nor history"], recording.differing_results(a, b))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -166,7 +166,3 @@ class Report(Folder):
         code, _, sentence = plot(self.folder, "--report")
         self.assertEqual(2, code)
         self.assertIn("holds no records", sentence)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,15 +1,10 @@
 """Figures of synthetic runs of cloth, strings and contact bodies."""
 
-import contextlib
-import io
-import shutil
-import tempfile
-import unittest
-from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
 import h5py
 import numpy as np
+from drawn import PictureTest
 from PIL import Image, ImageSequence
 from plot import cli, style
 from plot.run_directory import read_run
@@ -19,9 +14,7 @@ from plot.springs.history_figure import springs_history_figure
 assert packages.SOURCE
 
 
-def write_run(
-    folder, vertices, triangles, edges, moved, stress=None, directions=None, contact="", strings=None
-):
+def write_run(folder, vertices, triangles, edges, moved, stress=None, directions=None, contact="", strings=None):
     """Writes a run directory whose snapshots have the positions `moved`; returns its path."""
     folder.mkdir()
     (folder / "scene.toml").write_text('app = "springs"\n' + contact)
@@ -50,23 +43,14 @@ TRIANGLES = [[0, 1, 2], [0, 2, 3]]
 EDGES = [[0, 1], [1, 2], [2, 3], [0, 3], [0, 2]]
 
 
-class SpringsPictures(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class SpringsPictures(PictureTest):
     def assert_drawn(self, run):
         self.assertEqual(0, cli.main([str(run), "--quiet"]))
-        self.assertEqual(
-            {"fields.png", "fields.gif", "history.png"},
-            {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")},
-        )
+        self.assertEqual({"fields.png", "fields.gif", "history.png"}, self.pictures(run))
 
     def test_draws_cloth_in_space(self):
         raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
-        run = write_run(
-            self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], [[0.0, 0.0], [2.0, 1.0]]
-        )
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], [[0.0, 0.0], [2.0, 1.0]])
         self.assert_drawn(run)
         view = View(read_run(run))
         self.assertIsNone(view.labels)
@@ -75,12 +59,6 @@ class SpringsPictures(unittest.TestCase):
         self.assertGreater(view.projection[1] @ [0, 0, 1], 0.5, "the vertical axis must point upwards")
         with Image.open(run / "fields.gif") as movie:
             self.assertEqual(2, movie.n_frames)
-
-    def refusal(self, run, *words):
-        with contextlib.redirect_stderr(io.StringIO()) as errors:
-            self.assertEqual(2, cli.main([str(run), *words]))
-        self.assertEqual([], [file.name for file in run.iterdir() if file.suffix in (".png", ".gif")])
-        return errors.getvalue()
 
     def test_rejects_unknown_field_with_nearest_name(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE], [[1.0, 1.0]])
@@ -103,9 +81,7 @@ class SpringsPictures(unittest.TestCase):
 
     def test_displacement_excludes_prestretch(self):
         moved = 1.5 * SQUARE + [0, 0, 1e-6]
-        run = write_run(
-            self.folder / "run", SQUARE, TRIANGLES, EDGES, [moved], contact="[initial]\nprestretch = 0.5\n"
-        )
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [moved], contact="[initial]\nprestretch = 0.5\n")
         view = View(read_run(run))
         np.testing.assert_allclose(view.values(view.run.snapshots[0]), 1e-6)
 
@@ -125,13 +101,8 @@ class SpringsPictures(unittest.TestCase):
                 for stress in (None, [[0.0, 2.0]]):
                     with self.subTest(name, strings=strings, stress=stress):
                         run = write_run(
-                            self.folder / f"{name}-{len(strings)}-{stress is None}",
-                            place,
-                            TRIANGLES,
-                            [*EDGES, [1, 4], [4, 5]],
-                            [folded],
-                            stress,
-                            strings=np.array(strings, int).reshape(-1, 2),
+                            self.folder / f"{name}-{len(strings)}-{stress is None}", place, TRIANGLES,
+                            [*EDGES, [1, 4], [4, 5]], [folded], stress, strings=np.array(strings, int).reshape(-1, 2),
                         )
                         pixels = self.vermilion(run)
                         self.assertTrue(pixels > least if strings else pixels == 0, pixels)
@@ -139,9 +110,7 @@ class SpringsPictures(unittest.TestCase):
     def test_strings_beside_cloth_move_in_movie(self):
         place = np.array([*SQUARE, [1.5, 0, -0.5]], float)
         moved = place + np.outer([0, 0, 0, 0, 1], [0, 0.5, 0.2])
-        run = write_run(
-            self.folder / "run", place, TRIANGLES, [*EDGES, [1, 4]], [place, moved], strings=[[1, 4]]
-        )
+        run = write_run(self.folder / "run", place, TRIANGLES, [*EDGES, [1, 4]], [place, moved], strings=[[1, 4]])
         self.assert_drawn(run)
         with Image.open(run / "fields.gif") as movie:
             frames = [np.asarray(frame.convert("RGB"), float) for frame in ImageSequence.Iterator(movie)]
@@ -157,7 +126,7 @@ class SpringsPictures(unittest.TestCase):
     def test_history_subtracts_works_of_contact_and_friction(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
         rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J],contact_work [J],friction_work [J]",
-                "0,0,4,0,0,4,0,0", "1,1,2,0,0,2,-1.5,-0.5", "2,2,1,0,0,1,-2,-0.9"]  # fmt: skip
+                "0,0,4,0,0,4,0,0", "1,1,2,0,0,2,-1.5,-0.5", "2,2,1,0,0,1,-2,-0.9"]
         (run / "history.csv").write_text("\n".join(rows) + "\n")
         figure = springs_history_figure(read_run(run))
         energies, rest = figure.axes
@@ -170,7 +139,7 @@ class SpringsPictures(unittest.TestCase):
         """The scale includes the kinetic energy that the released elastic and potential energy could give."""
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
         rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J]",
-                "0,0,1,3,5,9", "1,1,4,0,5,9", "2,2,0,1,-2,-1"]  # fmt: skip
+                "0,0,1,3,5,9", "1,1,4,0,5,9", "2,2,0,1,-2,-1"]
         (run / "history.csv").write_text("\n".join(rows) + "\n")
         change = springs_history_figure(read_run(run)).axes[1].lines[0].get_ydata()
         np.testing.assert_allclose(change, [0, 0, -10 / (1 + 2 + 7)], atol=1e-15)
@@ -185,12 +154,7 @@ class SpringsPictures(unittest.TestCase):
     def test_draws_directions_of_larger_stress(self):
         """Directions appear on flat cloth where the stress is large enough, and are shorter than the triangles."""
         run = write_run(
-            self.folder / "run",
-            SQUARE,
-            TRIANGLES,
-            EDGES,
-            [SQUARE, SQUARE],
-            [[1.0, 0.01]] * 2,
+            self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, SQUARE], [[1.0, 0.01]] * 2,
             [[0.6, 0.8, 0], [1, 0, 0]],
         )
         self.assert_drawn(run)
@@ -213,17 +177,13 @@ class SpringsPictures(unittest.TestCase):
                        lambda x: (np.abs(np.linalg.norm(x - [0.5, 0.5, -1.0], axis=-1) - 0.4), x[..., 2], -0.6)),
             "plane": ("centre = [0.0, 0.0, -0.1], normal = [0, 0, 2]",
                       lambda x: (np.abs(x[..., 2] + 0.1), x[..., 0], 1.1)),
-        }  # fmt: skip
+        }
         stress = [[0.0, 0.0], [2.0, 1.0]]
-        plain = self.greys(
-            write_run(self.folder / "plain", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress)
-        )
+        plain = self.greys(write_run(self.folder / "plain", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress))
         for kind, (words, of) in bodies.items():
             with self.subTest(kind):
                 contact = f'[contact]\nobjects = [{{ kind = "{kind}", {words} }}, {{ kind = "level-set", expression = "z+9" }}]\n'
-                run = write_run(
-                    self.folder / kind, SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress, contact=contact
-                )
+                run = write_run(self.folder / kind, SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress, contact=contact)
                 distance, coordinate, largest = of(View(read_run(run)).body_facets)
                 self.assertLess(distance.max(), 1e-12)
                 self.assertAlmostEqual(largest, coordinate.max())
@@ -248,9 +208,7 @@ class SpringsPictures(unittest.TestCase):
                     self.assertLess(distance.max(), (1.6 / 48) ** 2)  # the square of the cells
                     _, corners = np.unique(facets.reshape(-1, 3), axis=0, return_inverse=True)
                     loops = corners.reshape(-1, 4)
-                    edges = np.sort(
-                        np.stack((loops, np.roll(loops, 1, axis=1)), axis=-1).reshape(-1, 2), axis=1
-                    )
+                    edges = np.sort(np.stack((loops, np.roll(loops, 1, axis=1)), axis=-1).reshape(-1, 2), axis=1)
                     self.assertTrue((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
                 else:
                     inner = facets[(facets[..., 0] > 0.1).all(axis=1)]
@@ -331,15 +289,7 @@ class SpringsPictures(unittest.TestCase):
         line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
         sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
         run = write_run(
-            self.folder / "run",
-            line,
-            [],
-            [[0, 1], [1, 2]],
-            [line, sagging],
+            self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging],
             contact='[contact]\nobjects = [{ kind = "sphere", centre = [1, 0, -2], radius = 0.5 }]\n',
         )
         self.assertGreater(self.greys(run), 1000)
-
-
-if __name__ == "__main__":
-    unittest.main()

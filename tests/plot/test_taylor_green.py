@@ -63,7 +63,3 @@ class TaylorGreen(unittest.TestCase):
                 self.assertEqual(list(range(1, 10)), [time for time, _ in points], (name, key))
                 for time, value in points:
                     self.assertAlmostEqual(1, value / table[time][column], delta=5e-5, msg=f"{name} {key} {time}")
-
-
-if __name__ == "__main__":
-    unittest.main()

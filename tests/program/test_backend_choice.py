@@ -4,10 +4,7 @@ import json
 import os
 import resource
 import subprocess
-import sys
 import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import options_program
@@ -91,7 +88,3 @@ class SharedCores(gas_program.GasTest):
 
     def test_keeps_a_configured_wait_in_silence(self):
         self.assertEqual([], self.notices(OMP_WAIT_POLICY="passive"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -11,12 +11,11 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
-import unittest
 
 SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
 sys.path.insert(0, str(SOURCE / "scripts"))
 
+from folder_test import FolderTest
 import publish_records
 
 BENCH = SOURCE / "scripts/bench.sh"
@@ -49,14 +48,12 @@ exit "$act"
 HEAD = {"schema": "drogue.perf/1", "check": "passed"}  # of each record
 HOST = ["gas-step/serial/1024", "gas-step/openmp/1024", "gas-step/dense-loop/1024", "ceiling/fp64/serial", "options/serial/1/128x32"]
 CUDA = ["gas-step/cuda/1024", "gas-step/serial/1024", "options/cuda/1/128x32", "options/cuda/4096/128x32", "options/cuda/4096/256x64",
-        "flow-step/cuda/64x64x64/periodic"]  # fmt: skip
+        "flow-step/cuda/64x64x64/periodic"]
 
 
-class Bench(unittest.TestCase):
+class Bench(FolderTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.bin, self.out = self.folder / "bin", self.folder / "out"
         self.bin.mkdir()
         (self.bin / "drogue-perf").write_text(PROGRAM)
@@ -274,7 +271,7 @@ class Bench(unittest.TestCase):
         (self.bin / "drogue-plot").write_text("#!/bin/sh\necho 'a.jsonl:1: the line ends within a record' >&2\nexit 3\n")
         broken = subprocess.run(words, capture_output=True, text=True, check=False)
         self.assertEqual((1, "a.jsonl:1: the line ends within a record\nnothing is published: no page can be made of the records, "
-                             "for the reason above\n"), (broken.returncode, broken.stderr))  # fmt: skip
+                             "for the reason above\n"), (broken.returncode, broken.stderr))
         self.assertEqual(["README.md"], [path.name for path in (tree / "docs/evidence").iterdir()])
         (self.bin / "drogue-plot").write_text(noted)
         first = subprocess.run(words, capture_output=True, text=True, check=True)
@@ -370,7 +367,3 @@ class Bench(unittest.TestCase):
         for words in ("work-precision --app gas --filter '^shu-osher$'", "work-precision --app springs --filter '^drum$'",
                       'run --filter "^options/cuda/$count/"', "cases options ", "cases flow-step "):
             self.assertIn(words, kinds)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,8 +6,8 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
-import unittest
+
+from folder_test import FolderTest
 
 SCRIPT = pathlib.Path(os.environ["DROGUE_SOURCE"]) / "scripts" / "compare_backends.py"
 # One scene with equal histories, one whose history names the backend, one that fails on OpenMP without a result, and one that
@@ -28,11 +28,9 @@ if scene == "fails" and backend == "openmp":
 """
 
 
-class Backends(unittest.TestCase):
+class Backends(FolderTest):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         program = self.folder / "drogue-springs"
         program.write_text(PROGRAM)
         program.chmod(0o755)
@@ -40,7 +38,7 @@ class Backends(unittest.TestCase):
     def compare(self, *words, backends="serial,openmp"):
         """Exit code and printed lines of a comparison, of which a rejected one writes its last line to stderr."""
         command = [sys.executable, "-B", SCRIPT, "springs", "--bin", self.folder, "--work", self.folder / "work",
-                   "--backends", backends, *words]  # fmt: skip
+                   "--backends", backends, *words]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         return done.returncode, done.stdout.splitlines() or done.stderr.splitlines()[-1:]
 
@@ -49,7 +47,7 @@ class Backends(unittest.TestCase):
         self.assertEqual((1, "1 of 3 scenes have the same bits on serial, openmp"), (code, lines.pop()))
         self.assertEqual(
             ["differs: other bits than on serial: openmp (1)", "equal: the same bits",
-             "fails: exit codes serial 0, openmp 77: drogue-springs: no such device"], sorted(lines))  # fmt: skip
+             "fails: exit codes serial 0, openmp 77: drogue-springs: no such device"], sorted(lines))
 
     def test_counts_no_scenes_that_are_left_out(self):
         lines = ["equal: the same bits", "1 of 1 scenes have the same bits on serial, openmp"]
@@ -76,7 +74,3 @@ class Backends(unittest.TestCase):
             with self.subTest(words=words, backends=backends):
                 code, lines = self.compare(*words, backends=backends)
                 self.assertEqual((2, True), (code, reason in lines[-1]), lines)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,8 +5,8 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
-import unittest
+
+from folder_test import FolderTest
 
 SCRIPT = pathlib.Path(os.environ["DROGUE_SOURCE"]) / "scripts" / "compare_builds.py"
 # Writes a history unless its contents are None, and ends with a code.
@@ -35,12 +35,7 @@ sys.exit(5)
 """
 
 
-class Builds(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-
+class Builds(FolderTest):
     def program(self, build, name, text):
         file = self.folder / build / name
         file.parent.mkdir(exist_ok=True)
@@ -112,7 +107,3 @@ class Builds(unittest.TestCase):
         self.assertEqual("record of old\n" * 2, (kept / "old.jsonl").read_text())
         self.assertEqual("record of new\n" * 2, (kept / "new.jsonl").read_text())
         self.assertEqual("verdict\n", (kept / "compare.txt").read_text())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,10 +4,6 @@ import os
 import resource
 import shutil
 import subprocess
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import small_disk
@@ -121,7 +117,3 @@ class Forbidden(DiskTest):
 
     def test_reports_a_folder_without_write_access(self):
         self.assertIn("/proc", self.expect(6, "sod", "--quiet", "--out", "/proc/drogue").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,5 @@
 """Checks of columns of history.csv, [[verify.history]], in all programs that run scenes."""
 
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import parachute_program
 import springs_program
@@ -67,7 +61,3 @@ class HistoryChecks(springs_program.SpringsTest):
         self.check(gas_program.PROGRAM, 0, "sod", last, sets=later, words=(*restart, "last"))
         message = self.check(gas_program.PROGRAM, 5, "sod", mean, sets=later, words=(*restart, "mean"))
         self.assertIn("energy_mean could not be measured", message)
-
-
-if __name__ == "__main__":
-    unittest.main()

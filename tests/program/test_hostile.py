@@ -3,12 +3,7 @@
 
 import itertools
 import math
-import os
 import random
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 
@@ -147,7 +142,3 @@ class DenseOutput(gas_program.GasTest):
             "mesh.cells=50", "verify.l1_density=1.0", f"output.times={times}"])
         file = gas_program.fields(self.folder / "run")
         self.assertEqual(times, [file.attributes[f"/steps/{group}"]["time"] for group in file.children("/steps")])
-
-
-if __name__ == "__main__":
-    unittest.main()

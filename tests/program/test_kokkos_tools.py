@@ -5,8 +5,9 @@ import os
 import pathlib
 import re
 import subprocess
-import tempfile
 import unittest
+
+from folder_test import FolderTest
 
 BIN = pathlib.Path(os.environ["DROGUE_BIN"])
 BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
@@ -24,12 +25,7 @@ RUNS = {
 }
 
 
-class Connectors(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Connectors(FolderTest):
     def run_with(self, words, connector, **more):
         """Output of a program that must not depend on the connector."""
         environment = {**os.environ, "KOKKOS_TOOLS_LIBS": str(connector), "OMP_WAIT_POLICY": "passive", **more}
@@ -73,7 +69,3 @@ class Connectors(unittest.TestCase):
             depth += 1 if line.startswith("push ") else -1
             self.assertIn(depth, (0, 1, 2), line)
         self.assertEqual(0, depth)
-
-
-if __name__ == "__main__":
-    unittest.main()

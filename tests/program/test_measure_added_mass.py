@@ -37,7 +37,3 @@ class MeasureAddedMass(unittest.TestCase):
                 run = subprocess.run([SCRIPT, *words], capture_output=True, text=True, check=False)
                 self.assertEqual(1, run.returncode)
                 self.assertEqual(1, len(run.stderr.splitlines()), run.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

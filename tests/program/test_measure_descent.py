@@ -5,14 +5,13 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
-import unittest
 from pathlib import Path
 
 SOURCE = os.environ["DROGUE_SOURCE"]
 SCRIPT = Path(SOURCE) / "scripts/studies/measure_descent.py"
 sys.path.insert(0, str(SCRIPT.parent))
 
+from folder_test import FolderTest
 import measure_descent
 
 DENSITY, AREA, PERIOD = 1.25, 0.25 * math.pi * 8.0**2, 2.5
@@ -39,12 +38,7 @@ def rows(force=900.0, down=4.0, across=3.0, breathing=0.5, end=40.0, trend=None)
                "canopy_0_payload_velocity_y [m/s]": 0.0, "canopy_0_payload_velocity_z [m/s]": 5.0 - speed}
 
 
-class Descent(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
+class Descent(FolderTest):
     def run_of(self, name="run", text=None, history=None):
         """Folder of a made run."""
         made = self.folder / name
@@ -159,7 +153,3 @@ class Descent(unittest.TestCase):
                 (self.run_of("one"), ["--limit"], "cells of two sizes")):
             with self.subTest(folder.name):
                 self.assertIn(sentence, self.measure(folder, *words, code=1))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,18 +2,13 @@
 """Command line, input, output files and exit codes of drogue-options."""
 
 import csv
-import json
 import os
 import re
 import resource
 import signal
 import subprocess
-import sys
 import time
-import unittest
 from pathlib import Path
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import options_program
@@ -92,7 +87,7 @@ class CommandLine(options_program.OptionsTest):
         if "cuda" in gas_program.backends():
             self.skipTest("a CUDA build has the backend")
         self.assertRegex(self.expect(77, "price", "example", "--backend", "cuda", "--result", "r.json").stderr, "cuda.*preset")
-        written = json.loads((self.folder / "r.json").read_text())
+        written = self.document("r.json")
         self.assertEqual(("no-backend", 77), (written["status"], written["exit_code"]))
         self.assertEqual(["r.json"], self.names())
 
@@ -229,8 +224,7 @@ class Prices(options_program.OptionsTest):
     def test_writes_the_exercise_boundary(self):
         lines = [row("put", style="american"), row("europe"), row("wait", style="american", type="call")]
         self.price(0, batch(lines), "--boundary", "b.csv")
-        with (self.folder / "b.csv").open(encoding="utf-8", newline="") as file:
-            points = list(csv.DictReader(file))
+        points = self.table("b.csv")
         self.assertEqual(["id", "time", "spot", "maturity"], list(points[0]))
         self.assertEqual({1.0}, {float(point["maturity"]) for point in points})
         self.assertEqual({"put"}, {point["id"] for point in points})
@@ -242,16 +236,14 @@ class Prices(options_program.OptionsTest):
 
     def test_boundary_at_time_zero_equals_that_of_the_price(self):
         self.expect(0, "price", "example", "--quiet", "--backend", "serial", "--boundary", "b.csv")
-        with (self.folder / "b.csv").open(encoding="utf-8", newline="") as file:
-            now = {point["id"]: point["spot"] for point in csv.DictReader(file) if point["time"] == "0"}
+        now = {point["id"]: point["spot"] for point in self.table("b.csv") if point["time"] == "0"}
         self.assertEqual({price["id"]: price["exercise_boundary"] for price in self.prices() if price["exercise_boundary"]}, now)
 
     def test_surface_has_all_strikes_and_maturities(self):
         header = ",".join(name for name in HEADER.split(",") if name not in ("strike", "maturity"))
         sets = f"{header}\nset,european,put,1.0,0.1,0,1,8.15,-2.5,0.767,0.4\nbad,european,put,1.0,0.1,0,1,8.15,9,0.767,0.4\n"
         self.expect(3, "surface", self.write(sets), "--strikes", "0.8:1.2:5", "--maturities", "0.25,1", "--quiet", *FAST)
-        with (self.folder / "surface.csv").open(encoding="utf-8", newline="") as file:
-            written = list(csv.DictReader(file))
+        written = self.table("surface.csv")
         self.assertEqual(11, len(written))
         self.assertEqual(["0.8", "0.9", "1", "1.1", "1.2"], [f"{float(point['strike']):g}" for point in written[:5]])
         self.assertEqual({"0.25", "1"}, {point["maturity"] for point in written[:10]})
@@ -268,10 +260,9 @@ class Prices(options_program.OptionsTest):
         for name, strikes in (("all", "0.5:2:7"), ("one", "1.25"), ("pieces", "0.5:2:7")):
             chunk = ("--chunk", "3") if name == "pieces" else ()
             self.expect(0, "surface", sets, "--strikes", strikes, *words, *chunk, "--out", f"{name}.csv", "--result", "r.json")
-            with (self.folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-                written[name] = list(csv.DictReader(file))
+            written[name] = self.table(f"{name}.csv")
         self.assertEqual({"rows": 14, "ok": 14, "coarse": 0, "invalid": 0, "failed": 0},
-                         json.loads((self.folder / "r.json").read_text())["counts"])
+                         self.document("r.json")["counts"])
         self.assertEqual(written["all"], written["pieces"])
         self.assertEqual(written["one"], [written["all"][3], written["all"][10]])
         contracts = [row(k, style="american", strike=point["strike"], maturity=point["maturity"]) for k, point in enumerate(written["all"])]
@@ -286,7 +277,7 @@ class Prices(options_program.OptionsTest):
     def test_result_describes_the_run(self):
         content = batch([row("a"), row("b", beta=9), row("c", style="american")])
         message = self.price(3, content, "--result", "r.json").stderr.strip()
-        written = json.loads((self.folder / "r.json").read_text())
+        written = self.document("r.json")
         self.assertEqual(("drogue.result/1", "drogue-options", "batch", "serial", "invalid", 3, message),
                          tuple(written[key] for key in ("schema", "program", "scene", "backend", "status", "exit_code", "message")))
         self.assertEqual({"rows": 3, "ok": 2, "coarse": 0, "invalid": 1, "failed": 0}, written["counts"])
@@ -367,14 +358,13 @@ class Prices(options_program.OptionsTest):
                                ("100", ()), ("1e25", ())):
             run = self.expect(3, "surface", sets, "--strikes", strikes, "--maturities", "0.5,1", "--mesh", "64", "--steps", "16",
                               "--result", "r.json", "--backend", "serial", *chunk)
-            with (self.folder / "surface.csv").open(encoding="utf-8", newline="") as file:
-                written[strikes, chunk] = list(csv.DictReader(file))
+            written[strikes, chunk] = self.table("surface.csv")
             points = 4 * len(strikes.split(","))
             wrong = points - (2 if strikes in ("100", "1e25") else 4)
             self.assertRegex(run.stdout, rf": 3 parameter sets in \S+ s: 1 invalid; {points} prices: \d+ ok, \d+ coarse, {wrong} invalid, 0 failed")
             self.assertIn(f"batch.csv:{3 if strikes == '100' else 2}: s", run.stderr)
             self.assertIn(f"(1 of 3 parameter sets and {wrong} of {points} prices invalid; all others are priced", run.stderr)
-            counts = json.loads((self.folder / "r.json").read_text())["counts"]
+            counts = self.document("r.json")["counts"]
             self.assertEqual((points + 1, wrong + 1, points - wrong), (counts["rows"], counts["invalid"], counts["ok"] + counts["coarse"]))
         mixed = written["100,1e25", ()]
         self.assertEqual(["low"] * 4 + ["high"] * 4 + ["bad"], [point["id"] for point in mixed])
@@ -499,7 +489,7 @@ class Files(options_program.OptionsTest):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
         self.assertEqual((130, ["batch.csv", "r.json"]), (process.returncode, self.names()))
-        self.assertIn("not all is written to '/dev/null'", json.loads((self.folder / "r.json").read_text())["message"])
+        self.assertIn("not all is written to '/dev/null'", self.document("r.json")["message"])
 
     def test_leaves_only_the_result_of_an_interrupted_run(self):
         process = self.start_long_run()
@@ -509,13 +499,13 @@ class Files(options_program.OptionsTest):
         self.assertEqual(130, process.returncode)
         self.assertIn(b"drogue-options: interrupted by a signal; nothing is written to ", message)
         self.assertEqual(["batch.csv", "r.json"], self.names())
-        self.assertEqual("interrupted", json.loads((self.folder / "r.json").read_text())["status"])
+        self.assertEqual("interrupted", self.document("r.json")["status"])
 
     def test_memory_is_independent_of_the_batch_size(self):
         peaks = []
         for rows in (1000, 10000):
             self.price(0, batch([row(k) for k in range(rows)]), *FAST, "--chunk", "500", "--result", "r.json")
-            peaks.append(json.loads((self.folder / "r.json").read_text())["peak_bytes"]["host"])
+            peaks.append(self.document("r.json")["peak_bytes"]["host"])
         self.assertLess(peaks[1], peaks[0] + 2 * 2**20)
 
     def test_reports_a_line_of_a_gigabyte_in_little_memory(self):
@@ -526,8 +516,4 @@ class Files(options_program.OptionsTest):
             stream.write(f"\n{row('b')}\n".encode())
         self.expect(3, "price", file, "--backend", "serial", "--quiet", *FAST, "--result", "r.json")
         self.assertEqual(["ok", "invalid", "ok"], [written["status"] for written in self.prices()])
-        self.assertLess(json.loads((self.folder / "r.json").read_text())["peak_bytes"]["host"], 200 * 2**20)
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertLess(self.document("r.json")["peak_bytes"]["host"], 200 * 2**20)

@@ -2,21 +2,14 @@
 """drogue-parachute: command line, run directory, failures, verification and studies."""
 
 import array
-import csv
 import itertools
-import json
 import math
 import os
 import re
 import shutil
 import signal
-import subprocess
 import sys
-import time
-import unittest
 import xml.etree.ElementTree
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/negative")
 
@@ -43,19 +36,14 @@ class CommandLine(parachute_program.FlowTest):
     def test_information_needs_no_scene(self):
         self.assertRegex(self.expect(0, "--version").stdout, r"^drogue-parachute \d+\.\d+\.\d+\n")
         self.assertIn("--study", self.expect(0, "--help").stdout)
-        lines = self.expect(0, "--list-scenes").stdout.splitlines()
-        self.assertEqual(parachute_program.SCENES, [line.split()[0] for line in lines])
-        for line in lines:
-            self.assertRegex(line, r"^\S+  +\S.*\.( \[gpu\])?$")
+        self.assert_lists(parachute_program.SCENES)
+        for line in self.expect(0, "--list-scenes").stdout.splitlines():
             self.assertEqual(line.split()[0].endswith("-full"), line.endswith("[gpu]"), line)
 
     def test_printed_scenes_resolve_to_themselves(self):
         for text in (GUST, VORTICES, *parachute_program.SMALL_SCENES):
             with self.subTest(text.splitlines()[0]):
-                scene = self.write(text) if "\n" in text else text
-                printed = self.expect(0, scene, "--print-scene").stdout
-                again = self.write(printed, "printed.toml")
-                self.assertEqual(printed, self.expect(0, again, "--print-scene").stdout)
+                self.resolved(self.write(text) if "\n" in text else text)
 
     def test_reports_usage_errors(self):
         for words in (["cavitty"], ["cavity", "extra"], ["cavity", "--study", "meshes=1:2"],
@@ -69,10 +57,9 @@ class CommandLine(parachute_program.FlowTest):
         for scene, lines in (("cavity", ['time = "rk3"', 'weno = "js"']), ("oscillating-plate-implicit", ['diffusion = "explicit"']),
                              ("c9-drop-full", ['method = "explicit"', 'cloth = "custom"', "area_density = 5.0", 'time = "rk3"']),
                              (self.write(CANOPY.replace("lines =", 'cloth = "custom"\narea_density = 2\nlines =')), ["area_density = 2.0"])):
-            printed = self.expect(0, scene, "--print-scene", "--seed-mode").stdout
+            printed = self.resolved(scene, "--seed-mode")
             for line in lines:
                 self.assertIn("\n" + line + "\n", printed)
-            self.assertEqual(printed, self.expect(0, self.write(printed, "printed.toml"), "--print-scene").stdout)
         self.assertIn("--seed-mode", self.expect(0, "--help").stdout)
 
 
@@ -345,8 +332,7 @@ class Orders(parachute_program.FlowTest):
                          "meshes=16:64,advections=central:weno-z,times=ab2,diffusions=explicit:crank-nicolson", sets=["run.end_time=0.5", "output={}"],
                          environment={"PYTHONHOME": os.devnull})
         self.assertEqual(0, run.returncode, run.stderr)
-        with (self.folder / "out/taylor-green-2d-study/study.csv").open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
+        rows = self.table("out/taylor-green-2d-study/study.csv")
         self.assertEqual([(advection, "ab2", diffusion, cells) for advection in ("central", "weno-z")
                           for diffusion in ("explicit", "crank-nicolson") for cells in ("16", "32", "64")],
                          [(row["advection"], row["time_scheme"], row["diffusion"], row["cells"]) for row in rows])
@@ -354,7 +340,7 @@ class Orders(parachute_program.FlowTest):
             self.assertEqual(("ok", row["cells"] == "16"), (row["status"], row["order_l2_velocity"] == ""))
             if row["cells"] == "64":
                 self.assertGreater(float(row["order_l2_velocity"]), 1.9, row)
-        document = json.loads((self.folder / "out/taylor-green-2d-study/study.json").read_text(encoding="utf-8"))
+        document = self.document("out/taylor-green-2d-study/study.json")
         self.assertEqual(("drogue.study/1", "drogue-parachute", 12),
                          (document["schema"], document["program"], len(document["rows"])))
 
@@ -367,8 +353,8 @@ class Orders(parachute_program.FlowTest):
                 run = self.start(scene, "--backend", "serial", "--quiet", "--study", "meshes=4:16",
                                  sets=["run.end_time=0.02", "output={}"], environment={"PYTHONHOME": os.devnull})
                 self.assertEqual(0, run.returncode, run.stderr)
-                with (self.folder / f"out/{scene}-study/study.csv").open(encoding="utf-8", newline="") as file:
-                    self.assertEqual([("ok", n) for n in ("4", "8", "16")], [(row["status"], row["cells"]) for row in csv.DictReader(file)])
+                self.assertEqual([("ok", n) for n in ("4", "8", "16")],
+                                 [(row["status"], row["cells"]) for row in self.table(f"out/{scene}-study/study.csv")])
 
     def test_study_names_itself_where_a_point_is_invalid(self):
         message = self.expect(2, "channel", "--study", "times=rk3,diffusions=crank-nicolson").stderr
@@ -549,13 +535,8 @@ class Bodies(parachute_program.FlowTest):
         self.assertGreater(errors[0] / errors[1], 3.0)
         self.expect(5, scene, *QUIET, "--overwrite", sets=[*sets, "verify.history[1].value=0.04"])
         self.assertEqual([True, False], [check["passed"] for check in self.result("out")["checks"]])
-        rows = self.history("out")
-        half = self.folder / "half"
-        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half,
-                    sets=["run={end_time=2,dt=0.01}", "verify={}", "output.restart_every=50", *sets[1:3]])
-        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, "--restart", half / "restart.h5", sets=sets)
-        for name in ("body_0_displacement", "body_0_force_x", "kinetic_energy"):
-            self.assertEqual(rows[name][-1], self.history("half")[name][-1], name)
+        first = ["run={end_time=2,dt=0.01}", "verify={}", "output.restart_every=50", *sets[1:3]]
+        self.assert_continues(self.history("out"), scene, first, sets, ("body_0_displacement", "body_0_force_x", "kinetic_energy"))
 
     def test_all_kinds_of_bodies_run_and_continue(self):
         round_bodies = bad_bodies.ROUND[:bad_bodies.ROUND.index("[verify]")]
@@ -567,25 +548,17 @@ class Bodies(parachute_program.FlowTest):
         rows = self.history("out")
         for body in range(3):
             self.assertGreater(rows[f"body_{body}_force_x"][-1], 0.0)
-        half = self.folder / "half"
-        self.expect(0, self.write(round_bodies), "--quiet", "--backend", "serial", "--out", half,
-                    sets=[*sets, "run.end_time=0.2", "output.times=[0.2]"])
-        self.expect(0, self.write(round_bodies), "--quiet", "--backend", "serial", "--out", half, "--restart",
-                    half / "restart.h5", sets=sets)
-        again = self.history("half")
-        for name in ("body_0_force_x", "body_1_force_y", "body_2_force_x", "kinetic_energy"):
-            self.assertEqual(rows[name][-1], again[name][-1], name)
+        self.assert_continues(rows, self.write(round_bodies), [*sets, "run.end_time=0.2", "output.times=[0.2]"], sets,
+                              ("body_0_force_x", "body_1_force_y", "body_2_force_x", "kinetic_energy"))
 
     def test_sharp_bodies_run_and_continue(self):
         scene = self.write(PLATE.replace("porosity = {", 'motion = { x = "0.05*sin(20*t)" }\nporosity = {'))
         sets = ['coupling.method="sharp"', "output={history_every=1,restart_every=8,fields=['pressure'],times=[0.15,0.3]}"]
         self.expect(0, scene, *QUIET, sets=sets)
-        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "half", sets=[*sets, "run.end_time=0.15", "output.times=[0.15]"])
-        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "half", "--restart", "half/restart.h5", sets=sets)
-        rows, again = self.history("out"), self.history("half")
+        rows = self.history("out")
         self.assertGreater(max(rows["body_0_force_x"]), 1.0)
-        for name in ("body_0_force_x", "body_1_force_y", "kinetic_energy"):
-            self.assertEqual(rows[name][-1], again[name][-1], name)
+        self.assert_continues(rows, scene, [*sets, "run.end_time=0.15", "output.times=[0.15]"], sets,
+                              ("body_0_force_x", "body_1_force_y", "kinetic_energy"))
 
     def test_body_that_leaves_the_domain_ends_the_run(self):
         """An oscillation of the period of the times at which the scene is checked."""
@@ -875,12 +848,7 @@ class Canopies(parachute_program.FlowTest):
         self.assertGreater(forces["spread"], 50)
         self.assertAlmostEqual(1, forces["explicit"] / forces["spread"], delta=0.07)
         # A run that is continued has the same bits.
-        words = ("--quiet", "--backend", "serial", "--out", "half")
-        self.expect(0, heavy, *words, sets=[*sets, method, "run.end_time=0.1", "output.times=[0.1]"])
-        self.expect(0, heavy, *words, "--restart", "half/restart.h5", sets=[*sets, method])
-        again, whole = self.history("half"), self.history("explicit")
-        for name in whole:
-            self.assertEqual(whole[name][-1], again[name][-1], name)
+        self.assert_continues(self.history("explicit"), heavy, [*sets, method, "run.end_time=0.1", "output.times=[0.1]"], [*sets, method])
 
     def test_canopy_that_leaves_the_domain_ends_the_run(self):
         free = CANOPY.replace("fixed = true", "fixed = false").replace("end_time = 0.2", "end_time = 5").replace(
@@ -938,16 +906,9 @@ class Canopies(parachute_program.FlowTest):
         self.assertAlmostEqual(mean, self.measured("canopy_0_airspeed_mean"), delta=1e-9)
         self.assertGreater(mean, 2.0)
         # A run that is continued from the middle of a block has the same bits.
-        half = self.folder / "half"
-        words = ("--quiet", "--backend", "serial", "--out", half)
         sets = [*sets[:-1], "output.times=[0.5, 1]"]
-        self.expect(0, self.write(free), *words, sets=[*sets, "run.end_time=0.5", "output.times=[0.5]"])
-        self.expect(0, self.write(free), *words, "--restart", half / "restart.h5", sets=sets)
-        again = self.history("half")
         self.expect(0, self.write(free), *QUIET, "--overwrite", sets=sets)
-        whole = self.history("out")
-        for name in whole:
-            self.assertEqual(whole[name][-1], again[name][-1], name)
+        self.assert_continues(self.history("out"), self.write(free), [*sets, "run.end_time=0.5", "output.times=[0.5]"], sets)
 
     def test_gravity_pulls_a_free_payload(self):
         still = CANOPY.replace("velocity = [0, 0, 8]", "velocity = [0, 0, 0]").replace("fixed = true", "fixed = false")
@@ -1112,11 +1073,8 @@ class Flags(parachute_program.FlowTest):
         self.assertEqual(rows["flag_0_tip_y"][row], 0.5 * (places[1 - 3 * tip[0]] + places[1 - 3 * tip[1]]))
         self.assertGreater(rows["flag_0_force_x"][-1], 0.0)
         self.assertLess(max(rows["flag_0_tip_x"]), 0.01 + 1.02)  # hardly longer than at rest
-        half = self.folder / f"{name}-half"
-        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, sets=[*sets, "run.end_time=0.5"])
-        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, "--restart", half / "restart.h5", sets=sets)
-        for column in ("flag_0_tip_y", "flag_0_force_y", "kinetic_energy"):
-            self.assertEqual(rows[column][-1], self.history(half.name)[column][-1], column)
+        self.assert_continues(rows, scene, [*sets, "run.end_time=0.5"], sets, ("flag_0_tip_y", "flag_0_force_y", "kinetic_energy"),
+                              f"{name}-half")
 
     def test_flag_that_leaves_the_domain_ends_the_run(self):
         run = self.expect(4, self.write(bad_flags.GOOD), *QUIET, sets=[
@@ -1128,35 +1086,16 @@ class Restart(parachute_program.FlowTest):
     SETS = ("run.end_time=1.5", "output.times=[0.3, 0.9, 1.5]", "output.restart_every=4", "grid.cells=[24, 20, 16]",
             "verify={energy_growth=1e9}")
 
-    def begin(self, *words):
-        """Starts a run in the folder `part`; returns once it has a restart file."""
-        line = gas_program.arguments(self.scene, "--quiet", "--out", "part", *words, sets=self.sets, program=self.program)
-        process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stderr=subprocess.PIPE)
-        self.addCleanup(process.stderr.close)
-        while process.poll() is None and not (self.folder / "part/restart.h5").exists():
-            time.sleep(0.001)
-        return process
-
-    def assert_same_runs(self):
-        whole, part = self.fields("whole"), self.fields("part")
-        self.assertEqual(whole.attributes, part.attributes)
-        self.assertEqual([], [path for path in whole.datasets if whole.datasets[path] != part.datasets[path]])
-        for name in ("history.csv", "fields.xdmf", "scene.toml"):
-            self.assertEqual((self.folder / "whole" / name).read_text(), (self.folder / "part" / name).read_text())
-        one, other = self.result("whole"), self.result("part")
-        for key in ("steps", "time", "dt_min", "dt_max", "status", "checks"):
-            self.assertEqual(one[key], other[key], key)
-
     def compare(self, backend, scheme, stop, code, scene=GUST):
-        self.scene, self.sets = self.write(scene), [*self.SETS, *scheme]
+        file, sets = self.write(scene), [*self.SETS, *scheme]
         shutil.rmtree(self.folder / "part", ignore_errors=True)
         words = ["--backend", backend]
-        self.expect(0, self.scene, "--quiet", "--out", "whole", "--overwrite", *words, sets=self.sets)
-        process = self.begin(*words)
+        self.expect(0, file, "--quiet", "--out", "whole", "--overwrite", *words, sets=sets)
+        process = self.begin(file, *words, sets=sets)
         stop(process)
         self.assertEqual(code, process.wait(timeout=60), process.stderr.read())
         (self.folder / "part/.lock").unlink(missing_ok=True)
-        self.expect(0, self.scene, "--quiet", "--out", "part", "--restart", "auto", *words, sets=self.sets)
+        self.expect(0, file, "--quiet", "--out", "part", "--restart", "auto", *words, sets=sets)
         self.assert_same_runs()
 
     def test_interrupted_run_equals_uninterrupted_run(self):
@@ -1238,7 +1177,3 @@ class Restart(parachute_program.FlowTest):
                 message = self.expect(6, self.scene, *QUIET, "--restart", "auto", sets=changed).stderr
                 self.assertTrue(message.endswith("it belongs to another scene\n"), message)
         self.expect(0, self.scene, *QUIET, "--restart", "auto", sets=[*sets, "run.cfl=0.2", "run.end_time=0.6"])
-
-
-if __name__ == "__main__":
-    unittest.main()

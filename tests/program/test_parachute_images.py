@@ -1,12 +1,6 @@
 # ctest-label: no-sanitizer
 """drogue-parachute: sheets that reach images beyond periodic sides, where contact does not act."""
 
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import parachute_program
 from parachute_program import DRIFT
 
@@ -80,7 +74,3 @@ class Images(parachute_program.FlowTest):
         self.assertGreater(sum(inside), 1.05 * one)
         for a, b in zip(inside, across):
             self.assertAlmostEqual(a, b, delta=1e-6 * one)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,138 +2,52 @@
 """drogue-parachute: steps that nothing in the scene names, of every kind of drive, against exact solutions."""
 
 import math
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import parachute_program
 from parachute_program import CANOPY, statistic
 
 QUIET = ("--quiet", "--backend", "serial", "--out", "out", "--overwrite")
 
-CHANNEL = """app = "parachute"
-[fluid]
-density = 1.0
-viscosity = 0.1
-[grid]
-cells = [4, 32, 1]
-domain = [[0, 1], [0, 1], [0, 1]]
-boundary = { x = "periodic", y = "wall" }
-[run]
-end_time = 0.7
-[output]
-history_every = 1
-"""
 
-CYLINDER = """
-[[body]]
-kind = "cylinder"
-axis = "z"
-centre = [0.5, 0.3, 0.5]
-radius = 0.1
-length = 1
-edge_length = 0.02
-"""
+def box(fluid, cells, domain, boundary, end, *tables):
+    """A box of fluid whose history has every step."""
+    return "\n".join(['app = "parachute"', f"fluid = {{ {fluid} }}", f"run.end_time = {end}", "output.history_every = 1",
+                      f"grid = {{ cells = {cells}, domain = {domain}, boundary = {{ {boundary} }} }}", *tables]) + "\n"
 
-SCHEMES = ("diffusion='crank-nicolson'", "time='ab2'", "time='rk3'")
+
+def sheet(kind, *entries):
+    return "\n".join(["[[body]]", f'kind = "{kind}"', *entries])
 
 
 def flow(*entries):
     return "flow={" + ",".join(entries) + "}"
 
 
-# A plate that moves all fluid of a channel.
-PISTON = """app = "parachute"
-[fluid]
-density = 1.2
-viscosity = 0
-[grid]
-cells = [16, 8, 8]
-domain = [[0, 1.6], [0, 0.8], [0, 0.8]]
-boundary = { x = "periodic", y = "periodic", z = "periodic" }
-[[body]]
-kind = "plate"
-normal = "x"
-centre = [0.83, 0.4, 0.4]
-lengths = [0.8, 0.8]
-edge_length = 0.05
-motion = { x = "0.002*(1-cos(20*pi*t))" }
-[run]
-end_time = 0.4
-[output]
-history_every = 1
-"""
+SCHEMES = ("diffusion='crank-nicolson'", "time='ab2'", "time='rk3'")
+PERIODIC = 'x = "periodic", y = "periodic", z = "periodic"'
 
+CHANNEL = box("density = 1.0, viscosity = 0.1", [4, 32, 1], [[0, 1], [0, 1], [0, 1]], 'x = "periodic", y = "wall"', 0.7)
+CYLINDER = sheet("cylinder", 'axis = "z"', "centre = [0.5, 0.3, 0.5]", "radius = 0.1", "length = 1", "edge_length = 0.02")
+
+# A plate that moves all fluid of a channel.
+PISTON = box("density = 1.2, viscosity = 0", [16, 8, 8], [[0, 1.6], [0, 0.8], [0, 0.8]], PERIODIC, 0.4,
+             sheet("plate", 'normal = "x"', "centre = [0.83, 0.4, 0.4]", "lengths = [0.8, 0.8]", "edge_length = 0.05",
+                   'motion = { x = "0.002*(1-cos(20*pi*t))" }'))
 
 # A porous plate that closes a channel with a pressure drop.
-CLOSED = """app = "parachute"
-[fluid]
-density = 1
-viscosity = 0.01
-[grid]
-cells = [24, 4, 4]
-domain = [[0, 2], [0, 1], [0, 1]]
-boundary = { x = "periodic", y = "periodic", z = "periodic" }
-[[body]]
-kind = "plate"
-normal = "x"
-centre = [1, 0.5, 0.5]
-lengths = [1, 1]
-edge_length = 0.05
-porosity = { law = "forchheimer" }
-[flow]
-pressure_drop = [200, 0, 0]
-[run]
-end_time = 2
-[output]
-history_every = 1
-"""
+CLOSED = box("density = 1, viscosity = 0.01", [24, 4, 4], [[0, 2], [0, 1], [0, 1]], PERIODIC, 2, "flow.pressure_drop = [200, 0, 0]",
+             sheet("plate", 'normal = "x"', "centre = [1, 0.5, 0.5]", "lengths = [1, 1]", "edge_length = 0.05",
+                   'porosity = { law = "forchheimer" }'))
 
 # A plate in fluid so viscous that its motion changes far more slowly than the fluid.
-VISCOUS = """app = "parachute"
-[fluid]
-density = 1
-viscosity = 100
-[grid]
-cells = [32, 32, 1]
-domain = [[-3, 3], [-3, 3], [0, 0.1875]]
-boundary = { x = "periodic", y = "periodic" }
-[[body]]
-kind = "plate"
-normal = "x"
-centre = [0, 0, 0.09375]
-lengths = [1, 0.1875]
-edge_length = 0.1
-motion = { x = "0.05*sin(10*t)" }
-[run]
-end_time = 0.07
-[output]
-history_every = 1
-"""
+VISCOUS = box("density = 1, viscosity = 100", [32, 32, 1], [[-3, 3], [-3, 3], [0, 0.1875]], 'x = "periodic", y = "periodic"', 0.07,
+              sheet("plate", 'normal = "x"', "centre = [0, 0, 0.09375]", "lengths = [1, 0.1875]", "edge_length = 0.1",
+                    'motion = { x = "0.05*sin(10*t)" }'))
 
 # A plate on a spring that moves 24.5 times its own mass.
-MOUNT = """app = "parachute"
-[fluid]
-density = 1.225
-viscosity = 0
-[grid]
-cells = [40, 4, 4]
-domain = [[0, 2], [0, 0.5], [0, 0.5]]
-boundary = { x = "periodic", y = "periodic", z = "periodic" }
-[[body]]
-kind = "plate"
-normal = "x"
-centre = [1, 0.25, 0.25]
-lengths = [0.5, 0.5]
-edge_length = 0.05
-mount = { mass = 0.1, stiffness = 40, offset = 0.03 }
-[run]
-end_time = 4
-[output]
-history_every = 1
-"""
+MOUNT = box("density = 1.225, viscosity = 0", [40, 4, 4], [[0, 2], [0, 0.5], [0, 0.5]], PERIODIC, 4,
+            sheet("plate", 'normal = "x"', "centre = [1, 0.25, 0.25]", "lengths = [0.5, 0.5]", "edge_length = 0.05",
+                  "mount = { mass = 0.1, stiffness = 40, offset = 0.03 }"))
 
 
 class Drives(parachute_program.FlowTest):
@@ -283,7 +197,7 @@ class Drives(parachute_program.FlowTest):
                 self.assertAlmostEqual(drop, rows["body_0_force_x"][-1], delta=0.3)
 
     def test_sheets_through_which_a_stream_is_prescribed(self):
-        stream = CLOSED.replace("[flow]\npressure_drop = [200, 0, 0]\n", "").replace("density = 1", "velocity = [1, 0, 0]\ndensity = 1").replace(
+        stream = CLOSED.replace("flow.pressure_drop = [200, 0, 0]\n", "").replace("density = 1", "velocity = [1, 0, 0], density = 1").replace(
             'x = "periodic"', 'x = ["inflow", "outflow"]')
         walls = ("grid.boundary.y='wall'", "grid.boundary.z='wall'", "grid.cells=[24,12,12]", "coupling={method='sharp'}")
         ergun = "body[0].porosity={law='ergun',void_fraction=0.4,thickness=0.01,grain=1e-5}"
@@ -353,16 +267,7 @@ class Drives(parachute_program.FlowTest):
             self.assertLess(max(rows["max_speed"]), 1e-12)
 
     def test_step_that_outgrows_its_bound_ends_the_run(self):
-        cylinder = """
-[[body]]
-kind = "cylinder"
-axis = "z"
-centre = [0.5, 0.5, 0.5]
-radius = 0.2
-length = 1
-edge_length = 0.02
-"""
-        for text in (CHANNEL, CHANNEL + cylinder):
+        for text in (CHANNEL, CHANNEL + CYLINDER.replace("0.3", "0.5").replace("0.1", "0.2")):
             said = self.expect(4, self.write(text), *QUIET, sets=["fluid.viscosity=2e-5", "grid.cells=[32,32,1]",
                                                                   "grid.boundary={x='wall',y='wall'}", "grid.wall_velocity={y_high=[1,0,0]}",
                                                                   "run.end_time=2", "run.dt=2"]).stderr
@@ -396,7 +301,3 @@ edge_length = 0.02
         for one, other in zip(*pressures, strict=True):
             for a, b in zip(one, other, strict=True):
                 self.assertAlmostEqual(a, b * 2.0 ** 80, delta=1e-9)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -13,8 +13,6 @@ import subprocess
 import sys
 import unittest
 
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import perf_program
 from rank_processes import LAUNCHER, RANK_ENVIRONMENT
@@ -37,11 +35,10 @@ class Record(perf_program.PerfTest):
         self.assertGreater(record["error"], 0.0)
 
     def test_run_prints_and_records_a_case(self):
-        text = self.expect(0, "run", "--quick", "--filter", "dense-loop/1024$", "--out", "run.jsonl").stdout
+        text, (record,) = self.recorded("run", "--quick", "--filter", "dense-loop/1024$")
         timer, case = text.splitlines()
         self.assertRegex(timer, r"^timer: \d+\.\d{3} us per work; a sample repeats works of less than 5 ms$")
         self.assertRegex(case, r"^gas-step/dense-loop/1024 +\d+\.\d+ us per step  \[.*\]  error \S+  passed$")
-        record, = self.records("run.jsonl")
         self.assertEqual(FIELDS | {"facts", "instrument"}, set(record))
         self.assert_timed(record, 30)
 
@@ -86,9 +83,8 @@ class Record(perf_program.PerfTest):
         self.assertIn("--cold", self.expect(2, "run", "--cold", "--baseline", ".").stderr)
 
     def test_gas_transfers_record_their_parts(self):
-        text = self.expect(0, "table", "transfers", "--quick", "--backend", "serial", "--out", "rows.jsonl").stdout
+        text, records = self.recorded("table", "transfers", "--quick", "--backend", "serial")
         self.assertIn("no pinned memory", text)
-        records = self.records("rows.jsonl")
         self.assertEqual([f"gas-transfers/serial/pageable/{cells}{ours}" for ours in ("", "/ours") for cells in (1024, 8192)],
                          [record["case"] for record in records])
         printed = {1024: (336, 118, 272, 726), 8192: (509, 363, 365, 1237, 25376)}
@@ -127,22 +123,18 @@ class Record(perf_program.PerfTest):
             self.assertAlmostEqual(2640, record["facts"]["cells"], delta=60)
 
     def test_records_flights_of_parachutes(self):
-        self.expect(0, "run", "--quick", "--filter", "^parachute-flight/serial/", "--out", "run.jsonl")
-        record, = self.records("run.jsonl")
+        _, (record,) = self.recorded("run", "--quick", "--filter", "^parachute-flight/serial/")
         self.assert_timed(record, 30, unit="ms of flight")
         self.assertEqual(("parachute-flight/serial/12x12x24/c9", "s per ms of flight"), (record["case"], record["unit"]))
 
     def test_records_contact_steps(self):
-        self.expect(0, "run", "--quick", "--filter", "^springs-contact/serial/", "--out", "run.jsonl")
-        record, = self.records("run.jsonl")
+        _, (record,) = self.recorded("run", "--quick", "--filter", "^springs-contact/serial/")
         self.assert_timed(record, 30)
         self.assertEqual("springs-contact/serial/640", record["case"])
 
     def test_fabric_transfers_record_each_number_of_substeps(self):
-        text = self.expect(0, "table", "transfers", "--app", "springs", "--quick", "--backend", "serial", "--out",
-                           "rows.jsonl").stdout
+        text, records = self.recorded("table", "transfers", "--app", "springs", "--quick", "--backend", "serial")
         self.assertIn("number of substeps that is not recorded", text)
-        records = self.records("rows.jsonl")
         self.assertEqual(["springs-transfers/serial/2641/1", "springs-transfers/serial/2641/10"],
                          [record["case"] for record in records])
         for record in records:
@@ -151,10 +143,9 @@ class Record(perf_program.PerfTest):
                              record["facts"]["thesis"])
 
     def test_machine_is_described_beside_that_of_the_dissertation(self):
-        text = self.expect(0, "table", "machine", "--backend", "serial", "--out", "rows.jsonl").stdout
+        text, (record,) = self.recorded("table", "machine", "--backend", "serial")
         for words in ("Table 4.1", "Xeon E5-2687W", "Quadro 6000", "GCC 4.7.2"):
             self.assertIn(words, text)
-        (record,) = self.records("rows.jsonl")
         host = record["facts"]["host"]
         self.assertEqual(host["cpu"], record["provenance"]["cpu"])
         self.assertIn(host["cpu"], text)
@@ -171,10 +162,8 @@ class Record(perf_program.PerfTest):
             self.assertIn(f"L{level} {len(sizes)} x " if len(set(sizes.values())) == 1 else f"L{level} ", text)
 
     def test_options_transfers_compare_both_schemes(self):
-        text = self.expect(0, "table", "transfers", "--app", "options", "--quick", "--backend", "serial", "--out",
-                           "rows.jsonl").stdout
+        text, records = self.recorded("table", "transfers", "--app", "options", "--quick", "--backend", "serial")
         self.assertIn("Tables 5.7 and 5.8", text)
-        records = self.records("rows.jsonl")
         self.assertEqual([f"options-transfers/serial/{method}/{count}/128/pageable"
                           for count in (1, 32, 64) for method in ("seed", "pide")],
                          [record["case"] for record in records])
@@ -403,8 +392,7 @@ class ProfiledOccupancy(perf_program.PerfTest):
 
 class WorkPrecision(perf_program.PerfTest):
     def test_records_are_valid(self):
-        text = self.expect(0, "work-precision", "--quick", "--backend", "serial", "--out", "runs.jsonl").stdout
-        records = self.records("runs.jsonl")
+        text, records = self.recorded("work-precision", "--quick", "--backend", "serial")
         self.assertEqual(len(records), len(text.splitlines()))
         errors = {}
         for record in records:
@@ -473,8 +461,7 @@ class WorkPrecisionOfSprings(perf_program.PerfTest):
 
 class PressureTable(perf_program.PerfTest):
     def test_records_are_valid(self):
-        text = self.expect(0, "table", "pressure", "--quick", "--backend", "serial", "--out", "rows.jsonl").stdout
-        records = self.records("rows.jsonl")
+        text, records = self.recorded("table", "pressure", "--quick", "--backend", "serial")
         self.assertEqual(len(records) + 2, len(text.splitlines()))
         self.assertEqual({"periodic", "walls", "tunnel"}, {record["facts"]["sides"] for record in records})
         for record in records:
@@ -494,8 +481,7 @@ class PressureTable(perf_program.PerfTest):
 
 class Scaling(perf_program.PerfTest):
     def test_runs_each_size_with_each_number_of_threads(self):
-        text = self.expect(0, "table", "scaling", "--app", "options", "--quick", "--out", "scaling.jsonl").stdout
-        records = self.records("scaling.jsonl")
+        text, records = self.recorded("table", "scaling", "--app", "options", "--quick")
         self.assertEqual(len(records), len(text.splitlines()) - 1)
         threads = {}
         for record in records:
@@ -590,8 +576,7 @@ class ProgramScaling(perf_program.PerfTest):
 
 class WorkPrecisionOfCanopies(perf_program.PerfTest):
     def test_records_are_valid(self):
-        self.expect(0, "work-precision", "--app", "parachute", "--quick", "--backend", "serial", "--out", "runs.jsonl")
-        records = self.records("runs.jsonl")
+        _, records = self.recorded("work-precision", "--app", "parachute", "--quick", "--backend", "serial")
         self.assertEqual(18, len(records))
         errors = {}
         for record in records:
@@ -668,8 +653,7 @@ class WorkPrecisionOfOptions(perf_program.PerfTest):
 
 class Tridiagonal(perf_program.PerfTest):
     def test_records_are_valid(self):
-        self.expect(0, "run", "--quick", "--filter", "^tridiagonal/serial", "--out", "run.jsonl")
-        records = self.records("run.jsonl")
+        _, records = self.recorded("run", "--quick", "--filter", "^tridiagonal/serial")
         self.assertEqual(["pttrf/64", "scan/64"], [record["facts"]["variant"] for record in records])
         for record in records:
             self.assertEqual(("passed", "s per batch", 64), (record["check"], record["unit"], record["facts"]["cells"]))
@@ -748,7 +732,3 @@ class Refusals(perf_program.PerfTest):
 
     def test_reports_an_unwritable_record_file(self):
         self.assertIn("no/such/folder", self.expect(6, "table", "occupancy", "--out", "no/such/folder/x").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,13 +4,9 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-import unittest
 from pathlib import Path
 
 SOURCE = Path(os.environ["DROGUE_SOURCE"])
-sys.path.insert(0, str(SOURCE / "tests/support"))
-
 import perf_program
 
 # The build of the history: a program whose times and error are those of the file `speed` of the commit.
@@ -81,7 +77,3 @@ class Bisect(perf_program.PerfTest):
         text = self.found("1e-3 0.5", "1e-3 0.5 0.5", "3e-3 0.5")
         self.assertIn("AMBIGUOUS", text)
         self.assertIn("only 'skip'ped commits left", text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,10 +4,6 @@ import json
 import os
 import re
 import subprocess
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 
@@ -283,7 +279,3 @@ class Compare(perf_program.PerfTest):
     def test_refuses_unknown_verdicts_and_missing_arguments(self):
         self.assertIn("slower", self.compare(2, [record(CASES[0])], "--fail-on", "slow").stderr)
         self.assertIn("NEW", self.expect(2, "compare", "old.jsonl").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

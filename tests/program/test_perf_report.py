@@ -6,10 +6,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 
@@ -128,7 +124,3 @@ class Report(perf_program.PerfTest):
         self.assertEqual(["a.jsonl", "b.jsonl"], sorted(file.name for file in self.folder.iterdir()))
         (self.folder / "b.jsonl").unlink()
         self.assertIn("cannot be made", self.expect(6, "report", ".", "--out", "a.jsonl/x").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

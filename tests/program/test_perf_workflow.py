@@ -5,10 +5,7 @@ import os
 import pathlib
 import re
 import subprocess
-import sys
 import textwrap
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 
@@ -42,7 +39,7 @@ class Workflow(perf_program.PerfTest):
         # The samples of a run spread by one per cent.
         record = {"schema": "drogue.perf/1", "case": "gas-step/serial/1024", "unit": "s per step", "bound": "", "median": 1.0,
                   "interval": [1.0, 1.0], "samples": "SAMPLES", "error": 1e-3, "check": "passed",
-                  "facts": {"backend": "serial", "cells": 1024}, "provenance": provenance}  # fmt: skip
+                  "facts": {"backend": "serial", "cells": 1024}, "provenance": provenance}
         samples = [f"SCALE0{7 * i % 10}e-3" for i in range(30)]
         line = json.dumps(record).replace('"SAMPLES"', f"[{', '.join(samples)}]")
         (self.folder / "template").write_text(line + "\n", encoding="utf-8")
@@ -62,7 +59,7 @@ class Workflow(perf_program.PerfTest):
         self.tree("old", old)
         self.tree("new", new)
         return {name: subprocess.run(["bash", "-e", "-c", text], cwd=self.folder, capture_output=True, text=True, check=False)
-                for name, text in steps().items()}  # fmt: skip
+                for name, text in steps().items()}
 
     def test_equal_trees_pass(self):
         done = self.run_steps("1.0", "1.0")
@@ -87,7 +84,3 @@ class Workflow(perf_program.PerfTest):
             for line in re.findall(rf"drogue-perf {command} (.*)", WORKFLOW):
                 for option in re.findall(r"--[\w-]+", line):
                     self.assertIn(option, words, command)
-
-
-if __name__ == "__main__":
-    perf_program.unittest.main()

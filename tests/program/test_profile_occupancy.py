@@ -3,9 +3,6 @@
 import os
 import pathlib
 import subprocess
-import sys
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import perf_program
 
@@ -56,7 +53,3 @@ class ProfileOccupancy(perf_program.PerfTest):
     def test_reports_a_build_without_cases_on_cuda(self):
         self.program("bin/ncu", NCU)
         self.assertIn("is this a build with CUDA", self.profile("no such case").stderr)
-
-
-if __name__ == "__main__":
-    perf_program.unittest.main()

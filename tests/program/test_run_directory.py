@@ -1,13 +1,8 @@
 # ctest-label: no-sanitizer
 """Run directories: their files, treatment of former runs, and terminal output."""
 
-import os
 import subprocess
-import sys
 import time
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 
@@ -179,7 +174,3 @@ class Output(gas_program.GasTest):
 
     def test_quiet_terminal_shows_nothing(self):
         self.assertEqual("", self.short_run("--quiet"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -23,9 +23,5 @@ class Smoke(unittest.TestCase):
                 done = subprocess.run(
                     [Path(os.environ["DROGUE_BIN"]) / program, *words],
                     cwd=folder, capture_output=True, text=True, check=False,
-                )  # fmt: skip
+                )
                 self.assertEqual((0, ""), (done.returncode, done.stderr))
-
-
-if __name__ == "__main__":
-    unittest.main()

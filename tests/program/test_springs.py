@@ -3,13 +3,8 @@
 
 import json
 import math
-import os
 import re
 import resource
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import springs_program
@@ -45,10 +40,7 @@ class CommandLine(springs_program.SpringsTest):
     def test_information_needs_no_scene(self):
         self.assertRegex(self.expect(0, "--version").stdout, r"^drogue-springs \d+\.\d+\.\d+\n")
         self.assertIn("--restart", self.expect(0, "--help").stdout)
-        lines = self.expect(0, "--list-scenes").stdout.splitlines()
-        self.assertEqual(springs_program.SCENES, [line.split()[0] for line in lines])
-        for line in lines:
-            self.assertRegex(line, r"^\S+  +\S.*\.( \[gpu\])?$")
+        self.assert_lists(springs_program.SCENES)
         self.assertEqual([], list(self.folder.iterdir()))
 
     def test_only_the_first_rank_prints(self):
@@ -70,9 +62,7 @@ class CommandLine(springs_program.SpringsTest):
     def test_printed_scenes_resolve_to_themselves(self):
         for scene in springs_program.SCENES:
             with self.subTest(scene):
-                printed = self.expect(0, scene, "--print-scene").stdout
-                again = self.write(printed, "printed.toml")
-                self.assertEqual(printed, self.expect(0, again, "--print-scene").stdout)
+                self.resolved(scene)
 
     def test_quiet_checks_print_no_quality_of_the_mesh(self):
         self.assertIn("triangles", self.expect(0, "drum", "--check").stdout)
@@ -615,7 +605,3 @@ class Failures(springs_program.SpringsTest):
         slope = math.log2(error(61, "area") / error(217, "area"))
         self.assertAlmostEqual(2.0, slope, delta=0.15)
         self.assertLess(math.log2(error(61, "equal") / error(217, "equal")), 1.6)
-
-
-if __name__ == "__main__":
-    unittest.main()

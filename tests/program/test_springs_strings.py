@@ -2,12 +2,7 @@
 
 import array
 import math
-import os
-import sys
-import unittest
 import xml.etree.ElementTree
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import springs_program
 
@@ -76,7 +71,3 @@ class Strings(springs_program.SpringsTest):
         scene = SCENE.replace(', "von_mises", "vertex_stress"', "")
         self.assertEqual([(2, 1), (1, 0)], self.strings_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nl 3 2 1\n", scene))
         self.assertEqual([("scene", "Polyline", "/mesh/strings")], [mesh[:3] for mesh in self.meshes()])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,16 +1,10 @@
 # ctest-label: no-sanitizer
 """Option --study: tables of errors and times over meshes and schemes."""
 
-import csv
-import json
 import os
 import signal
 import subprocess
-import sys
 import time
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import springs_program
@@ -25,10 +19,7 @@ class StudyTest(gas_program.GasTest):
         return run
 
     def tables(self, directory):
-        folder = self.folder / directory
-        with (folder / "study.csv").open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        return rows, json.loads((folder / "study.json").read_text(encoding="utf-8"))
+        return self.table(f"{directory}/study.csv"), self.document(f"{directory}/study.json")
 
     def assert_interrupted(self, scene, lists, sets, begun):
         line = gas_program.arguments(scene, "--backend", "serial", "--study", lists, "--out", "study", sets=sets,
@@ -257,7 +248,3 @@ class ReferenceOfARun(gas_program.GasTest):
                     sets=[*sets, "verify.reference.cells=400"])
         self.assertEqual(before, history.read_text())
         self.assertEqual(2, len(self.result("run")["checks"]))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -79,7 +79,3 @@ class Start(unittest.TestCase):
 
     def test_takes_ten_minutes_to_read(self):
         self.assertLessEqual(len(self.TEXT.split()), 1500)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,13 +1,8 @@
 # ctest-label: no-sanitizer
 """Runs that are interrupted after a whole step and continued equal uninterrupted runs bit for bit."""
 
-import os
 import signal
-import sys
 import time
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import restarting
@@ -80,7 +75,3 @@ class Interrupted(restarting.RestartTest):
         self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "whole", "--restart", "auto",
                     sets=restarting.CASES["sod"])
         self.assertEqual(before, (self.folder / "whole/history.csv").read_text())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,12 +1,6 @@
 # ctest-label: no-sanitizer
 """Runs that are killed and continued equal uninterrupted runs bit for bit."""
 
-import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-
 import gas_program
 import restarting
 
@@ -46,7 +40,3 @@ class Killed(restarting.RestartTest):
         folder = self.folder / name
         folder.mkdir()
         return folder
-
-
-if __name__ == "__main__":
-    unittest.main()

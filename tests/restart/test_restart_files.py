@@ -2,10 +2,6 @@
 
 import fcntl
 import os
-import sys
-import unittest
-
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 
@@ -238,7 +234,3 @@ class RestartFiles(gas_program.GasTest):
 
     def test_restart_and_overwrite_exclude_each_other(self):
         self.resume(2, "--restart", "auto", "--overwrite")
-
-
-if __name__ == "__main__":
-    unittest.main()

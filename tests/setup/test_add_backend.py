@@ -124,7 +124,3 @@ class Patches(unittest.TestCase):
         for text in ("a\n", "b\nb\n"):
             with self.assertRaisesRegex(AssertionError, "places"):
                 apply(" b\n+x\n", text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -50,7 +50,3 @@ class AddMiniApp(unittest.TestCase):
                 program = work / "build" / name / f"drogue-{name}"
                 shown = subprocess.run([program], capture_output=True, text=True, check=True).stdout
                 self.assertEqual(f"{work}/{name}/scenes\n", shown)
-
-
-if __name__ == "__main__":
-    unittest.main()

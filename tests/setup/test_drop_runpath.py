@@ -5,25 +5,21 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
+
+from folder_test import FolderTest
 
 SOURCE = Path(os.environ.get("DROGUE_SOURCE", Path(__file__).resolve().parents[2]))
 COMPILER = os.environ.get("CC", "cc")
 
 
 @unittest.skipUnless(shutil.which(COMPILER) and shutil.which("readelf"), "needs a C compiler and readelf")
-class DropRunpath(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.work = Path(folder.name)
-
+class DropRunpath(FolderTest):
     def library(self, *options):
-        (self.work / "a.c").write_text("int answer(void) { return 42; }\n", encoding="utf-8")
-        path = self.work / "liba.so"
-        subprocess.run([COMPILER, "-shared", "-fPIC", *options, "-o", path, self.work / "a.c"], check=True)
+        (self.folder / "a.c").write_text("int answer(void) { return 42; }\n", encoding="utf-8")
+        path = self.folder / "liba.so"
+        subprocess.run([COMPILER, "-shared", "-fPIC", *options, "-o", path, self.folder / "a.c"], check=True)
         return path
 
     def drop(self, path):
@@ -52,12 +48,8 @@ class DropRunpath(unittest.TestCase):
         self.assertEqual(before, path.read_bytes())
 
     def test_rejects_other_files(self):
-        path = self.work / "text"
+        path = self.folder / "text"
         path.write_text("no library", encoding="utf-8")
         result = self.drop(path)
         self.assertNotEqual(0, result.returncode)
         self.assertIn("no ELF file", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,21 +2,19 @@
 
 import os
 import subprocess
-import tempfile
-import unittest
 from pathlib import Path
+
+from folder_test import FolderTest
 
 SOURCE = Path(os.environ.get("DROGUE_SOURCE", Path(__file__).resolve().parents[2]))
 ALL_PACKAGES_THERE = 'shift 3; for name in "$@"; do echo "ii $name"; done'
 
 
-class Setup(unittest.TestCase):
+class Setup(FolderTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.fakes = Path(folder.name) / "fakes"
+        super().setUp()
+        self.fakes, self.deps = self.folder / "fakes", self.folder / "deps"
         self.fakes.mkdir()
-        self.deps = Path(folder.name) / "deps"
         self.fake("dpkg-query", ALL_PACKAGES_THERE)
         self.fake("apt-get", "exit 0")
 
@@ -29,9 +27,7 @@ class Setup(unittest.TestCase):
     def refused(self, *arguments, **environment):
         """The last line of standard error of a set-up that must fail."""
         settings = {
-            **os.environ,
-            "PATH": f"{self.fakes}:{os.environ['PATH']}",
-            "DROGUE_DEPS": str(self.deps),
+            **os.environ, "PATH": f"{self.fakes}:{os.environ['PATH']}", "DROGUE_DEPS": str(self.deps),
             **{name: str(value) for name, value in environment.items()},
         }
         result = subprocess.run(
@@ -101,7 +97,3 @@ class Setup(unittest.TestCase):
             self.fake(tool, f'exec {real} "$@"')
         (self.fakes / "apt-get").unlink()
         self.assertIn("use --system", self.refused(PATH=self.fakes))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -112,7 +112,3 @@ class Spack(unittest.TestCase):
         for arguments, _ in [*calls("define"), *calls("define_from_variant")]:
             if arguments[0] != "BUILD_TESTING":
                 self.assertRegex(CMAKE, rf"\b{arguments[0]}\b")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,5 +1,6 @@
 """Runs drogue-gas for tests of its command line."""
 
+import csv
 import functools
 import json
 import os
@@ -7,9 +8,10 @@ import pathlib
 import pty
 import re
 import subprocess
-import tempfile
+import time
 import unittest
 
+from folder_test import FolderTest
 from hdf5_file import Hdf5File
 
 BIN = pathlib.Path(os.environ["DROGUE_BIN"])
@@ -65,15 +67,15 @@ def final_values(directory, field="rho"):
     return file.values("/mesh/x"), file.values(f"/steps/{file.children('/steps')[-1]}/{field}")
 
 
-class GasTest(unittest.TestCase):
+class GasTest(FolderTest):
     """Test case whose programs run in an empty temporary folder."""
 
     program = PROGRAM
 
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+    def write(self, text, name="scene.toml"):
+        file = self.folder / name
+        file.write_text(text, encoding="utf-8")
+        return file
 
     def start(self, scene, *words, sets=(), **settings):
         return run(scene, *words, sets=sets, cwd=self.folder, program=self.program, **settings)
@@ -84,6 +86,34 @@ class GasTest(unittest.TestCase):
         self.assertEqual(code, process.returncode, f"{process.args}\n{process.stderr}")
         self.assertEqual(0 if code == 0 else 1, len(process.stderr.splitlines()), process.stderr)
         return process
+
+    def assert_lists(self, scenes):
+        """Asserts that the program lists these scenes, each with a sentence, and those of GPUs with a mark."""
+        lines = self.expect(0, "--list-scenes").stdout.splitlines()
+        self.assertEqual(scenes, [line.split()[0] for line in lines])
+        for line in lines:
+            self.assertRegex(line, r"^\S+  +\S.*\.( \[gpu\])?$")
+
+    def resolved(self, scene, *words, sets=()):
+        """Text of a printed scene, which must resolve to itself."""
+        printed = self.expect(0, scene, "--print-scene", *words, sets=sets).stdout
+        self.assertEqual(printed, self.expect(0, self.write(printed, "printed.toml"), "--print-scene").stdout)
+        return printed
+
+    def assert_all_pass(self, backend, scenes, checks=1, also=lambda reported: None):
+        """Asserts that shipped scenes, unchanged, meet their tolerances in at least `checks` checks; `also` gets each result."""
+        self.assertGreaterEqual(len(scenes), 7)
+        for scene in scenes:
+            with self.subTest(scene):
+                self.expect(0, scene, "--backend", backend)
+                reported = self.result(f"out/{scene}")
+                self.assertEqual(("ok", backend, scene), (reported["status"], reported["backend"], reported["scene"]))
+                self.assertGreaterEqual(len(reported["checks"]), checks)
+                also(reported)
+
+    def assert_within(self, reported):
+        """Asserts that the value of each check is at most its tolerance."""
+        self.assertTrue(all(check["passed"] and check["value"] <= check["tolerance"] for check in reported["checks"]))
 
     def terminal(self, scene, *words, sets=()):
         """Output of a run on a terminal, which must end with exit code 0."""
@@ -106,3 +136,34 @@ class GasTest(unittest.TestCase):
 
     def result(self, directory):
         return result(self.folder / directory)
+
+    def fields(self, directory):
+        return fields(self.folder / directory)
+
+    def history(self, directory):
+        """Columns of history.csv by name without units."""
+        with (self.folder / directory / "history.csv").open(encoding="utf-8", newline="") as file:
+            header, *rows = csv.reader(file)
+        return {name.split(" [")[0]: [float(row[k]) for row in rows] for k, name in enumerate(header)}
+
+    def begin(self, scene, *words, sets=()):
+        """Starts a run in the folder `part`; returns once it handles signals and has a restart file."""
+        line = arguments(scene, "--quiet", "--out", "part", *words, sets=sets, program=self.program)
+        process = subprocess.Popen(line, cwd=self.folder, env=ENVIRONMENT, stderr=subprocess.PIPE)
+        self.addCleanup(process.stderr.close)
+        awaited = [self.folder / "part/.lock", self.folder / "part/restart.h5"]
+        while process.poll() is None and not all(file.exists() for file in awaited):
+            time.sleep(0.001)
+        return process
+
+    def assert_same_runs(self):
+        """Asserts that the runs in the folders `whole` and `part` have the same files and results bit for bit."""
+        whole, part = self.fields("whole"), self.fields("part")
+        self.assertEqual(whole.attributes, part.attributes)
+        self.assertEqual(whole.datasets.keys(), part.datasets.keys())
+        self.assertEqual([], [path for path in whole.datasets if whole.datasets[path] != part.datasets[path]])
+        for name in ("history.csv", "fields.xdmf", "scene.toml"):
+            self.assertEqual((self.folder / "whole" / name).read_text(), (self.folder / "part" / name).read_text(), name)
+        one, other = self.result("whole"), self.result("part")
+        for key in ("steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter", "status"):
+            self.assertEqual(one.get(key), other.get(key), key)

@@ -1,6 +1,5 @@
 """Runs drogue-options for tests of its interface."""
 
-import csv
 import subprocess
 
 import gas_program
@@ -42,10 +41,9 @@ class OptionsTest(gas_program.GasTest):
         return self.expect(code, "price", self.write(content), "--backend", "serial", "--quiet", *words, **settings)
 
     def prices(self, name="prices.csv"):
-        with (self.folder / name).open(encoding="utf-8", newline="") as file:
-            reader = csv.DictReader(file)
-            self.assertIn(reader.fieldnames, (COLUMNS, COLUMNS + GREEKS))
-            return list(reader)
+        header = (self.folder / name).read_text(encoding="utf-8").splitlines()[0].split(",")
+        self.assertIn(header, (COLUMNS, COLUMNS + GREEKS))
+        return self.table(name)
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())

@@ -1,9 +1,6 @@
 """Runs drogue-parachute for tests of its interface."""
 
-import csv
-
 import gas_program
-from hdf5_file import Hdf5File
 
 PROGRAM = gas_program.BIN / "drogue-parachute"
 SCENES = sorted(path.stem for path in (gas_program.SOURCE / "miniapps/parachute/scenes").glob("*.toml"))
@@ -185,20 +182,15 @@ class FlowTest(gas_program.GasTest):
 
     program = PROGRAM
 
-    def write(self, text, name="scene.toml"):
-        path = self.folder / name
-        path.write_text(text, encoding="utf-8")
-        return path
+    def assert_continues(self, rows, scene, first, sets, columns=(), out="half"):
+        """Asserts that a run of the scene with sets `first`, continued with `sets`, ends like a run with the history `rows`."""
+        words = ("--quiet", "--backend", "serial", "--out", out)
+        self.expect(0, scene, *words, sets=first)
+        self.expect(0, scene, *words, "--restart", f"{out}/restart.h5", sets=sets)
+        again = self.history(out)
+        for name in columns or rows:
+            self.assertEqual(rows[name][-1], again[name][-1], name)
 
     def measured(self, name):
         """Quantity of a check in the run directory `out`."""
         return next(check["measured"] for check in self.result("out")["checks"] if check["name"] == name)
-
-    def fields(self, directory):
-        return Hdf5File(PROGRAM, self.folder / directory / "fields.h5")
-
-    def history(self, directory):
-        """Columns of history.csv by name without units."""
-        with (self.folder / directory / "history.csv").open(encoding="utf-8", newline="") as file:
-            header, *rows = csv.reader(file)
-        return {name.split(" [")[0]: [float(row[k]) for row in rows] for k, name in enumerate(header)}

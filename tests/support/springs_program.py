@@ -1,9 +1,6 @@
 """Runs drogue-springs for tests of its interface."""
 
-import csv
-
 import gas_program
-from hdf5_file import Hdf5File
 
 PROGRAM = gas_program.BIN / "drogue-springs"
 SCENES = sorted(path.stem for path in (gas_program.SOURCE / "miniapps/springs/scenes").glob("*.toml"))
@@ -62,17 +59,3 @@ class SpringsTest(gas_program.GasTest):
     """Test case whose programs run in an empty temporary folder."""
 
     program = PROGRAM
-
-    def write(self, text, name="scene.toml"):
-        file = self.folder / name
-        file.write_text(text, encoding="utf-8")
-        return file
-
-    def fields(self, directory):
-        return Hdf5File(PROGRAM, self.folder / directory / "fields.h5")
-
-    def history(self, directory):
-        """Columns of history.csv by name without units."""
-        with (self.folder / directory / "history.csv").open(encoding="utf-8", newline="") as file:
-            header, *rows = csv.reader(file)
-        return {name.split(" [")[0]: [float(row[k]) for row in rows] for k, name in enumerate(header)}

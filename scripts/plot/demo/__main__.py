@@ -34,7 +34,7 @@ BATCH = options.BATCH
 SHOWN = (
     "sod", "shu-osher", "blast", "catenary", "drum", "table-cloth", BATCH, "taylor-green-2d", "cavity", "shear-layer",
     "c9-flat",
-)  # fmt: skip
+)
 
 
 @dataclass
@@ -135,9 +135,7 @@ def _selected_runs(arguments) -> list[SceneRun]:
         runs.append(SceneRun(OPTIONS, BATCH, sentence, arguments.out / "options" / BATCH))
     unknown = set(arguments.scenes) - {run.name for run in runs}
     if unknown:
-        raise Failure(
-            USAGE, f"There is no scene {sorted(unknown)[0]}: the list is {', '.join(r.name for r in runs)}."
-        )
+        raise Failure(USAGE, f"There is no scene {sorted(unknown)[0]}: the list is {', '.join(r.name for r in runs)}.")
     if not runs:
         raise Failure(USAGE, f"{arguments.bin} holds no mini-app with scenes: build first.")
     if arguments.all:

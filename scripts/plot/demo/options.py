@@ -23,9 +23,7 @@ def largest_difference(prices: Path, others: Path, batch: Path) -> float:
     """Largest difference between the prices of two files, relative to the strike."""
     strikes = {name: float(row["strike"]) for name, row in _rows(batch).items()}
     one, other = _rows(prices), _rows(others)
-    return max(
-        abs(float(one[name]["price"]) - float(other[name]["price"])) / strikes[name] for name in strikes
-    )
+    return max(abs(float(one[name]["price"]) - float(other[name]["price"])) / strikes[name] for name in strikes)
 
 
 def run_batch(program: Path, run) -> None:
@@ -43,7 +41,7 @@ def run_batch(program: Path, run) -> None:
         [*price, "--method", "cos", "--out", folder / "cos.csv"],
         [program, "surface", PARAMETERS, "--quiet", "--strikes", STRIKES, "--maturities", MATURITIES,
          "--out", folder / "surface.csv"],
-    ]  # fmt: skip
+    ]
     for command in commands:
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
         if done.returncode != OK:
@@ -56,13 +54,8 @@ def run_batch(program: Path, run) -> None:
     except (KeyError, ValueError) as error:
         raise Failure(IO_ERROR, f"the prices in {folder} cannot be compared: {error}.") from None
     passed = difference <= TOLERANCE
-    run.result["checks"] = [
-        {"name": "cos_difference", "value": difference, "tolerance": TOLERANCE, "passed": passed}
-    ]
+    run.result["checks"] = [{"name": "cos_difference", "value": difference, "tolerance": TOLERANCE, "passed": passed}]
     run.result["steps"] = run.result.get("counts", {}).get("rows")
     file.write_text(json.dumps(run.result, indent=2) + "\n")
     if not passed:
-        run.exit_code, run.message = (
-            5,
-            f"cos_difference is {difference:.3g}, above its tolerance {TOLERANCE:g}.",
-        )
+        run.exit_code, run.message = (5, f"cos_difference is {difference:.3g}, above its tolerance {TOLERANCE:g}.")

@@ -12,7 +12,7 @@ def pictures_by_role(run) -> dict[str, Path]:
     Roles without a picture are absent. The history is the still of a run without fields.
     """
     roles = {"fields.png": "still", "fields.gif": "movie", "spectrum.png": "map", "profiles.png": "profiles",
-             "canopies.png": "forces", "forces.png": "forces"}  # fmt: skip
+             "canopies.png": "forces", "forces.png": "forces"}
     if not any(file.name == "fields.png" for file in run.pictures):
         roles["history.png"] = "still"
     found = {}
@@ -28,4 +28,4 @@ def write_page(file: Path, runs) -> Path:
     return html_page.write(
         file, "demo/page.html.j2", {"pictures": pictures_by_role, "check_label": check_label}, runs=runs,
         first=next((run.result for run in runs if run.result), {}), apps=list(dict.fromkeys(run.app for run in runs)),
-    )  # fmt: skip
+    )

@@ -23,14 +23,10 @@ def _row(kokkos: Record, hand_written: Record) -> list[str]:
     ratio = [facts.get(name) for name in ("ratio", "ratio_low", "ratio_high")]
     known = None not in ratio
     return [
-        kernel,
-        html_page.format_grouped(facts["cells"]),
-        _LAUNCHES.get(facts["launches"], facts["launches"]),
-        html_page.format_number(1e6 * kokkos.median),
-        html_page.format_number(1e6 * hand_written.median),
+        kernel, html_page.format_grouped(facts["cells"]), _LAUNCHES.get(facts["launches"], facts["launches"]),
+        html_page.format_number(1e6 * kokkos.median), html_page.format_number(1e6 * hand_written.median),
         f"{ratio[0]:.3f} [{ratio[1]:.3f} .. {ratio[2]:.3f}]" if known else "",
-        html_page.format_number(kokkos.error) if kokkos.error is not None else "",
-        _verdict(kokkos),
+        html_page.format_number(kokkos.error) if kokkos.error is not None else "", _verdict(kokkos),
     ]
 
 

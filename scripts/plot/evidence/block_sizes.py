@@ -43,10 +43,7 @@ def blocks_figure(title: str, machine: Machine, forms: dict[str, _Times], unit: 
     panel = (width - left) / len(forms) - gap
     figure.set_size_inches(width, height)
     figure.subplots_adjust(
-        left=left / width,
-        right=1 - gap / width,
-        bottom=bottom / height,
-        top=1 - top / height,
+        left=left / width, right=1 - gap / width, bottom=bottom / height, top=1 - top / height,
         wspace=gap / panel,
     )
     for axis, (form, data) in zip(axes[0], forms.items()):
@@ -56,12 +53,7 @@ def blocks_figure(title: str, machine: Machine, forms: dict[str, _Times], unit: 
             colour, marker = style.PALETTE[index % len(style.PALETTE)], "osD^vP*X"[index % 8]
             meshes, values = list(by_mesh), [1e6 * value for value in by_mesh.values()]
             axis.plot(
-                meshes,
-                values,
-                "-" + marker,
-                color=colour,
-                markersize=3.6,
-                markerfacecolor="white",
+                meshes, values, "-" + marker, color=colour, markersize=3.6, markerfacecolor="white",
                 linewidth=1.2,
             )
             ends.append(((meshes[-1], values[-1]), f"block {block}", colour))

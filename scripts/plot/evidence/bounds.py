@@ -127,11 +127,8 @@ def bounds_table(steps: list[Record], tops: dict[str, float]) -> Table | None:
         rows.append(
             [
                 f"{format_cells(record.facts['cells'])} {record.facts['variant']}".strip(),
-                html_page.format_number(1e6 * record.median),
-                *(at.get(name, "") for name in ("FP64", "issue")),
-                traffic,
-                at.get("launches", ""),
-                _verdict(record, found),
+                html_page.format_number(1e6 * record.median), *(at.get(name, "") for name in ("FP64", "issue")),
+                traffic, at.get("launches", ""), _verdict(record, found),
             ]
         )
     if not rows:

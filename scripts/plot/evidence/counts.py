@@ -25,4 +25,4 @@ def without_outdated_counts(records: list[Record]) -> tuple[list[Record], list[R
     return [
         replace(record, facts={name: fact for name, fact in record.facts.items() if name not in _COUNTS}) if id(record) in lost else record
         for record in records
-    ], outdated  # fmt: skip
+    ], outdated

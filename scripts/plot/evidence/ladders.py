@@ -40,7 +40,7 @@ def ladder_table(records: list[Record]) -> Table:
     columns = [
         ("rung", False), ("predicted (\u00b5s)", True), ("bound", False), ("measured (\u00b5s)", True), ("95 %", True),
         ("faster than the first", True), ("error", True),
-    ]  # fmt: skip
+    ]
     rows = []
     for record in records:
         low, high = (html_page.format_number(1e6 * end) for end in record.interval)
@@ -50,7 +50,7 @@ def ladder_table(records: list[Record]) -> Table:
                 record.facts["predicted_bound"], html_page.format_number(1e6 * record.median), Markup("{} .. {}").format(low, high),
                 html_page.format_number(records[0].median / record.median), html_page.format_number(record.error),
             ]
-        )  # fmt: skip
+        )
     return Table(columns, rows)
 
 

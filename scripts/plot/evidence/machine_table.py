@@ -43,7 +43,7 @@ def _rows(record: Record) -> list[list[str]]:
     names = {
         "cpu": "CPU", "caches": "caches", "gpu": "GPU", "gpu_memory": "memory of the GPU", "registers": "registers",
         "os": "OS", "compiler": "compiler", "cuda": "CUDA",
-    }  # fmt: skip
+    }
     return [[name, str(printed.get(key, "")), here.get(key, "")] for key, name in names.items()]
 
 

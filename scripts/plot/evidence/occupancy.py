@@ -25,7 +25,7 @@ def printed_table(records: list[Record]) -> Table:
     names = {
         "shared_bytes": "shared B", "blocks_by_registers": "by registers", "blocks_by_shared_memory": "by shared B",
         "blocks_by_limit": "by limit", "blocks": "blocks", "threads_sm": "threads", "threads_device": "of the device",
-    }  # fmt: skip
+    }
     rows = []
     for record in records:
         printed = record.facts["thesis"]
@@ -46,7 +46,7 @@ def steps_table(architecture: str, records: list[Record]) -> Table:
         ("block", True), ("slots", True), ("registers", True), ("shared B", True), ("by registers", True),
         ("by shared B", True), ("by threads", True), ("by limit", True), ("blocks", True), ("requested", True),
         ("% full", True), ("check", False),
-    ]  # fmt: skip
+    ]
     rows = []
     for record in records:
         facts = record.facts
@@ -77,7 +77,7 @@ def profile_table(records: list[Record]) -> Table:
         ("kernel", False), ("device", False), ("block", True), ("registers", True), ("shared B", True),
         ("model", True), ("ncu", True), ("mean", True), ("% full", True), ("limit", False),
         ("check", False),
-    ]  # fmt: skip
+    ]
     rows = []
     for record in sorted(records, key=lambda record: record.check != "failed"):
         facts, achieved = record.facts, record.facts.get("achieved", {})
@@ -89,7 +89,7 @@ def profile_table(records: list[Record]) -> Table:
                 str(achieved.get("blocks", "")), f"{mean:.2f}" if isinstance(mean, int | float) else "",
                 _percent(record), facts.get("limited_by", "").replace("shared_memory", "shared B"), _check(record),
             ]
-        )  # fmt: skip
+        )
     note = (
         f"The kernels ran on {_devices(records)}; the processor in the title computed the model. Model and ncu: resident "
         "blocks, predicted and by ncu's limits of the launch; mean: by counters, of the largest launch. Contradictions come first."

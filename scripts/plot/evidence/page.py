@@ -11,7 +11,7 @@ from ..options import transfers as options_transfers
 from . import (
     abstraction, block_sizes, bounds, ladders, machine_table, occupancy, roofline, scaling, steps, transfers,
     work_precision_section,
-)  # fmt: skip
+)
 from .perf_record import Machine, Record
 from .records import Evidence
 from .section import Cell, Section
@@ -83,7 +83,7 @@ def _machine_sections(evidence: Evidence, machine: Machine) -> list[Section]:
 _SECTIONS = {
     "gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections,
     "ladder": _ladder_sections, "machine": _machine_sections,
-}  # fmt: skip
+}
 
 
 # Kinds that drogue-perf prints as a table of its own.
@@ -96,9 +96,7 @@ def _counted(count: int, words: str, plural: str) -> str:
 
 def _cases(records: list[Record]) -> str:
     """Case, machine and error of each record."""
-    errors = [
-        f"error {record.error:.3g}" if record.error is not None else "no error known" for record in records
-    ]
+    errors = [f"error {record.error:.3g}" if record.error is not None else "no error known" for record in records]
     return "; ".join(f"{line.case} on {line.machine.name} ({error})" for line, error in zip(records, errors))
 
 
@@ -192,4 +190,4 @@ def _write_app(app: str, evidence: Evidence, out: Path, form: str, dpi: int) -> 
     yield html_page.write(
         out / f"{app}.html", "evidence/page.html.j2", pictures.filters, app=app, machines=machines, notes=notes(evidence),
         count=len(evidence.records), timed=app != "machine",
-    )  # fmt: skip
+    )

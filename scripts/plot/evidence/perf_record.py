@@ -22,9 +22,7 @@ _FACTS = {
         "problem": str, "backend": str, "advection": str, "time_scheme": str, "pressure": str, "diffusion": str,
         "cells": int,
     },
-    "parachute-solution": {
-        "problem": str, "backend": str, "kernel": str, "time": str, "edge": str, "cells": int,
-    },
+    "parachute-solution": {"problem": str, "backend": str, "kernel": str, "time": str, "edge": str, "cells": int},
     "ceiling": {"backend": str},
     "gas-transfers": {"backend": str, "memory": str, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float},
     "gas-block": {"backend": str, "form": str, "block": int, "cells": int},
@@ -50,23 +48,15 @@ _FACTS = {
     "tridiagonal": {},
     "abstraction": {"backend": str, "cells": int, "version": str, "launches": str},
     "scaling": {"backend": str, "cells": int, "threads": int},
-    "ladder": {
-        "ladder": str, "rung": str, "backend": str, "cells": int, "predicted_s": float, "predicted_bound": str,
-    },
+    "ladder": {"ladder": str, "rung": str, "backend": str, "cells": int, "predicted_s": float, "predicted_bound": str},
     "machine": {"host": dict},
     "occupancy": {
         "architecture": str, "block": int, "registers": int, "shared_bytes": float, "blocks_by_registers": float,
         "blocks_by_shared_memory": float, "blocks_by_threads": float, "blocks_by_limit": float, "blocks": float,
         "threads_sm": float, "occupancy": float,
     },
-}  # fmt: skip
-_NAMED_BY_CASE = (
-    "gas-step",
-    "springs-step",
-    "springs-contact",
-    "options",
-    "tridiagonal",
-)  # facts in the case name
+}
+_NAMED_BY_CASE = ("gas-step", "springs-step", "springs-contact", "options", "tridiagonal")  # facts in the case name
 # Kinds of all mini-apps: the word of the case that names the kernel.
 _PLACE_OF_KERNEL = {"abstraction": 2, "scaling": 1}
 _APPS = ("gas", "springs", "options", "flow")
@@ -105,7 +95,7 @@ _OPTIONAL = {
     "springs-transfers": {"thesis": dict, "memory": str, "cpu_s": float},
     "options-solution": {"exercise": str, "grids": str, "intervals_a_step": str, "status": str, "message": str},
     "options-transfers": {"thesis": dict, "memory": str, "cpu_s": float},
-}  # fmt: skip
+}
 KINDS = frozenset(_FACTS)
 # Ratios and products of numbers within these limits neither overflow nor vanish.
 _LARGEST, _LARGEST_COUNT = 1e100, 2**63 - 1
@@ -238,11 +228,7 @@ def _times(document: dict, place: str) -> tuple[float, tuple[float, float]]:
     median, interval = document.get("median"), document.get("interval")
     if not _is_time(median):
         raise Failure(INVALID, f"{place}: the median of {document['case']} is no time.")
-    if (
-        not isinstance(interval, list)
-        or len(interval) != 2
-        or not all(_is_time(end) for end in interval)
-    ):
+    if (not isinstance(interval, list) or len(interval) != 2 or not all(_is_time(end) for end in interval)):
         raise Failure(INVALID, f"{place}: the interval of {document['case']} is not two times.")
     return median, (interval[0], interval[1])
 
@@ -256,9 +242,7 @@ def parse(line: str, place: str) -> Record:
     if not isinstance(document, dict):
         raise Failure(INVALID, f"{place}: the line is no JSON object.")
     if document.get("schema") != SCHEMA:
-        raise Failure(
-            INVALID, f"{place}: the schema is '{document.get('schema', '')}'; drogue-plot reads {SCHEMA}."
-        )
+        raise Failure(INVALID, f"{place}: the schema is '{document.get('schema', '')}'; drogue-plot reads {SCHEMA}.")
     case, check = document.get("case"), document.get("check")
     facts, provenance = document.get("facts", {}), document.get("provenance", {})
     if not isinstance(case, str) or not case:

@@ -39,14 +39,8 @@ class Evidence:
             return [record for record in records if record.app == app]
 
         return Evidence(
-            self.folder,
-            own(self.records),
-            own(self.failed_runs),
-            own(self.failed_checks),
-            self.unknown_kinds,
-            own(self.untimed),
-            own(self.superseded),
-            own(self.cold),
+            self.folder, own(self.records), own(self.failed_runs), own(self.failed_checks),
+            self.unknown_kinds, own(self.untimed), own(self.superseded), own(self.cold),
             self.ceilings or [record for record in self.records if record.kind == "ceiling"],
             own(self.outdated),
         )

@@ -24,7 +24,7 @@ _WIDTH, _HEIGHT, _MARGIN = 180, 16, 3
 _APPS = {
     "gas": "Gas dynamics", "springs": "Cloth and strings", "options": "Options", "flow": "Flow and parachutes",
     "ladder": "Ladders", "machine": "Machine and occupancy",
-}  # fmt: skip
+}
 
 
 def strip(samples: tuple[float, ...]) -> str:
@@ -66,7 +66,7 @@ def samples_table(records: list[Record], drawn: bool) -> Table:
     columns = [
         ("case", False), ("median", True), ("interval", True), ("of", False), ("error", True), ("check", False),
         *([("samples, 0 to twice the median", False)] if drawn else []),
-    ]  # fmt: skip
+    ]
     note = "" if drawn else f"Samples are drawn for up to {MOST_STRIPS} records."
     folded = len(records) > _MOST_OPEN_ROWS
     return Table(columns, [_row(record, drawn) for record in records], title="Records" if folded else "", note=note, folded=folded)
@@ -80,7 +80,7 @@ def summary_table(records: list[Record]) -> Table:
     columns = [
         ("kind", False), ("backend", False), ("records", True), ("failed", True), ("least median", True),
         ("largest median", True), ("largest error", True),
-    ]  # fmt: skip
+    ]
     rows = []
     for (kind, backend), own in groups.items():
         medians = [median(record.samples) for record in own if record.samples and record.check == "passed"]
@@ -92,7 +92,7 @@ def summary_table(records: list[Record]) -> Table:
                 html_page.format_seconds(min(medians)) if medians else "", html_page.format_seconds(max(medians)) if medians else "",
                 html_page.format_number(max(errors)) if errors else "not finite",
             ]
-        )  # fmt: skip
+        )
     return Table(columns, rows, note="records.csv, which drogue-perf report writes beside this page, lists every record.")
 
 
@@ -153,10 +153,10 @@ def write(evidence: Evidence, file: Path, dpi: int, verdicts: Path | None = None
             "machines": machines, "dates": sorted({record.run_id[0][:10] for record in evidence.everything} - {""}),
             "notes": page.notes(evidence), "folder": evidence.folder.resolve().name, "count": count,
             "drawn": count <= MOST_STRIPS, "verdicts": read_verdicts(verdicts) if verdicts else None,
-        }  # fmt: skip
+        }
         written = html_page.write(file, "evidence/report.html.j2", pictures.filters, apps=apps, **values)
         if written.stat().st_size < MOST_BYTES:
             return written
         apps = [(app, name, [(machine, [_shortened(s) for s in found]) for machine, found in sections])
-                for app, name, sections in apps]  # fmt: skip
+                for app, name, sections in apps]
         return html_page.write(file, "evidence/report.html.j2", pictures.filters, apps=apps, **values)

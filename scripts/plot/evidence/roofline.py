@@ -13,7 +13,7 @@ from .section import Picture, Section, Table, format_cells
 _COMMAND = "drogue-perf run --filter '^(ceiling|gas-step)' --out FILE.jsonl"
 _BYTES = {
     "memory": ("#7A7A7A", "memory"), "l3": ("#8E8E8E", "L3"), "l2": ("#A4A4A4", "L2"), "cache": ("#B9B9B9", "cache"),
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -58,18 +58,13 @@ def _draw_ceilings(axes, tops: dict[str, float], low: float, high: float) -> Non
         axes.annotate(
             f"FP32 {scaled(tops['fp32'], 'FLOP/s')}", (high, tops["fp32"]), (0, 4), textcoords="offset points",
             ha="right", fontsize=8, color=style.MUTED,
-        )  # fmt: skip
+        )
     if "fp64" in tops:
         first = peak / max((tops[name] for name in _BYTES if name in tops), default=np.inf)
         axes.plot([max(first, low), high], [peak, peak], color=style.INK, linewidth=1.2)
         axes.annotate(
-            f"FP64 {scaled(peak, 'FLOP/s')}",
-            (high, peak),
-            (0, -4) if above else (0, 4),
-            textcoords="offset points",
-            ha="right",
-            va="top" if above else "baseline",
-            fontsize=8,
+            f"FP64 {scaled(peak, 'FLOP/s')}", (high, peak), (0, -4) if above else (0, 4),
+            textcoords="offset points", ha="right", va="top" if above else "baseline", fontsize=8,
         )
 
 
@@ -84,7 +79,7 @@ def _label_slopes(axes, tops: dict[str, float], low: float) -> None:
             f"{_BYTES[name][1]} {scaled(tops[name], 'B/s')}", (1.15 * low, tops[name] * 1.15 * low),
             (-3, 3) if above else (3, -3), textcoords="offset points", rotation=angle, rotation_mode="anchor",
             va="bottom" if above else "top", fontsize=8, color=style.MUTED,
-        )  # fmt: skip
+        )
 
 
 def roofline_figure(title: str, machine: Machine, tops: dict[str, float], found: list[Point]):
@@ -96,9 +91,7 @@ def roofline_figure(title: str, machine: Machine, tops: dict[str, float], found:
     figure, axes = plt.subplots()
     width, height = max(left + 3.7 + right, style.subtitle_width(figure, details)), bottom + 2.5 + top
     figure.set_size_inches(width, height)
-    figure.subplots_adjust(
-        left=left / width, right=1 - right / width, bottom=bottom / height, top=1 - top / height
-    )
+    figure.subplots_adjust(left=left / width, right=1 - right / width, bottom=bottom / height, top=1 - top / height)
     speed = max((tops[name] for name in _BYTES if name in tops), default=None)
     ridge = [tops["fp64"] / speed] if speed and "fp64" in tops else []
     middle = ridge + [point.intensity for point in found] or [1.0]
@@ -136,10 +129,8 @@ def _share_table(tops: dict[str, float], found: list[Point]) -> Table:
     for point in found:
         moved = point.rate / point.intensity
         row = [
-            html_page.format_grouped(point.cells),
-            html_page.format_number(point.intensity),
-            scaled(point.rate, "FLOP/s"),
-            scaled(moved, "B/s"),
+            html_page.format_grouped(point.cells), html_page.format_number(point.intensity),
+            scaled(point.rate, "FLOP/s"), scaled(moved, "B/s"),
         ]
         shares = [point.rate / tops["fp64"]] if "fp64" in tops else []
         shares += [moved / tops[name] for name in _BYTES if name in tops]
@@ -166,8 +157,6 @@ def sections(machine: Machine, records: list[Record], steps: list[Record]) -> li
         bound = bounds_table(beside, tops)
         tables = [ceiling_table(tops, backend, note)] + ([_share_table(tops, shown)] if shown else [])
         tables += [bound] if bound else []
-        used = own + [
-            record for record in beside if record.facts.get("flops") and not record.facts["variant"]
-        ]
+        used = own + [record for record in beside if record.facts.get("flops") and not record.facts["variant"]]
         found.append(Section(title, _COMMAND, used, [picture], tables))
     return found

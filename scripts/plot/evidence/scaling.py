@@ -31,12 +31,8 @@ def sections(records: list[Record]) -> list[Section]:
         share = first and (first / record.median if mode == "weak" else first / record.median / count)
         rows.append(
             [
-                kernel,
-                BACKENDS.get(backend, backend),
-                mode,
-                html_page.format_grouped(record.facts["cells"]),
-                f"{count} {kind if count > 1 else kind[:-1]}",
-                html_page.format_number(1e6 * record.median),
+                kernel, BACKENDS.get(backend, backend), mode, html_page.format_grouped(record.facts["cells"]),
+                f"{count} {kind if count > 1 else kind[:-1]}", html_page.format_number(1e6 * record.median),
                 f"{100 * share:.0f} %" if share else "",
             ]
         )

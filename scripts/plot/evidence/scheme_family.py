@@ -36,15 +36,11 @@ class SchemeFamily:
     competitor: str = ""
     mesh_unit: str = "cells"
     time_label: str = "time to solution (s)"
-    setting_labels: Mapping[str, str] = field(
-        default_factory=dict
-    )  # of settings whose label is not their key
+    setting_labels: Mapping[str, str] = field(default_factory=dict)  # of settings whose label is not their key
     row_labels: Mapping[str, str] = field(default_factory=dict)  # of the third setting, where they differ
     published: tuple[PublishedResult, ...] = ()
     note: str = ""
-    planar_schemes: tuple[
-        str, ...
-    ] = ()  # schemes whose mesh size grows with the square of the edges per axis
+    planar_schemes: tuple[str, ...] = ()  # schemes whose mesh size grows with the square of the edges per axis
     target_errors: tuple[float, ...] = ()  # empty: derived from the competitor's errors
     # Default settings by (problem, backend), where the usual ones do not exist.
     other_defaults: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)

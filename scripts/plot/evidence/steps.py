@@ -11,19 +11,8 @@ from ..gas import goals as gas_goals
 from ..options import goals as options_goals
 from ..springs import goals as springs_goals
 from .goal import (
-    BATCH_US,
-    CELL_NS,
-    EFFICIENCY,
-    FLIGHT_MS,
-    HIGHER_IS_BETTER,
-    OPTION_RATE,
-    OPTION_US,
-    RATE,
-    SPEED_UP,
-    STEP_US,
-    TIME_RATIO,
-    VERTEX_NS,
-    Goal,
+    BATCH_US, CELL_NS, EFFICIENCY, FLIGHT_MS, HIGHER_IS_BETTER, OPTION_RATE, OPTION_US, RATE, SPEED_UP,
+    STEP_US, TIME_RATIO, VERTEX_NS, Goal,
 )
 from .perf_record import BACKENDS, Record
 from .section import Cell, Section, Table, format_cells
@@ -169,37 +158,28 @@ def _goal_row(goal: Goal, record: Record, by_case: dict[tuple, Record]) -> list[
     values = measured(goal, record, by_case.get((goal.compared_case, *record.run_id)))
     if values is None:
         return [
-            _case_label(goal, record),
-            goal.measure,
-            "",
-            *limits,
+            _case_label(goal, record), goal.measure, "", *limits,
             f"{_short(goal.compared_case)} is not in the same run",
         ]
     words = verdict(goal, values[0])
     return [
         _case_label(goal, record), goal.measure, _format_interval(values), *limits,
         Cell(words, "bad" if words.startswith("missed") else "good"),
-    ]  # fmt: skip
+    ]
 
 
 def goal_table(records: list[Record]) -> Table | None:
     """Table of all goals that apply to the records, which are of one kind; None if there is none."""
     by_case = {(record.case, *record.run_id): record for record in records}
     goals = _KINDS[records[0].kind].goals
-    rows = [
-        _goal_row(goal, record, by_case) for goal in goals for record in records if _applies_to(goal, record)
-    ]
+    rows = [_goal_row(goal, record, by_case) for goal in goals for record in records if _applies_to(goal, record)]
     columns = ["what", "measure", "measured", "probe", "goal", "stretch", "verdict"]
     note = (
         "Measured: median and its 95 % interval. Probe: a small hand-written CUDA program, which is no part of this "
         "project. The verdict is that of the median; a goal that is met several times over was too easy to state anything."
     )
     numeric = {"measured", "probe", "goal", "stretch"}
-    return (
-        Table([(name, name in numeric) for name in columns], rows, "Against the goals", note)
-        if rows
-        else None
-    )
+    return (Table([(name, name in numeric) for name in columns], rows, "Against the goals", note) if rows else None)
 
 
 def _traffic_bound(record: Record, bandwidths: dict[str, float]) -> str:
@@ -225,7 +205,7 @@ def step_table(records: list[Record], bandwidths: dict[str, float] | None = None
                 html_page.format_number(kind.scales[1] * cells / seconds[0]),
                 *([html_page.format_number(record.error)] if kind.errors else []),
                 *([_traffic_bound(record, bandwidths)] if bandwidths else []),
-            ]  # fmt: skip
+            ]
         )
     columns = [("backend", False), ("variant", False), (kind.mesh, True)]
     columns += [(name, True) for name in (kind.time, *kind.per_mesh, *(["error"] if kind.errors else []))]

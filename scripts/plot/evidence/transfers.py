@@ -46,25 +46,14 @@ _KINDS = {
         compared=True,
     ),
     "springs-transfers": _Kind(
-        app="springs",
-        prefix="springs-transfers",
-        mesh="vertices",
-        source="between two copies",
-        panels="[Shi], and of each number of steps between two copies",
-        table="5.6",
+        app="springs", prefix="springs-transfers", mesh="vertices", source="between two copies",
+        panels="[Shi], and of each number of steps between two copies", table="5.6",
         note="Its steps took a number of substeps that is not recorded, so that no ratio to it means anything.",
-        unit="\u00b5s from host to host",
-        compared=False,
+        unit="\u00b5s from host to host", compared=False,
     ),
     "parachute-transfers": _Kind(
-        app="parachute",
-        prefix="parachute-transfers",
-        mesh="cells",
-        source="between two copies",
-        panels="each number of steps between two copies",
-        table="",
-        note="",
-        unit="\u00b5s per step",
+        app="parachute", prefix="parachute-transfers", mesh="cells", source="between two copies",
+        panels="each number of steps between two copies", table="", note="", unit="\u00b5s per step",
         compared=False,
     ),
 }
@@ -147,9 +136,7 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
                 panel.tick_params(labelleft=False)
     legend = [("\u25a0", words, _COLOURS[part]) for part, words in _PARTS.items()]
     chart_width = 0.7 + (0.5 + 0.33 * max(len(meshes), 3)) * columns
-    width = max(
-        chart_width, style.heading_width(figure, title, legend), style.subtitle_width(figure, details)
-    )
+    width = max(chart_width, style.heading_width(figure, title, legend), style.subtitle_width(figure, details))
     figure.set_size_inches(width, height)
     for empty in axes.flat[count:]:
         empty.set_visible(False)
@@ -166,7 +153,7 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
                 style.format_number(row["total"]), (index, top), (0, 2), textcoords="offset points", ha="center",
                 fontsize=6.5,
                 color=style.MUTED,
-            )  # fmt: skip
+            )
         panel.set_title(source, pad=8)
     if cores:
         _draw_core(axes.flat[len(panels)], meshes, cores)
@@ -185,19 +172,13 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
 def transfers_table(records: list[Record]) -> Table:
     """Parts and total by mesh and source, us."""
     found, kind = times(records), _KINDS[records[0].kind]
-    columns = [(kind.mesh, True), (kind.source, False)] + [
-        (f"{words} (\u00b5s)", True) for words in _NAMES.values()
-    ]
+    columns = [(kind.mesh, True), (kind.source, False)] + [(f"{words} (\u00b5s)", True) for words in _NAMES.values()]
     on_core = any("cpu" in parts for parts in found.values())
     columns += [("one core (\u00b5s)", True)] if on_core else []
     columns += [("times as fast as [Shi]", True)] if kind.compared else []
     rows = []
     for (cells, source), parts in found.items():
-        row = [
-            html_page.format_grouped(cells),
-            source,
-            *(html_page.format_number(parts[part]) for part in _NAMES),
-        ]
+        row = [html_page.format_grouped(cells), source, *(html_page.format_number(parts[part]) for part in _NAMES)]
         if on_core:
             row.append(html_page.format_number(parts["cpu"]) if "cpu" in parts else "")
         thesis = found.get((cells, _THESIS))

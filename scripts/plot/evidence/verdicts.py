@@ -43,7 +43,7 @@ def read(file: Path) -> Verdicts:
     columns = [
         ("case", False), ("verdict", False), ("times as long", True), ("95 % interval", True), ("old", True), ("new", True),
         ("of", False),
-    ]  # fmt: skip
+    ]
     folded = len(cases) > _MOST_OPEN_ROWS
     table = Table(columns, [_row(case) for case in cases], title="Cases" if folded else "", folded=folded)
     return Verdicts(document["old"], document["new"], document["summary"], table)

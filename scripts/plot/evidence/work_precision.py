@@ -73,11 +73,7 @@ class TimeToError:
 def scheme_of(record: Record) -> Scheme:
     """Scheme of a work-precision record."""
     family, facts = family_of(record), record.facts
-    key = (
-        "z2"
-        if facts[family.scheme_fact] == "z" and facts.get("weno_power", 1) == 2
-        else facts[family.scheme_fact]
-    )
+    key = ("z2" if facts[family.scheme_fact] == "z" and facts.get("weno_power", 1) == 2 else facts[family.scheme_fact])
     settings = tuple(facts.get(name) or ("double" if name == "precision" else "") for name in family.settings)
     return Scheme(family, facts["backend"], key, settings, family.defaults_for(facts["problem"], facts["backend"]))
 
@@ -87,9 +83,7 @@ def curves(records: list[Record]) -> list[Curve]:
     points: dict[Scheme, list[tuple[float, float, float]]] = {}
     for record in records:
         if record.error > 0:
-            points.setdefault(scheme_of(record), []).append(
-                (record.facts["cells"], record.median, record.error)
-            )
+            points.setdefault(scheme_of(record), []).append((record.facts["cells"], record.median, record.error))
 
     def sort_key(scheme: Scheme):
         order = list(BACKENDS), list(scheme.family.scheme_names)
@@ -98,9 +92,7 @@ def curves(records: list[Record]) -> list[Curve]:
             for names, name in zip(order, (scheme.backend, scheme.key))
         )
         labels = list(scheme.family.setting_labels)
-        settings = (
-            (labels.index(value) if value in labels else len(labels), value) for value in scheme.settings
-        )
+        settings = ((labels.index(value) if value in labels else len(labels), value) for value in scheme.settings)
         return *known, not scheme.has_default_settings, tuple(settings)
 
     return [Curve(scheme, np.array(sorted(points[scheme]))) for scheme in sorted(points, key=sort_key)]

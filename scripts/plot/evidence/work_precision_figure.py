@@ -38,7 +38,7 @@ def _draw(axes, curve: Curve, colour: str, line: str, marker: str) -> None:
     axes.plot(
         curve.points[:, 1], curve.points[:, 2], line + marker, color=colour, markersize=3.6, markerfacecolor="white",
         markeredgewidth=0.9, linewidth=1.2, zorder=3 if curve.scheme.is_competitor else 2,
-    )  # fmt: skip
+    )
 
 
 def _draw_scheme(axes, curve: Curve) -> None:
@@ -71,7 +71,7 @@ def _draw_published(axes, results: list[PublishedResult]) -> None:
         text = axes.annotate(
             result.label, result.points[0], (0, 0), textcoords="offset points", fontsize=6.5, color=style.MUTED,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
-        )  # fmt: skip
+        )
         # Above the first of several points, below a single point, unless `_clear_labels` finds something there.
         _move(text, _ABOVE if len(x) > 1 else _BELOW)
 
@@ -115,9 +115,7 @@ def _clear_labels(axes) -> None:
 
 def _scheme_legend(curves: list[Curve]) -> list[tuple[str, str, str]]:
     family, present = curves[0].scheme.family, {curve.scheme.key for curve in curves}
-    ordered = [word for word in family.scheme_names if word in present] + sorted(
-        present - set(family.scheme_names)
-    )
+    ordered = [word for word in family.scheme_names if word in present] + sorted(present - set(family.scheme_names))
     return [
         (
             "\u2013 \u2013" if word == family.competitor else "\u2014",
@@ -133,9 +131,7 @@ def _variant_legend(curves: list[Curve]) -> list[tuple[str, str, str]]:
     if not curves:
         return []
     family = curves[0].scheme.family
-    firsts, seconds = (
-        list(dict.fromkeys(curve.scheme.settings[axis] for curve in curves)) for axis in range(2)
-    )
+    firsts, seconds = (list(dict.fromkeys(curve.scheme.settings[axis] for curve in curves)) for axis in range(2))
     key = [
         ("\u2014", family.setting_labels.get(word, word), _indexed_colour(list(family.colour_settings), word))
         for word in firsts
@@ -183,9 +179,7 @@ def _layout(figure, rows: list[_Row], axes, details: str, between: float) -> lis
     for row, of_row in zip(rows, axes):
         for column, panel_axes in enumerate(of_row):
             left = _LEFT + column * (panel + _GAP)
-            panel_axes.set_position(
-                (left / width, (top - row.height) / height, panel / width, row.height / height)
-            )
+            panel_axes.set_position((left / width, (top - row.height) / height, panel / width, row.height / height))
         tops.append(top / height)
         top -= row.height + between
     return tops
@@ -213,12 +207,8 @@ def solution_figure(problem: str, machine: Machine, curves: list[Curve], best: s
                 if curve.scheme.backend == backend:
                     row.draw(panel_axes, curve)
             if row is rows[0]:
-                _draw_published(
-                    panel_axes, [result for result in published if _column_of(result, columns) == backend]
-                )
-            panel_axes.set_title(
-                BACKENDS.get(backend, backend) + (threads if backend == "openmp" else ""), pad=4
-            )
+                _draw_published(panel_axes, [result for result in published if _column_of(result, columns) == backend])
+            panel_axes.set_title(BACKENDS.get(backend, backend) + (threads if backend == "openmp" else ""), pad=4)
             panel_axes.set_xscale("log")
             panel_axes.set_yscale("log")
     if len(rows) > 2:

@@ -8,18 +8,9 @@ from .scheme_families import family_of
 from .scheme_family import SchemeFamily
 from .section import Cell, Picture, Section, Table
 from .work_precision import (
-    Curve,
-    TimeToError,
-    target_errors,
-    best_scheme,
-    competitor_of,
-    curves,
-    scheme_of,
-    speed_up,
-    time_to_error,
-    faster_range,
-    reference_curve,
-)  # fmt: skip
+    Curve, TimeToError, target_errors, best_scheme, competitor_of, curves, scheme_of, speed_up, time_to_error,
+    faster_range, reference_curve,
+)
 from .work_precision_figure import solution_figure
 
 
@@ -58,15 +49,8 @@ def _row(curve: Curve, all_curves: list[Curve], errors: list[float]) -> list[Cel
     return [*row, _wins(other, curve)]
 
 
-def _table(
-    shown: list[Curve], all_curves: list[Curve], errors: list[float], title: str, folded: bool
-) -> Table:
-    columns = [
-        ("backend", False),
-        ("scheme", False),
-        (all_curves[0].scheme.family.mesh_unit, True),
-        ("order", True),
-    ]
+def _table(shown: list[Curve], all_curves: list[Curve], errors: list[float], title: str, folded: bool) -> Table:
+    columns = [("backend", False), ("scheme", False), (all_curves[0].scheme.family.mesh_unit, True), ("order", True)]
     for error in errors:
         columns += [(Markup("to {}").format(html_page.format_number(error)), True), ("factor", True)]
     columns.append(("faster at errors", False))
@@ -119,9 +103,7 @@ def _explanation(all_curves: list[Curve], best: str | None) -> str:
         )
     if holders and set(holders) != {curve.scheme.backend for curve in all_curves}:
         names = " and ".join(BACKENDS.get(name, name) for name in holders)
-        words.append(
-            f"{rival} runs on {names} only: {names} is compared with {names}, others have no factor."
-        )
+        words.append(f"{rival} runs on {names} only: {names} is compared with {names}, others have no factor.")
     if best:
         words.append(
             f"Of the schemes with other settings {family.scheme_names.get(best, best)}, which is drawn, is the first "
@@ -163,12 +145,7 @@ def _section(
     if exact:
         notes.append(f"{exact} runs without any error are not drawn.")
     return Section(
-        f"{title}: error against time",
-        family.command,
-        solved + failed,
-        pictures,
-        tables,
-        notes,
+        f"{title}: error against time", family.command, solved + failed, pictures, tables, notes,
         _failures(failed),
     )
 
@@ -184,10 +161,7 @@ def sections(machine: Machine, records: list[Record], failed: list[Record]) -> l
     problems.sort(key=lambda name: order.index(name) if name in order else len(order))
     return [
         _section(
-            family,
-            problem,
-            machine,
-            [record for record in records if record.facts["problem"] == problem],
+            family, problem, machine, [record for record in records if record.facts["problem"] == problem],
             [record for record in failed if record.facts["problem"] == problem],
         )
         for problem in problems

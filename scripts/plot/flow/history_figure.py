@@ -78,7 +78,7 @@ def _draw_expected(axes, points: np.ndarray) -> None:
         axes.errorbar(
             points[:, 0], points[:, 1], points[:, 2], fmt="o", color=style.INK, markersize=3.5, markerfacecolor="white",
             markeredgewidth=0.9, elinewidth=0.8, zorder=3,
-        )  # fmt: skip
+        )
 
 
 def _draw(axes, curves: dict[str, tuple[np.ndarray, np.ndarray]], is_log: bool) -> None:

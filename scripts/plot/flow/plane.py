@@ -104,7 +104,5 @@ def plane_of(run: Run, wanted: str = "") -> Plane:
     except ValueError:
         raise Failure(USAGE, f"--slice {wanted}: '{place}' is no number.") from None
     if not faces[0] <= value <= faces[-1]:
-        raise Failure(
-            USAGE, f"--slice {wanted} is outside the domain, {axis} = {faces[0]:g} to {faces[-1]:g} m."
-        )
+        raise Failure(USAGE, f"--slice {wanted} is outside the domain, {axis} = {faces[0]:g} to {faces[-1]:g} m.")
     return Plane(run, normal, cell_at(faces, value))

@@ -28,7 +28,7 @@ class SampledLine:
         return (
             -v[0] * (s - 1) * (s - 2) * (s - 3) / 6 + v[1] * s * (s - 2) * (s - 3) / 2
             - v[2] * s * (s - 1) * (s - 3) / 2 + v[3] * s * (s - 1) * (s - 2) / 6
-        )  # fmt: skip
+        )
 
     @property
     def places(self) -> np.ndarray:
@@ -124,9 +124,7 @@ def _published(run: Run, snapshot: Snapshot) -> list[Comparison]:
         points = np.array(profile.get("points", []), dtype=float).reshape(-1, 2)
         tolerance = profile.get("tolerance") if len(points) else None
         found.append(
-            Comparison(
-                line, component, along, tuple(profile["through"]), points, extremes, tolerance=tolerance
-            )
+            Comparison(line, component, along, tuple(profile["through"]), points, extremes, tolerance=tolerance)
         )
     return found
 

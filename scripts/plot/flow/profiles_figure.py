@@ -37,7 +37,7 @@ def _draw_values(axes, comparison: Comparison) -> None:
         axes.plot(
             line.places, line(line.places), "o", color=style.RUN_COLOUR, markersize=2.8,
             markerfacecolor="white", markeredgewidth=0.8,
-        )  # fmt: skip
+        )
         return
     axes.plot(*line.curve, color=style.RUN_COLOUR)
     points = {"color": style.INK, "markerfacecolor": "white", "markeredgewidth": 0.9, "linestyle": "none"}
@@ -72,7 +72,7 @@ def _draw_deviation(axes, comparison: Comparison) -> None:
         axes.errorbar(
             [at], [size], yerr=tolerance, fmt=_EXTREME, color=style.ERROR_COLOUR, markersize=4,
             elinewidth=0.8, capsize=2,
-        )  # fmt: skip
+        )
     axes.axhline(0, color=style.MUTED, linewidth=0.7)
     limit = 1.15 * max([largest, *(abs(size) + tolerance for _, size, tolerance in extremes)])
     if comparison.tolerance is not None and comparison.tolerance < 5 * largest:

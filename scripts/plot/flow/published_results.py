@@ -24,4 +24,4 @@ PUBLISHED_RESULTS = (
         ((_seconds(64, 421), 1.7e-4), (_seconds(128, 729), 1.7e-5)),
         f"{_METHOD}, two cores of a Xeon, 64 and 128 cells per axis",
     ),
-)  # fmt: skip
+)

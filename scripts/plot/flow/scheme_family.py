@@ -32,4 +32,4 @@ FAMILY = SchemeFamily(
     "errors of time integration, because the pressure balances their advection. Cavity: Re 100, to t = 20 s, when it is "
     "steady; extremes on the centre lines against Marchi, Suero and Araki 2009.",
     target_errors=(1e-2, 1e-3, 1e-4),
-)  # fmt: skip
+)

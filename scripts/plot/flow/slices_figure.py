@@ -89,7 +89,7 @@ def draw_slice(axes, key, plane: Plane, quantity: Quantity, snapshots: list[Snap
     image = axes.imshow(
         plane.at(snapshots[-1]).cut(quantity.values(snapshots[-1])), origin="lower", extent=plane.extent, aspect="auto",
         cmap=plt.get_cmap(name, colours), norm=norm, interpolation="nearest",
-    )  # fmt: skip
+    )
     axes.grid(False)
     axes.set_title(style.axis_label(quantity.label, quantity.units), pad=5)
     right, up = plane.across

@@ -29,15 +29,10 @@ def _pressure_row(record: Record) -> list[str]:
     if more and "tolerance" not in record.facts:
         tolerance = float(more[0])
     return [
-        BACKENDS.get(backend, backend),
-        grid,
-        sides,
-        _NAMES.get(solver, solver),
-        "round-off" if tolerance is None else f"{tolerance:g}",
-        html_page.format_number(1e3 * record.median),
+        BACKENDS.get(backend, backend), grid, sides, _NAMES.get(solver, solver),
+        "round-off" if tolerance is None else f"{tolerance:g}", html_page.format_number(1e3 * record.median),
         html_page.format_number(1e9 * record.median / record.facts["cells"]),
-        "" if iterations is None else str(iterations),
-        html_page.format_number(record.error),
+        "" if iterations is None else str(iterations), html_page.format_number(record.error),
     ]
 
 
@@ -46,16 +41,16 @@ def pressure_sections(records: list[Record]) -> list[Section]:
     if not records:
         return []
     ordered = sorted(records, key=lambda record: (_place(record), record.facts["cells"],
-                                                  record.case.split("/")[4], record.median))  # fmt: skip
+                                                  record.case.split("/")[4], record.median))
     columns = [("backend", False), ("grid", False), ("sides", False), ("solver", False), ("tolerance", True),
-               ("ms per solve", True), ("ns per cell", True), ("iterations", True), ("residual", True)]  # fmt: skip
+               ("ms per solve", True), ("ns per cell", True), ("iterations", True), ("residual", True)]
     note = "Residual: the largest of a random right-hand side, over the largest term of the equation. hypre computes on the host."
     return [
         Section(
             "Pressure solvers", "drogue-perf table pressure --out FILE.jsonl", ordered,
             tables=[Table(columns, [_pressure_row(record) for record in ordered], "Time of a solve", note)],
         )
-    ]  # fmt: skip
+    ]
 
 
 def _memory_row(record: Record) -> list[Cell | str]:
@@ -72,8 +67,7 @@ def memory_sections(records: list[Record]) -> list[Section]:
     """One section on the memory of flow solvers, none without records."""
     if not records:
         return []
-    ordered = sorted(records, key=lambda record: (_place(record), record.facts["variant"],
-                                                  record.facts["cells"]))  # fmt: skip
+    ordered = sorted(records, key=lambda record: (_place(record), record.facts["variant"], record.facts["cells"]))
     columns = [("backend", False), ("grid", False), ("case", False), ("arrays", True), ("driver", True)]
     goal, stretch = BYTES_PER_CELL
     note = (
@@ -85,4 +79,4 @@ def memory_sections(records: list[Record]) -> list[Section]:
             "Memory", "drogue-perf table memory --out FILE.jsonl", ordered,
             tables=[Table(columns, [_memory_row(record) for record in ordered], "Bytes per cell", note)],
         )
-    ]  # fmt: skip
+    ]

@@ -47,7 +47,7 @@ def energy_spectrum(velocity: np.ndarray, lengths: tuple[float, float, float]) -
     waves = np.meshgrid(
         *(2 * np.pi * np.fft.fftfreq(count, length / count) for count, length in zip(counts, lengths)),
         indexing="ij", sparse=True,
-    )  # fmt: skip
+    )
     shell = np.rint(np.sqrt(sum(wave**2 for wave in waves)) / width).astype(int)
     modes = np.fft.fftn(velocity, axes=(0, 1, 2)) / np.prod(counts)
     energy = np.bincount(shell.ravel(), weights=(0.5 * np.sum(np.abs(modes) ** 2, axis=-1)).ravel())
@@ -84,7 +84,7 @@ def _draw_mark(axes, spectra: list[Spectrum], power: float, words: str, start: f
     axes.annotate(
         words, (k[middle], line[middle]), xytext=(3, 4), textcoords="offset points", color=style.MUTED,
         fontsize=style.LABEL_SIZE,
-    )  # fmt: skip
+    )
 
 
 def largest_speed(run: Run) -> float:
@@ -109,7 +109,7 @@ def spectrum_figure(run: Run, last: Snapshot):
     for colour, (snapshot, spectrum) in zip(colours, curves):
         is_shown = spectrum.energy > floor
         axes.plot(spectrum.k, np.where(is_shown, spectrum.energy, np.nan), "o-", color=colour, linewidth=1.2,
-                  markersize=2)  # fmt: skip
+                  markersize=2)
         if np.any(is_shown):
             end = np.flatnonzero(is_shown)[-1]
             ends.append(((spectrum.k[end], spectrum.energy[end]), f"t = {snapshot.time:.4g} s", colour))

@@ -45,6 +45,6 @@ class Streamlines:
         drawn = self._axes.streamplot(
             x, y, u, v, color="white", linewidth=0.6, arrowsize=0.6, density=self._density,
             start_points=self._seeds[inside.all(axis=1)],
-        )  # fmt: skip
+        )
         self._axes.axis(limits)
         self._items = [drawn.lines, *self._axes.patches[others:]]

@@ -37,9 +37,7 @@ def _riemann(run: Run) -> ExactSolution:
     def at(time, x):
         # At t = 0 the similarity variable is plus or minus infinity.
         xi = (x - x0) / time if time > 0 else np.where(x < x0, -np.inf, np.inf)
-        return dict(
-            zip(GAS_FIELDS, sample(np.nan_to_num(xi, posinf=1e300, neginf=-1e300), left, right, gamma))
-        )
+        return dict(zip(GAS_FIELDS, sample(np.nan_to_num(xi, posinf=1e300, neginf=-1e300), left, right, gamma)))
 
     return ExactSolution("exact", at)
 

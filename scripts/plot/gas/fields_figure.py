@@ -75,7 +75,7 @@ class FieldPanel:
             (self._run,) = axes.plot(
                 [], [], "o", color=style.RUN_COLOUR, markersize=2.8, markerfacecolor="white", markeredgewidth=0.8,
                 zorder=3, clip_on=False,
-            )  # fmt: skip
+            )
         else:
             (self._run,) = axes.plot([], [], color=style.RUN_COLOUR, linewidth=1.1, zorder=3)
         axes.set_title(style.axis_label(name, view.run.snapshots[-1].fields[name].units), pad=5)

@@ -83,9 +83,7 @@ def prices_figure(folder: Path):
     if surface.is_file():
         curves = _curves(surface, ("id", "maturity"), "strike", "price")
         first = next(iter(curves), ("",))[0]
-        chosen = _merge_equal_curves(
-            {names[1]: curve for names, curve in curves.items() if names[0] == first}
-        )
+        chosen = _merge_equal_curves({names[1]: curve for names, curve in curves.items() if names[0] == first})
         if chosen:
             title = f"price of {first} by years to maturity"
             panels.append((list(chosen.values()), list(chosen), title, "strike", "price"))
@@ -105,7 +103,5 @@ def prices_figure(folder: Path):
     for panel, (curves, *words) in zip(axes[:, 0], panels):
         _draw(panel, curves, *words)
     left_out = sum(max(0, len(panel[0]) - _MOST_CURVES) for panel in panels)
-    style.heading(
-        figure, folder.resolve().name, f"options{f'; curves left out: {left_out}' if left_out else ''}"
-    )
+    style.heading(figure, folder.resolve().name, f"options{f'; curves left out: {left_out}' if left_out else ''}")
     return figure

@@ -45,4 +45,4 @@ PUBLISHED_RESULTS = (
         "FdBates with frozen variance, 32 x 128 x 5 to 400 x 800 x 10, whose European prices stay 0.018 off on all "
         f"grids; the same jumps with volatility 0.2, {_PEERS}",
     ),
-)  # fmt: skip
+)

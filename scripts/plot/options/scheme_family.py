@@ -7,7 +7,7 @@ _PROBLEMS = {
     "thesis": "The put of [Shi]", "five-years": "The same for five years",
     "pure-jumps": "Normal inverse Gaussian jumps alone", "day": "A day to expiry", "merton": "Merton's jumps",
     "black-scholes": "Black and Scholes",
-}  # fmt: skip
+}
 FAMILY = SchemeFamily(
     app="options",
     scheme_fact="method",
@@ -30,4 +30,4 @@ FAMILY = SchemeFamily(
     note="Of cosine series the dates of the last Bermudan option stand for intervals. Known prices are good to 1e-7 of "
     "the strike (Merton's jumps 5e-8, Black and Scholes 5e-9): smaller errors mean no more than that.",
     target_errors=(1e-3, 1e-4, 1e-5),
-)  # fmt: skip
+)

@@ -12,7 +12,7 @@ _CURVES = {
     "cpu": ("[Shi], CPU", style.MUTED, "--s"), "gpu": ("[Shi], GPU", style.INK, "--o"),
     "seed": ("its scheme, here", style.PALETTE[1], "-o"),
     "pide": ("ours, two solves for an error", style.PALETTE[0], "-o"),
-}  # fmt: skip
+}
 _PANELS = {"one option": "intervals of the mesh", "128 intervals": "options"}
 
 
@@ -34,9 +34,7 @@ def _thesis_rows(record: Record) -> list[_Row]:
     times = {name: float(value) for name, value in thesis.items() if isinstance(value, int | float)}
     rows = [_Row(*place, "cpu", {"total": times["cpu_us"]})] if "cpu_us" in times else []
     if "total_us" in times:
-        rows.append(
-            _Row(*place, "gpu", {part: times[f"{part}_us"] for part in _PARTS if f"{part}_us" in times})
-        )
+        rows.append(_Row(*place, "gpu", {part: times[f"{part}_us"] for part in _PARTS if f"{part}_us" in times}))
     return rows
 
 
@@ -45,9 +43,7 @@ def transfer_rows(records: list[Record]) -> list[_Row]:
     found = {}
     for record in records:
         facts = record.facts
-        parts = {part: 1e6 * facts[f"{part}_s"] for part in _PARTS if part != "total"} | {
-            "total": 1e6 * record.median
-        }
+        parts = {part: 1e6 * facts[f"{part}_s"] for part in _PARTS if part != "total"} | {"total": 1e6 * record.median}
         own = _Row(facts["cells"], facts["mesh"], facts["method"], parts, record.error, facts.get("memory", ""))
         for row in [*_thesis_rows(record), own]:
             found[row.options, row.mesh, row.source, row.memory] = row

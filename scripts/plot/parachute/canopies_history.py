@@ -61,9 +61,7 @@ def _has_lines(run: Run, canopy: int) -> bool:
 
 def _checks(run: Run, quantity: str) -> list[Band]:
     """Bands of the means of a quantity of canopies over intervals of time."""
-    return [
-        band for column, _, band in expected_means(run) if re.fullmatch(rf"canopy_\d+_{quantity}", column)
-    ]
+    return [band for column, _, band in expected_means(run) if re.fullmatch(rf"canopy_\d+_{quantity}", column)]
 
 
 def _panels(run: Run) -> list[Panel]:
@@ -116,9 +114,7 @@ def _panels(run: Run) -> list[Panel]:
         ),
     ]
     what, own = ("payload", "of the payload") if line_forces else ("centre of mass", "of the cloth")
-    free = [
-        canopy for canopy in canopies if np.ptp(_vector(run, canopy, "payload"), axis=0).max() > 0
-    ]
+    free = [canopy for canopy in canopies if np.ptp(_vector(run, canopy, "payload"), axis=0).max() > 0]
     if free:
         panels += [
             Panel(
@@ -131,9 +127,7 @@ def _panels(run: Run) -> list[Panel]:
                 },
                 _checks(run, "airspeed"),
             ),
-            Panel(
-                f"height of the {what}, z (m)", {label("", k): history(f"canopy_{k}_payload_z") for k in free}
-            ),
+            Panel(f"height of the {what}, z (m)", {label("", k): history(f"canopy_{k}_payload_z") for k in free}),
         ]
     energies = {"kinetic": history("cloth_kinetic_energy"), "elastic": history("cloth_elastic_energy")}
     if "potential_energy" in run.history:

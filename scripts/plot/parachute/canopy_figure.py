@@ -169,7 +169,7 @@ class CanopyFigure:
         lines = LineCollection([], colors="black", linewidth=0.4, alpha=0.6, zorder=3)
         plane = self._view.plane
         spheres = [Circle(centre[list(plane.across)], radius, facecolor=_BODY, edgecolor=style.INK, zorder=2.5)
-                   for centre, radius in self._spheres()]  # fmt: skip
+                   for centre, radius in self._spheres()]
         for circle in spheres:
             axes.add_patch(circle)
         outline = SheetOutline(axes, plane)

@@ -32,9 +32,7 @@ def _panel(run: Run, body: int, time: np.ndarray) -> Panel:
             continue
         bands.append(band)
         mean = mean_between(time, forces[found[1]], *band.times) / check["reference"]
-        means.append(
-            f"mean along {found[1]} / {check['reference']:.3g} N = {mean:.3g}, expected {check['value']:.3g}"
-        )
+        means.append(f"mean along {found[1]} / {check['reference']:.3g} N = {mean:.3g}, expected {check['value']:.3g}")
     kind = run.scene.get("body", [{}] * (body + 1))[body].get("kind", "body")
     title = "\n".join([style.axis_label(f"force on {kind} {body}", "N"), *means])
     return Panel(title, curves, bands, settled=time[shown][0])

@@ -4,7 +4,7 @@ from ..evidence.scheme_family import SchemeFamily
 
 _PROBLEMS = {
     "opening-impulse": "Opening C-9: impulse", "opening-time": "Opening C-9: time", "porous-drag": "Porous C-9: drag",
-}  # fmt: skip
+}
 FAMILY = SchemeFamily(
     app="parachute",
     scheme_fact="kernel",
@@ -35,4 +35,4 @@ FAMILY = SchemeFamily(
     "nearly open and hardly breathes. Inset: of free edges, in cells; defect: weight of its running mean. Errors are relative "
     "to a solution on twice the cells per axis of the finest grid with half the time step.",
     target_errors=(1e-1, 3e-2, 1e-2),
-)  # fmt: skip
+)

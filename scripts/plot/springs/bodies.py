@@ -23,10 +23,7 @@ def _quads(grid: np.ndarray) -> np.ndarray:
 
 
 def _disk(body) -> np.ndarray:
-    radius, angle = (
-        np.linspace(0, body["radius"], _FACETS // 2 + 1),
-        np.linspace(0, 2 * np.pi, 2 * _FACETS + 1),
-    )
+    radius, angle = (np.linspace(0, body["radius"], _FACETS // 2 + 1), np.linspace(0, 2 * np.pi, 2 * _FACETS + 1))
     across = np.stack(np.broadcast_arrays(np.cos(angle), np.sin(angle), 0 * angle), axis=-1)
     return _quads(body["centre"] + (radius[:, None, None] * across) @ _frame(body["normal"]))
 
@@ -72,9 +69,7 @@ def _level_set(body, points: np.ndarray) -> np.ndarray:
         part = np.where(np.isfinite(below - above), below / (below - above), 0.5)
         first, second = np.eye(3, dtype=int)[[axis - 2, axis - 1]]
         about = np.stack([edges, edges - first, edges - first - second, edges - second], axis=1)
-        across.append(
-            about[(edges[:, [axis - 2, axis - 1]] > 0).all(axis=1) & (edges < count - 1).all(axis=1)]
-        )
+        across.append(about[(edges[:, [axis - 2, axis - 1]] > 0).all(axis=1) & (edges < count - 1).all(axis=1)])
         for k in range(4):
             cell = tuple(about[:, k].T)
             np.add.at(sums, cell, edges + part[:, None] * unit)
@@ -99,9 +94,7 @@ def outlines(scene: dict, projection: np.ndarray) -> list[np.ndarray]:
 def facets(scene: dict, points: np.ndarray) -> np.ndarray:
     """Facets (n, 4, 3) of all contact bodies of a resolved scene; `points` (n, 3) are positions of the cloth, m."""
     make = {
-        "disk": _disk,
-        "sphere": _sphere,
-        "plane": lambda body: _plane(body, points),
+        "disk": _disk, "sphere": _sphere, "plane": lambda body: _plane(body, points),
         "level-set": lambda body: _level_set(body, points),
     }
     bodies = scene.get("contact", {}).get("objects", [])

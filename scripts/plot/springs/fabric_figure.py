@@ -76,9 +76,7 @@ class View:
             return snapshot.fields["von_mises"].values
         # Displacements are relative to the prestretched mesh, whose stretch would hide small deflections.
         stretched = 1 + self.run.scene.get("initial", {}).get("prestretch", 0.0)
-        moved = np.linalg.norm(
-            self.positions(snapshot) - stretched * self.run.mesh["vertices"].values, axis=1
-        )
+        moved = np.linalg.norm(self.positions(snapshot) - stretched * self.run.mesh["vertices"].values, axis=1)
         parts = self.triangles if len(self.triangles) else self.segments
         return moved[parts].mean(axis=1)
 
@@ -93,9 +91,7 @@ class View:
             return np.empty((0, 2, 2))
         every = -(-len(self.triangles) // _MAX_DIRECTIONS)
         corners = self.positions(snapshot)[self.triangles]
-        areas = (
-            np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-        )
+        areas = (np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2)
         half = 0.35 * np.sqrt(every * areas.mean()) * major.values
         values = self.values(snapshot)
         shown = (np.arange(len(half)) % every == 0) & (values > _LEAST_STRESS * np.nanmax(values))
@@ -128,9 +124,7 @@ class FabricFigure:
         self._bodies = (view.body_facets @ view.projection.T, colours)
         if not len(view.triangles):
             axes.add_collection(
-                PolyCollection(
-                    self._bodies[0][..., :2], facecolors=colours, edgecolors=colours, linewidth=0.4
-                )
+                PolyCollection(self._bodies[0][..., :2], facecolors=colours, edgecolors=colours, linewidth=0.4)
             )
         axes.add_collection(self._parts)
         # Cloth may hide a body altogether.
@@ -187,9 +181,7 @@ class FabricFigure:
             ends = projected[view.segments]
             string_depths = strings.depths(projected, view.segments, self._seams, view.triangles, depths)
             # A stable sort, so that strings are drawn after cloth of equal depth.
-            order = np.concatenate((depths, facets[..., 2].min(axis=1) - back, string_depths)).argsort(
-                kind="stable"
-            )
+            order = np.concatenate((depths, facets[..., 2].min(axis=1) - back, string_depths)).argsort(kind="stable")
             parts = [*corners[..., :2], *facets[..., :2], *ends[..., :2]]
             shades = self._shades(view.positions(snapshot)[view.triangles], colours)
             string_colours = np.tile(to_rgba(strings.COLOUR), (len(ends), 1))

@@ -14,7 +14,7 @@ _WORKS = ("contact", "friction")  # prefixes of the columns *_work
 def _moves_pins(run: Run) -> bool:
     """Whether pins do work, which no column counts."""
     return any(float(motion) != 0 if isinstance(motion, int | float) else motion.strip() != "0"
-               for pin in run.scene.get("pin", []) for motion in pin.get("motion", {}).values())  # fmt: skip
+               for pin in run.scene.get("pin", []) for motion in pin.get("motion", {}).values())
 
 
 def _probes(run: Run) -> list[str]:
@@ -55,9 +55,7 @@ def springs_history_figure(run: Run):
     values["potential"] = values["potential"] - values["potential"][0]
     works = {name: run.history[f"{name}_work"].values for name in _WORKS if f"{name}_work" in run.history}
     _draw_curves(axes[0], time.values, {name: values[name] for name in _ENERGIES} | works)
-    axes[0].set_title(
-        "energies, the potential one from its start" + (", and works" if works else "") + " (J)"
-    )
+    axes[0].set_title("energies, the potential one from its start" + (", and works" if works else "") + " (J)")
     if keeps_sum:
         _draw_change(axes[1], time.values, values, works)
     for panel, probe in zip(axes[1 + keeps_sum :], probes):

@@ -16,7 +16,7 @@ FAMILY = SchemeFamily(
         "drum": "relative error of the frequency",
         "hencky": "relative error of the deflection",
         "catenary": "farthest vertex over the span",
-    },  # fmt: skip
+    },
     mesh_unit="vertices",
     planar_schemes=("biquadratic", "quadratic"),
     target_errors=(1e-2, 1e-3, 1e-4),

@@ -2,11 +2,9 @@
 
 import os
 import pathlib
-import sys
 import unittest
 
-sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
-import disassembly  # noqa: E402
+import disassembly
 
 BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
 # WENO-JS in full precision, all stages in one kernel.
@@ -85,7 +83,3 @@ class ScalarCodeDetection(unittest.TestCase):
     def test_detects_a_scalar_root(self):
         sentence, = self.complaints(*self.PACKED[:7], " 10:\tvsqrtsd %xmm1,%xmm1,%xmm2")
         self.assertIn("no packed square root", sentence)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -45,15 +45,12 @@ class Drogue(CMakePackage, CudaPackage):
     conflicts("^kokkos@4.7.00", when="+cuda")
     conflicts("%gcc@:11")
     for _arch in ("80", "86", "89", "90", "100"):
-        depends_on(
-            f"kokkos+cuda~wrapper+cmake_lang cuda_arch={_arch}", when=f"+cuda cuda_arch={_arch}"
-        )
+        depends_on(f"kokkos+cuda~wrapper+cmake_lang cuda_arch={_arch}", when=f"+cuda cuda_arch={_arch}")
     conflicts("cuda_arch=none", when="+cuda", msg="name one GPU architecture, for example cuda_arch=90")
 
     def cmake_args(self):
         arguments = [
-            self.define("DROGUE_SYSTEM", True),
-            self.define("BUILD_TESTING", self.run_tests),
+            self.define("DROGUE_SYSTEM", True), self.define("BUILD_TESTING", self.run_tests),
             self.define_from_variant("DROGUE_EXACT", "exact"),
             self.define_from_variant("DROGUE_CUDA", "cuda"),
         ]
