@@ -23,6 +23,15 @@ def parse_with_arguments(parser, out):
     return parser.parse_args(words[:end]), words[end + 1:]
 
 
+def run_parachute(options, scene, folder, sets, arguments, codes=(0,)):
+    """Runs a scene with assignments and more arguments; returns its folder in --out. Another code than `codes` ends this program."""
+    command = [options.bin / "drogue-parachute", scene, "--quiet", "--overwrite", "--out", options.out / folder]
+    code = subprocess.run([*command, *assignments(*sets), *arguments], check=False).returncode
+    if code not in codes:
+        sys.exit(code)
+    return options.out / folder
+
+
 def read_history(directory):
     """Rows of history.csv as numbers, by the names of the columns without their units."""
     with open(directory / "history.csv", newline="", encoding="utf-8") as file:
@@ -92,14 +101,10 @@ def differing_datasets(first, second):
 
     def bits_of(file):
         """Bytes of each dataset of the steps, by name."""
-        found = {}
+        items = {}
         with h5py.File(file) as fields:
-            fields["steps"].visititems(
-                lambda name, item: found.update({name: item[...].tobytes()})
-                if isinstance(item, h5py.Dataset)
-                else None
-            )
-        return found
+            fields["steps"].visititems(items.__setitem__)
+            return {name: item[...].tobytes() for name, item in items.items() if isinstance(item, h5py.Dataset)}
 
     bits = [bits_of(file) for file in (first, second)]
     names = sorted(bits[0].keys() | bits[1].keys())
@@ -145,11 +150,7 @@ def exact_rows(program, backends, work):
 
 def scene_runs(program, backends, work):
     """Head of a record: provenance, and the summary of each shipped scene on each backend."""
-    runs = [
-        run(program, scene, backend, work / f"{scene}-{backend}")
-        for scene in list_scenes(program)
-        for backend in backends
-    ]
+    runs = [run(program, scene, backend, work / f"{scene}-{backend}") for scene in list_scenes(program) for backend in backends]
     return {"provenance": runs[0].get("provenance"), "git": runs[0].get("git"), "runs": [summary(r) for r in runs]}
 
 

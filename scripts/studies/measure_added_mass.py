@@ -14,24 +14,23 @@ Hydrodynamics, 1932, section 102). ARGUMENTs go to the program, such as `--backe
 import argparse
 import math
 import pathlib
-import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from recording import parse_with_arguments, read_history  # noqa: E402
+from recording import parse_with_arguments, read_history, run_parachute  # noqa: E402
 
 RADIUS, DENSITY = 0.5, 1.0  # m, kg/m^3, of the scene
 OMEGA = 2.0 * math.pi  # angular frequency, rad/s
 START, END = 1.0, 3.0  # s, of the two periods measured
 
 
-def assignments(cells, amplitude):
-    """--set arguments of the run on a grid with `cells` cells to a diameter of the disk."""
+def settings(cells, amplitude):
+    """Assignments of the run on a grid with `cells` cells to a diameter of the disk."""
     values = {"fluid.velocity": "[0,0,0]", "initial": "{}", "grid.cells": [4 * cells] * 3,
               "grid.domain": "[[-2,2],[-2,2],[-2,2]]", "body[0].edge_length": 0.5 / cells,
               "body[0].motion": f'{{x="{amplitude:g}*sin({OMEGA!r}*t)"}}', "run.end_time": END,
               "run.max_dt": 0.08 / cells, "output": "{history_every=1,fields=[]}", "verify": "{}"}
-    return [word for key, value in values.items() for word in ("--set", f"{key}={value}")]
+    return [f"{key}={value}" for key, value in values.items()]
 
 
 def parts(rows):
@@ -62,16 +61,11 @@ def main():
         sys.exit(f"measure_added_mass.py: --cells and --amplitude must be positive, and {program} must exist.")
     ideal = 8.0 / 3.0 * DENSITY * RADIUS**3 * options.amplitude * OMEGA**2
     for cells in options.cells:
-        out = options.out / f"{cells}"
-        run = subprocess.run([program, "disk-normal", "--quiet", "--overwrite", "--out", out,
-                              *assignments(cells, options.amplitude), *arguments], check=False)
-        if run.returncode != 0:
-            return run.returncode
+        out = run_parachute(options, "disk-normal", f"{cells}", settings(cells, options.amplitude), arguments)
         inertia, drag, rest, largest = (part / ideal for part in parts(read_history(out)))
         print(f"{cells} cells: added mass {inertia:.3f}, with the velocity {drag:.3f}, rest {rest:.3f}, largest {largest:.2f}",
               flush=True)
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -16,28 +16,16 @@ import sys
 import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from recording import parse_with_arguments  # noqa: E402
+from recording import parse_with_arguments, run_parachute  # noqa: E402
 
 
-def literal(value):
-    """TOML text of a value."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return json.dumps(value)
-    if isinstance(value, list):
-        return "[" + ", ".join(literal(entry) for entry in value) + "]"
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {literal(entry)}" for key, entry in value.items()) + " }"
-    return repr(value)
-
-
-def assignments(scene, ratio):
-    """--set arguments of the scene on a grid with `ratio` times the cells along each axis."""
+def settings(scene, ratio):
+    """Assignments of the scene on a grid with `ratio` times the cells along each axis."""
     cells = [n if n == 1 else round(ratio * n) for n in scene["grid"]["cells"]]
     bodies = [{**body, "edge_length": body["edge_length"] / ratio} for body in scene["body"]]
     values = {"grid.cells": cells, "body": bodies, "run.max_dt": scene["run"]["max_dt"] / ratio}
-    return [word for key, value in values.items() for word in ("--set", f"{key}={literal(value)}")]
+    # With = for the colons of JSON its text is TOML.
+    return [f"{key}={json.dumps(value, separators=(', ', ' = '))}" for key, value in values.items()]
 
 
 def refuse(scene, ratios):
@@ -55,17 +43,13 @@ def main():
     parser.add_argument("scene")
     parser.add_argument("--ratio", required=True, type=lambda text: [float(part) for part in text.split(",")])
     options, arguments = parse_with_arguments(parser, "out/drag")
-    program = options.bin / "drogue-parachute"
-    printed = subprocess.run([program, options.scene, "--print-scene"], capture_output=True, text=True, check=True)
+    printed = subprocess.run([options.bin / "drogue-parachute", options.scene, "--print-scene"], capture_output=True, text=True, check=True)
     scene = tomllib.loads(printed.stdout)
     refuse(scene, options.ratio)
     rows = []
     for ratio in options.ratio:
-        out = options.out / f"{pathlib.Path(options.scene).stem}-{ratio:g}"
-        run = subprocess.run([program, options.scene, "--quiet", "--overwrite", "--out", out, *assignments(scene, ratio),
-                              *arguments], check=False)
-        if run.returncode not in (0, 5):  # a check may fail: its value is the point
-            return run.returncode
+        # A check may fail: its value is the point.
+        out = run_parachute(options, options.scene, f"{pathlib.Path(options.scene).stem}-{ratio:g}", settings(scene, ratio), arguments, (0, 5))
         checks = json.loads((out / "result.json").read_text(encoding="utf-8"))["checks"]
         rows.append((ratio, {check["name"]: check["measured"] for check in checks if "measured" in check}))
         print(f"ratio {ratio:g}:", ", ".join(f"{name} {value:.4f}" for name, value in rows[-1][1].items()), flush=True)
@@ -73,8 +57,7 @@ def main():
         (coarse, of_coarse), (fine, of_fine) = rows[-2:]
         limits = {name: (fine * of_fine[name] - coarse * of_coarse[name]) / (fine - coarse) for name in of_fine}
         print("extrapolated:", ", ".join(f"{name} {value:.4f}" for name, value in limits.items()))
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -16,25 +16,23 @@ import argparse
 import math
 import pathlib
 import statistics
-import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from recording import parse_with_arguments, read_history  # noqa: E402
+from recording import parse_with_arguments, read_history, run_parachute  # noqa: E402
 
 PAYLOAD = (-3.0, 0.0, -4.4)  # m
 BOX = ("grid.cells=[45, 45, 48]", "grid.domain=[[-9, 9], [-9, 9], [-9.2, 10]]", "verify={divergence = 1e-12}")
 DIAMETER, LINES = 8.534, 7.0  # m, of the scene
 
 
-def assignments(angle, seed, amplitude):
-    """--set arguments of a run."""
+def settings(angle, seed, amplitude):
+    """Assignments of a run."""
     distance = math.sqrt(LINES**2 - (DIAMETER / 2) ** 2)
     turn = math.radians(angle)
     centre = [PAYLOAD[0] + distance * math.sin(turn), PAYLOAD[1], PAYLOAD[2] + distance * math.cos(turn)]
-    values = [*BOX, 'canopy[0].shape="flat"', f"canopy[0].angle={angle:g}", f"canopy[0].centre={centre}",
-              f"canopy[0].perturbation={{amplitude = {amplitude}, seed = {seed}}}", "output.fields=[]"]
-    return [word for value in values for word in ("--set", value)]
+    return [*BOX, 'canopy[0].shape="flat"', f"canopy[0].angle={angle:g}", f"canopy[0].centre={centre}",
+            f"canopy[0].perturbation={{amplitude = {amplitude}, seed = {seed}}}", "output.fields=[]"]
 
 
 def measures(directory):
@@ -57,19 +55,14 @@ def main():
     for angle in options.angles:
         runs = []
         for seed in range(1, options.runs + 1):
-            out = options.out / f"{angle:g}-{seed}"
-            run = subprocess.run([program, "c9-angled-60", "--quiet", "--overwrite", "--out", out,
-                                  *assignments(angle, seed, options.amplitude), *arguments], check=False)
-            if run.returncode != 0:
-                return run.returncode
-            runs.append(measures(out))
+            sets = settings(angle, seed, options.amplitude)
+            runs.append(measures(run_parachute(options, "c9-angled-60", f"{angle:g}-{seed}", sets, arguments)))
         last, largest, force, time = zip(*runs)
         print(f"{angle:g} degrees: index", " ".join(f"{index:.2f}" for index in last),
               f"; mean {statistics.mean(last):.2f}; above one half {sum(index > 0.5 for index in last)} of {len(runs)}"
               f"; largest {statistics.median(largest):.2f}; {statistics.median(force):.0f} N at {statistics.median(time):.2f} s",
-                  flush=True)
-    return 0
+              flush=True)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

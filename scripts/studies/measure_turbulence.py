@@ -14,11 +14,10 @@ import json
 import math
 import pathlib
 import resource
-import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from recording import parse_with_arguments, read_history  # noqa: E402
+from recording import parse_with_arguments, read_history, run_parachute  # noqa: E402
 
 VOLUME = (2 * math.pi) ** 3
 
@@ -40,13 +39,11 @@ def main():
     for cells in options.cells:
         for advection in options.advections:
             for model in options.models:
-                out = options.out / f"{cells}-{advection}-{model}"
                 # Rows about 0.1 s apart: a coarser history flattens the peak.
                 sets = (f"grid.cells=[{cells}, {cells}, {cells}]", f"flow.advection={advection}", f"flow.turbulence={model}",
                         f"output={{history_every={max(1, cells // 32)}}}", "verify={}")
                 before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-                subprocess.run([options.bin / "drogue-parachute", "taylor-green-3d", "--quiet", "--overwrite", "--out", out,
-                                *(word for each in sets for word in ("--set", each)), *arguments], check=True)
+                out = run_parachute(options, "taylor-green-3d", f"{cells}-{advection}-{model}", sets, arguments)
                 spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
                 steps = json.loads((out / "result.json").read_text(encoding="utf-8"))["steps"]
                 left, peak, at, viscous = measure(read_history(out))

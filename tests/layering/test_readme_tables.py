@@ -38,6 +38,10 @@ class Repository(unittest.TestCase):
         process = subprocess.run(words, capture_output=True, text=True, check=False)
         self.assertEqual(0, process.returncode, process.stderr)
 
+    def test_every_rung_of_a_record_passed_its_check(self):
+        for file in (ROOT / "docs/evidence/ladders").glob("*.jsonl"):
+            self.assertNotIn('"check":"failed"', file.read_text(encoding="utf-8"), file.name)
+
     def test_every_table_of_numbers_has_marks(self):
         outside = readme.MARK.sub("", README)
         self.assertNotRegex(outside, r"\n\|(?:---:\|){2,}\n")

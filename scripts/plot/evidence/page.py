@@ -100,26 +100,23 @@ def _cases(records: list[Record]) -> str:
     return "; ".join(f"{line.case} on {line.machine.name} ({error})" for line, error in zip(records, errors))
 
 
+def _places(records: list[Record]) -> str:
+    return "; ".join(f"{record.case} on {record.machine.name}" for record in records)
+
+
 def notes(evidence: Evidence) -> list[str]:
     """Sentences about the records that the page omits, with the reason."""
     found = []
-    if evidence.failed_checks:
-        count = _counted(len(evidence.failed_checks), "record is", "records are")
-        found.append(f"{count} left out for a failed check: {_cases(evidence.failed_checks)}.")
-    if evidence.untimed:
-        count = _counted(len(evidence.untimed), "record is", "records are")
-        places = "; ".join(f"{record.case} on {record.machine.name}" for record in evidence.untimed)
-        found.append(f"{count} left out for having no samples: {places}.")
-    if evidence.superseded:
-        count = _counted(len(evidence.superseded), "record is", "records are")
-        found.append(f"{count} left out, because a later one of the same case and machine exists.")
-    if evidence.cold:
-        count = _counted(len(evidence.cold), "record", "records")
-        found.append(f"{count} with cold caches: no figure compares them with others, whose caches are warm.")
-    if evidence.outdated:
-        count = _counted(len(evidence.outdated), "record has", "records have")
-        places = "; ".join(f"{record.case} on {record.machine.name}" for record in evidence.outdated)
-        found.append(f"{count} no bounds: their counts of work differ from the latest ones of the same case: {places}.")
+    are = ("record is", "records are")
+    for records, words, why in (
+            (evidence.failed_checks, are, f"left out for a failed check: {_cases(evidence.failed_checks)}"),
+            (evidence.untimed, are, f"left out for having no samples: {_places(evidence.untimed)}"),
+            (evidence.superseded, are, "left out, because a later one of the same case and machine exists"),
+            (evidence.cold, ("record", "records"), "with cold caches: no figure compares them with others, whose caches are warm"),
+            (evidence.outdated, ("record has", "records have"),
+             f"no bounds: their counts of work differ from the latest ones of the same case: {_places(evidence.outdated)}")):
+        if records:
+            found.append(f"{_counted(len(records), *words)} {why}.")
     for kind, number in sorted(evidence.unknown_kinds.items()):
         count = _counted(number, "record", "records")
         words = _WITHOUT_SECTION.get(kind, f"of the kind {kind}, which this page does not know")

@@ -151,21 +151,14 @@ def _format_interval(values: _Estimate) -> str:
 
 
 def _goal_row(goal: Goal, record: Record, by_case: dict[tuple, Record]) -> list[Cell | str]:
-    limits = [
-        "" if limit is None else html_page.format_number(limit)
-        for limit in (goal.probe, goal.goal, goal.stretch)
-    ]
     values = measured(goal, record, by_case.get((goal.compared_case, *record.run_id)))
     if values is None:
-        return [
-            _case_label(goal, record), goal.measure, "", *limits,
-            f"{_short(goal.compared_case)} is not in the same run",
-        ]
-    words = verdict(goal, values[0])
-    return [
-        _case_label(goal, record), goal.measure, _format_interval(values), *limits,
-        Cell(words, "bad" if words.startswith("missed") else "good"),
-    ]
+        interval, result = "", f"{_short(goal.compared_case)} is not in the same run"
+    else:
+        words = verdict(goal, values[0])
+        interval, result = _format_interval(values), Cell(words, "bad" if words.startswith("missed") else "good")
+    limits = ("" if limit is None else html_page.format_number(limit) for limit in (goal.probe, goal.goal, goal.stretch))
+    return [_case_label(goal, record), goal.measure, interval, *limits, result]
 
 
 def goal_table(records: list[Record]) -> Table | None:
@@ -195,26 +188,15 @@ def step_table(records: list[Record], bandwidths: dict[str, float] | None = None
     kind, rows = _KINDS[records[0].kind], []
     for record in records:
         seconds, cells = _seconds(record), record.facts["cells"]
-        rows.append(
-            [
-                _NAMES.get(record.facts["backend"], record.facts["backend"]),
-                record.facts["variant"],
-                html_page.format_grouped(cells),
-                _format_interval(_scale(seconds, 1e6)),
-                html_page.format_number(kind.scales[0] * seconds[0] / cells),
-                html_page.format_number(kind.scales[1] * cells / seconds[0]),
-                *([html_page.format_number(record.error)] if kind.errors else []),
-                *([_traffic_bound(record, bandwidths)] if bandwidths else []),
-            ]
-        )
+        row = [_NAMES.get(record.facts["backend"], record.facts["backend"]), record.facts["variant"], html_page.format_grouped(cells)]
+        row += [_format_interval(_scale(seconds, 1e6)), html_page.format_number(kind.scales[0] * seconds[0] / cells)]
+        row += [html_page.format_number(kind.scales[1] * cells / seconds[0])]
+        row += [html_page.format_number(record.error)] if kind.errors else []
+        rows.append(row + ([_traffic_bound(record, bandwidths)] if bandwidths else []))
     columns = [("backend", False), ("variant", False), (kind.mesh, True)]
     columns += [(name, True) for name in (kind.time, *kind.per_mesh, *(["error"] if kind.errors else []))]
     columns += [("memory traffic alone", True)] if bandwidths else []
-    return Table(
-        columns,
-        rows,
-        f"What {kind.title[0].lower()}{kind.title[1:]} cost{'s' if kind.title[:2] == 'A ' else ''}",
-    )
+    return Table(columns, rows, f"What {kind.title[0].lower()}{kind.title[1:]} cost{'s' if kind.title[:2] == 'A ' else ''}")
 
 
 def sections(records: list[Record], bandwidths: dict[str, float] | None = None) -> list[Section]:
@@ -222,19 +204,11 @@ def sections(records: list[Record], bandwidths: dict[str, float] | None = None) 
     if not records:
         return []
     order = list(_NAMES)
-    ordered = sorted(
-        records,
-        key=lambda record: (
-            order.index(record.facts["backend"]) if record.facts["backend"] in order else len(order),
-            record.facts["cells"],
-            record.facts["variant"],
-        ),
-    )
-    goals = goal_table(ordered)
-    kind = records[0].kind
-    command = f"drogue-perf run --filter ^{kind}/ --out FILE.jsonl"
-    return [
-        Section(
-            _KINDS[kind].title, command, ordered, tables=[step_table(ordered, bandwidths)] + ([goals] if goals else [])
-        )
-    ]
+
+    def place(record: Record) -> tuple:
+        backend = record.facts["backend"]
+        return order.index(backend) if backend in order else len(order), record.facts["cells"], record.facts["variant"]
+
+    ordered, kind = sorted(records, key=place), records[0].kind
+    tables = [table for table in (step_table(ordered, bandwidths), goal_table(ordered)) if table]
+    return [Section(_KINDS[kind].title, f"drogue-perf run --filter ^{kind}/ --out FILE.jsonl", ordered, tables=tables)]

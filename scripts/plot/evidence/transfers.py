@@ -149,11 +149,8 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
             panel.bar(place, values, 0.72, bottom=base, color=colour)
             base += values
         for index, top, row in zip(place, base, rows):
-            panel.annotate(
-                style.format_number(row["total"]), (index, top), (0, 2), textcoords="offset points", ha="center",
-                fontsize=6.5,
-                color=style.MUTED,
-            )
+            panel.annotate(style.format_number(row["total"]), (index, top), (0, 2), textcoords="offset points", ha="center",
+                           fontsize=6.5, color=style.MUTED)
         panel.set_title(source, pad=8)
     if cores:
         _draw_core(axes.flat[len(panels)], meshes, cores)
@@ -183,11 +180,8 @@ def transfers_table(records: list[Record]) -> Table:
             row.append(html_page.format_number(parts["cpu"]) if "cpu" in parts else "")
         thesis = found.get((cells, _THESIS))
         if kind.compared:
-            row.append(
-                ""
-                if source == _THESIS or not thesis
-                else html_page.format_number(thesis["total"] / parts["total"])
-            )
+            is_ratio = thesis and source != _THESIS
+            row.append(html_page.format_number(thesis["total"] / parts["total"]) if is_ratio else "")
         rows.append(row)
     return Table(columns, rows)
 
@@ -206,10 +200,7 @@ def sections(machine: Machine, records: list[Record]) -> list[Section]:
         )
         notes = ["Parts and total are medians of their own: they need not add up."]
         if any(source == _THESIS for _, source in times(own)):
-            words = (
-                f"Times of [Shi] (the dissertation that README.md cites) are those of its Table {kind.table}, on its "
-                "own machine."
-            )
+            words = f"Times of [Shi] (the dissertation that README.md cites) are those of its Table {kind.table}, on its own machine."
             notes.append(" ".join(filter(None, [words, kind.note])))
         command = f"drogue-perf table transfers --app {kind.app} --out FILE.jsonl"
         found.append(Section(title, command, own, [picture], [transfers_table(own)], notes))

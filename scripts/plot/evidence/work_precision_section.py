@@ -54,9 +54,8 @@ def _table(shown: list[Curve], all_curves: list[Curve], errors: list[float], tit
     for error in errors:
         columns += [(Markup("to {}").format(html_page.format_number(error)), True), ("factor", True)]
     columns.append(("faster at errors", False))
-    table = Table(columns, [_row(curve, all_curves, errors) for curve in shown], title=title, folded=folded)
     # A scheme without the competitor on its backend has no factor, nor has one that misses the error.
-    return table
+    return Table(columns, [_row(curve, all_curves, errors) for curve in shown], title=title, folded=folded)
 
 
 def _failures(records: list[Record]) -> list[str]:
@@ -117,9 +116,7 @@ def _threads(records: list[Record]) -> str:
     return f", {counts.pop()} threads" if len(counts) == 1 else ""
 
 
-def _section(
-    family: SchemeFamily, problem: str, machine: Machine, solved: list[Record], failed: list[Record]
-) -> Section:
+def _section(family: SchemeFamily, problem: str, machine: Machine, solved: list[Record], failed: list[Record]) -> Section:
     title = family.problems.get(problem, problem)
     all_curves = curves(solved)
     default = [curve for curve in all_curves if curve.scheme.has_default_settings]
@@ -127,13 +124,9 @@ def _section(
     best, errors = best_scheme(all_curves), target_errors(all_curves)
     pictures, tables = [], []
     if default:
-        pictures.append(
-            Picture(
-                f"solution_{problem}_{machine.slug}",
-                lambda: solution_figure(problem, machine, all_curves, best, _threads(solved)),
-                f"Error against time to solution of {title}, one curve a scheme, one column a backend",
-            )
-        )
+        words = f"Error against time to solution of {title}, one curve a scheme, one column a backend"
+        pictures.append(Picture(f"solution_{problem}_{machine.slug}",
+                                lambda: solution_figure(problem, machine, all_curves, best, _threads(solved)), words))
         tables.append(_table(default, all_curves, errors, "Time to reach an error", False))
         if variants:
             tables.append(_table(variants, all_curves, errors, "The same with other settings", True))
@@ -144,10 +137,7 @@ def _section(
     exact = sum(record.error <= 0 for record in solved)
     if exact:
         notes.append(f"{exact} runs without any error are not drawn.")
-    return Section(
-        f"{title}: error against time", family.command, solved + failed, pictures, tables, notes,
-        _failures(failed),
-    )
+    return Section(f"{title}: error against time", family.command, solved + failed, pictures, tables, notes, _failures(failed))
 
 
 def sections(machine: Machine, records: list[Record], failed: list[Record]) -> list[Section]:
@@ -159,10 +149,8 @@ def sections(machine: Machine, records: list[Record], failed: list[Record]) -> l
     problems = list(dict.fromkeys(record.facts["problem"] for record in every))
     order = list(family.problems)
     problems.sort(key=lambda name: order.index(name) if name in order else len(order))
-    return [
-        _section(
-            family, problem, machine, [record for record in records if record.facts["problem"] == problem],
-            [record for record in failed if record.facts["problem"] == problem],
-        )
-        for problem in problems
-    ]
+
+    def of(problem: str, some: list[Record]) -> list[Record]:
+        return [record for record in some if record.facts["problem"] == problem]
+
+    return [_section(family, problem, machine, of(problem, records), of(problem, failed)) for problem in problems]

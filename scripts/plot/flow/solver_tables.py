@@ -45,12 +45,8 @@ def pressure_sections(records: list[Record]) -> list[Section]:
     columns = [("backend", False), ("grid", False), ("sides", False), ("solver", False), ("tolerance", True),
                ("ms per solve", True), ("ns per cell", True), ("iterations", True), ("residual", True)]
     note = "Residual: the largest of a random right-hand side, over the largest term of the equation. hypre computes on the host."
-    return [
-        Section(
-            "Pressure solvers", "drogue-perf table pressure --out FILE.jsonl", ordered,
-            tables=[Table(columns, [_pressure_row(record) for record in ordered], "Time of a solve", note)],
-        )
-    ]
+    table = Table(columns, [_pressure_row(record) for record in ordered], "Time of a solve", note)
+    return [Section("Pressure solvers", "drogue-perf table pressure --out FILE.jsonl", ordered, tables=[table])]
 
 
 def _memory_row(record: Record) -> list[Cell | str]:
@@ -74,9 +70,5 @@ def memory_sections(records: list[Record]) -> list[Section]:
         "Arrays: all Views, with ghost cells. Driver: what the GPU's driver counts, with the work areas of libraries. "
         f"Goal on 512x512x512 cells: {goal:g}, stretch {stretch:g}."
     )
-    return [
-        Section(
-            "Memory", "drogue-perf table memory --out FILE.jsonl", ordered,
-            tables=[Table(columns, [_memory_row(record) for record in ordered], "Bytes per cell", note)],
-        )
-    ]
+    table = Table(columns, [_memory_row(record) for record in ordered], "Bytes per cell", note)
+    return [Section("Memory", "drogue-perf table memory --out FILE.jsonl", ordered, tables=[table])]
