@@ -51,10 +51,10 @@ class Repository(unittest.TestCase):
     def test_each_rung_of_a_ladder_is_one_file(self):
         for ladder in ("weno", "springs", "options", "transfers"):
             own = {path: text for path, text in TEXTS.items() if path.startswith(f"perf/ladders/{ladder}/") and path.endswith(".hpp")}
-            names = {path: re.findall(r'RungText text\{\s*"([^"]+)"', text) for path, text in own.items()}
+            names = {path: re.findall(r'RungText\{\s*"([^"]+)"', text) for path, text in own.items()}
             rungs = [(path.split("/")[-1], name.replace("-", "_") + ".hpp") for path, found in names.items() for name in found]
             self.assertEqual([], [rung for rung in rungs if rung[0] != rung[1]])
-            self.assertEqual(len(re.findall("make_rung<", own[f"perf/ladders/{ladder}/ladder.hpp"])), len(rungs), ladder)
+            self.assertEqual(len(re.findall("_rung<", TEXTS[f"perf/ladders/{ladder}/ladder.cpp"])), len(rungs), ladder)
             self.assertGreater(len(rungs), 3, ladder)
 
 
