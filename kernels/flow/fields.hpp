@@ -1,7 +1,11 @@
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
+#include "kernels/flow/halo/decomposition.hpp"
+#include "kernels/flow/solver.hpp"
 #include "kernels/flow/turbulence/eddy_viscosity.hpp"
 
 namespace drogue::flow {
@@ -12,7 +16,7 @@ template <class ExecutionSpace>
 struct Fields {
   using Values = List<ExecutionSpace>;
 
-  // State, with which a run continues.
+  // State, with which a run continues; listed by `make_state`.
   Values velocity;  ///< m/s, on faces
   Values rate;      ///< m/s^2, on faces: change of the velocity in the last step without pressure; AB2 only
   Values pressure;  ///< m^2/s^2, kinematic, at cells: that of the last step
@@ -40,21 +44,61 @@ Fields<ExecutionSpace> make_fields(const Parameters& p, const MacGrid& grid, con
     return is_needed ? Values("drogue::flow::" + name, static_cast<std::size_t>(3 * grid.component + 64))
                      : Values();
   };
-  const auto at_cells = [&](const std::string& name) {
+  const auto at_centres = [&](const std::string& name) {
     return Values("drogue::flow::" + name, static_cast<std::size_t>(grid.cells()));
   };
   const bool has_model = p.turbulence != Turbulence::none;
-  const Values divergence = at_cells("divergence");
+  const Values divergence = at_centres("divergence");
   return {.velocity = on_faces("velocity"),
           .rate = on_faces("rate", p.time_scheme == TimeScheme::ab2),
-          .pressure = at_cells("pressure"),
+          .pressure = at_centres("pressure"),
           .force = on_faces("force", p.external_force),
           .predicted = on_faces("predicted_velocity"),
           .stage = on_faces("stage", p.time_scheme == TimeScheme::rk3),
           .divergence = divergence,
-          .solution = p.diffusion == Diffusion::explicit_ ? divergence : at_cells("pressure_increment"),
+          .solution = p.diffusion == Diffusion::explicit_ ? divergence : at_centres("pressure_increment"),
           .eddy_viscosity = has_model ? Values("drogue::flow::eddy_viscosity", eddy_cells.size()) : Values(),
           .eddy_acceleration = on_faces("eddy_acceleration", has_model)};
+}
+
+/// Array of the state, and where it stands.
+template <class ExecutionSpace>
+struct StateEntry {
+  stepping::StateArray array;
+  List<ExecutionSpace> values;
+  std::size_t normal;  ///< axis that its faces are normal to, or `at_cells`
+};
+
+/// The state on a rank: with these arrays and `Progress`, an equal solver continues bit for bit. A new member
+/// is one line here. Throws std::bad_alloc.
+template <class ExecutionSpace>
+std::vector<StateEntry<ExecutionSpace>> make_state(const Fields<ExecutionSpace>& fields, const Parameters& p,
+                                                   const linear::PencilRanks& ranks) {
+  std::vector<StateEntry<ExecutionSpace>> state;
+  const auto add = [&](const std::string& name, const char* unit, const List<ExecutionSpace>& values,
+                       std::size_t normal) {
+    const std::array<int, 3> whole = extents(p, normal);
+    const linear::CellBox part = part_of(whole, p, ranks);
+    const auto z_first = [](const std::array<int, 3>& n) {
+      return std::vector<std::size_t>(n.rbegin(), n.rend());
+    };
+    state.push_back({{.name = name,
+                      .unit = unit,
+                      .extent = z_first(part.cells),
+                      .whole = z_first(whole),
+                      .begin = z_first(part.begin)},
+                     values,
+                     normal});
+  };
+  const auto add_on_faces = [&](const std::string& name, const char* unit,
+                                const List<ExecutionSpace>& values) {
+    if (values.data() == nullptr) return;
+    for (std::size_t c = 0; c < 3; ++c) add(name + "_" + "xyz"[c], unit, values, c);
+  };
+  add_on_faces("velocity", "m/s", fields.velocity);
+  add("pressure", "m^2/s^2", fields.pressure, at_cells);
+  add_on_faces("rate", "m/s^2", fields.rate);
+  return state;
 }
 
 }  // namespace drogue::flow

@@ -8,6 +8,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kernels/device/copy.hpp"
@@ -30,7 +31,7 @@ namespace drogue::flow {
 /// that before the step.
 ///
 /// On a group of several ranks each holds a box of the cells (`decompose`). All functions are then
-/// collective, every step waits for the host, and arrays are those of the rank (`part_of`).
+/// collective, every step waits for the host, and arrays are those of the rank.
 ///
 /// Final functions are documented in `Solver`.
 template <class ExecutionSpace>
@@ -104,8 +105,9 @@ class FlowSolver : public Solver {
   /// `advance` ends. Does not throw.
   [[nodiscard]] const ControlView<ExecutionSpace>& control() const { return _step.control; }
 
-  void upload(StateField field, std::span<const double> values) final;
-  void download(StateField field, std::span<double> values) final;
+  [[nodiscard]] std::vector<stepping::StateArray> state() const final;
+  void upload(std::string_view name, std::span<const double> values) final;
+  void download(std::string_view name, std::span<double> values) final;
   void start() final;
   void restore(const Progress& progress) final;
   Stop advance(double target, std::int64_t pause_step, const Poll& poll) final;
@@ -136,12 +138,15 @@ class FlowSolver : public Solver {
   [[nodiscard]] double longest_first_dt() const;
   [[nodiscard]] stepping::MotionBound motion_bound(const Progress& now, double dt, double steps) const;
   Control solve_present_pressure(double nu, double fraction = 1e-4);
-  [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
+  [[nodiscard]] const StateEntry<ExecutionSpace>& find(std::string_view name, std::size_t size) const;
+  [[nodiscard]] PackFunctor<ExecutionSpace> packing(const StateEntry<ExecutionSpace>& entry,
+                                                    bool to_field) const;
   Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
   void enqueue_extremes(const ExecutionSpace& space);
 
   const device::Instance<ExecutionSpace>* _instance;
   Step<ExecutionSpace> _step;
+  std::vector<StateEntry<ExecutionSpace>> _state;
   std::array<double, 3> _frame_velocity{};  ///< m/s
   TotalsSum<ExecutionSpace> _totals_sum;
   std::optional<StepExtremes<ExecutionSpace>> _extremes;  ///< if they are watched
@@ -154,6 +159,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
                                        const Parameters& parameters, const linear::RankGroup& group)
     : _instance(&instance),
       _step(instance.space(), parameters, group),
+      _state(make_state(_step.fields, parameters, _step.ranks)),
       _totals_sum(_step.grid, _step.fields.predicted),
       _loop(instance),
       // Messages and an iterative solver wait for the host in every step, which a graph cannot hold.
@@ -178,56 +184,65 @@ void FlowSolver<ExecutionSpace>::write_control(Control control) {
   space().fence("drogue::flow::solver: write control");
 }
 
-/// Copy of a component of the state to or from the beginning of the predicted velocity, which is free between
-/// steps.
 template <class ExecutionSpace>
-PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field, std::size_t size,
-                                                                bool to_field) const {
-  const int index = static_cast<int>(field);
-  const bool is_rate = index >= static_cast<int>(StateField::rate_x);
-  if (is_rate && _step.parameters.time_scheme != TimeScheme::ab2)
-    throw std::invalid_argument("flow solver: only the scheme AB2 has rates of the previous step");
-  const std::array<int, 3> shape = part_of(_step.parameters, _step.ranks, field).cells;
-  if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) *
-                  static_cast<std::size_t>(shape[2]))
+std::vector<stepping::StateArray> FlowSolver<ExecutionSpace>::state() const {
+  std::vector<stepping::StateArray> arrays;
+  for (const StateEntry<ExecutionSpace>& entry : _state) arrays.push_back(entry.array);
+  return arrays;
+}
+
+/// Array of the state with that name and number of entries. Throws as `upload`.
+template <class ExecutionSpace>
+const StateEntry<ExecutionSpace>& FlowSolver<ExecutionSpace>::find(std::string_view name,
+                                                                   std::size_t size) const {
+  for (const StateEntry<ExecutionSpace>& entry : _state) {
+    if (entry.array.name != name) continue;
+    if (entry.array.size() == size) return entry;
     throw std::invalid_argument("flow solver: an array of the state has the wrong length");
-  const auto axis = static_cast<std::size_t>(index % 3);
-  const bool has_low_side =
-      extents(_step.parameters, field) != _step.parameters.cells && _step.ranks.place[axis] == 0;
+  }
+  throw std::invalid_argument("flow solver: its state has no array '" + std::string(name) + "'");
+}
+
+/// Copy of an array on faces to or from the beginning of the predicted velocity, which is free between steps.
+template <class ExecutionSpace>
+PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(const StateEntry<ExecutionSpace>& entry,
+                                                                bool to_field) const {
+  const auto whole = x_first(entry.array.whole), extent = x_first(entry.array.extent);
+  const int axis = static_cast<int>(entry.normal);
+  // The rates of low faces on a side stand in the ghost cells below them.
+  const bool is_rate = entry.values.data() == _step.fields.rate.data();
+  const bool has_low_side = whole[entry.normal] != _step.parameters.cells[entry.normal] &&
+                            x_first(entry.array.begin)[entry.normal] == 0;
   return {.grid = _step.grid,
-          .field = is_rate ? _step.fields.rate : _step.fields.velocity,
+          .field = entry.values,
           .contiguous = _step.fields.predicted,
-          .first = (index % 3) * _step.grid.component,
-          .extent = {shape[0], shape[1], shape[2]},
+          .first = axis * _step.grid.component,
+          .extent = {extent[0], extent[1], extent[2]},
           .to_field = to_field,
-          .bounded_axis = is_rate && has_low_side ? index % 3 : -1};
+          .bounded_axis = is_rate && has_low_side ? axis : -1};
 }
 
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::upload(StateField field, std::span<const double> values) {
-  if (field == StateField::pressure) {
-    if (values.size() != _step.fields.pressure.extent(0))
-      throw std::invalid_argument("flow solver: an array of the state has the wrong length");
-    device::copy_in(space(), _step.fields.pressure, values.data(), values.size());
-  } else {
-    const auto pack = packing(field, values.size(), true);
-    device::copy_in(space(), _step.fields.predicted, values.data(), values.size());
+void FlowSolver<ExecutionSpace>::upload(std::string_view name, std::span<const double> values) {
+  const StateEntry<ExecutionSpace>& entry = find(name, values.size());
+  const bool on_faces = entry.normal != at_cells;
+  device::copy_in(space(), on_faces ? _step.fields.predicted : entry.values, values.data(), values.size());
+  if (on_faces) {
+    const auto pack = packing(entry, true);
     launch_cells(space(), "drogue::flow::upload", pack.extent, pack);
   }
   space().fence("drogue::flow::upload");
 }
 
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::download(StateField field, std::span<double> values) {
-  if (field == StateField::pressure) {
-    if (values.size() != _step.fields.pressure.extent(0))
-      throw std::invalid_argument("flow solver: an array of the state has the wrong length");
-    device::copy_out(space(), values.data(), _step.fields.pressure, values.size());
-  } else {
-    const auto pack = packing(field, values.size(), false);
+void FlowSolver<ExecutionSpace>::download(std::string_view name, std::span<double> values) {
+  const StateEntry<ExecutionSpace>& entry = find(name, values.size());
+  const bool on_faces = entry.normal != at_cells;
+  if (on_faces) {
+    const auto pack = packing(entry, false);
     launch_cells(space(), "drogue::flow::download", pack.extent, pack);
-    device::copy_out(space(), values.data(), _step.fields.predicted, values.size());
   }
+  device::copy_out(space(), values.data(), on_faces ? _step.fields.predicted : entry.values, values.size());
   space().fence("drogue::flow::download");
 }
 

@@ -45,11 +45,10 @@ void check_net_inflow(const Parameters& p) {
 
 }  // namespace
 
-std::array<int, 3> extents(const Parameters& p, StateField field) {
+std::array<int, 3> extents(const Parameters& p, std::size_t normal) {
   std::array<int, 3> shape = p.cells;
-  if (field == StateField::pressure) return shape;
-  const std::size_t axis = static_cast<std::size_t>(field) % 3;
-  if (p.cells[axis] > 1 && p.boundary[2 * axis].kind != BoundaryKind::periodic) ++shape[axis];
+  if (normal != at_cells && p.cells[normal] > 1 && p.boundary[2 * normal].kind != BoundaryKind::periodic)
+    ++shape[normal];
   return shape;
 }
 
@@ -71,18 +70,6 @@ const char* failure_text(FailureReason reason) {
       return "the prescribed velocities have a net inflow, but no side is an outflow";
   }
   return "";
-}
-
-std::vector<StateField> state_fields(const Parameters& p) {
-  using enum StateField;
-  std::vector<StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
-  if (p.time_scheme == TimeScheme::ab2) fields.insert(fields.end(), {rate_x, rate_y, rate_z});
-  return fields;
-}
-
-std::size_t state_size(const Parameters& p, StateField field) {
-  const std::array<int, 3> n = extents(p, field);
-  return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
 }
 
 void check_parameters(const Parameters& p) {

@@ -5,12 +5,15 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "kernels/device/backend.hpp"
 #include "kernels/flow/parameters.hpp"
 #include "kernels/flow/state.hpp"
 #include "kernels/linear/parallel/rank_group.hpp"
+#include "kernels/stepping/state_array.hpp"
 
 namespace drogue::flow {
 
@@ -24,14 +27,18 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Sets an array of the state, in the unit of `StateField` (m/s, m/s^2 or m^2/s^2). Its shape is that of
-  /// `extents`, x fastest. Throws std::invalid_argument for a span of the wrong length or an array that the
-  /// time scheme does not have.
-  virtual void upload(StateField field, std::span<const double> values) = 0;
+  /// Arrays of the state on this rank: "velocity_x" to "velocity_z" on the faces normal to an axis; with AB2
+  /// "rate_x" to "rate_z", the rates of change without pressure of the previous step; "pressure", kinematic,
+  /// at the cell centres, of the last step and of second order at its middle. The index along x varies
+  /// fastest. With them and `Progress`, an equal solver continues bit for bit. Throws std::bad_alloc.
+  [[nodiscard]] virtual std::vector<stepping::StateArray> state() const = 0;
 
-  /// Copies an array of the state, in the unit of `StateField` (m/s, m/s^2 or m^2/s^2). Throws as `upload`
-  /// does.
-  virtual void download(StateField field, std::span<double> values) = 0;
+  /// Sets an array of `state`, in its unit. Throws std::invalid_argument for an unknown name and a span of
+  /// the wrong length.
+  virtual void upload(std::string_view name, std::span<const double> values) = 0;
+
+  /// Copies an array of `state`, in its unit. Throws as `upload` does.
+  virtual void download(std::string_view name, std::span<double> values) = 0;
 
   /// Makes the uploaded velocity the initial state at time 0 s and step 0: sets the prescribed values on the
   /// sides and subtracts the gradient that makes the velocity free of divergence.
@@ -75,16 +82,23 @@ class Solver {
   [[nodiscard]] virtual const char* pressure_solver() const = 0;
 };
 
-/// Shape of an array of the state, x first: the cells, with one more along axis c for component c of the
-/// velocity or rate if axis c is not periodic and has more than one cell. Does not throw.
-[[nodiscard]] std::array<int, 3> extents(const Parameters& parameters, StateField field);
+/// Name of the array of the state that holds the velocity along an axis. Does not throw.
+[[nodiscard]] inline std::string velocity_name(std::size_t axis) {
+  return std::string("velocity_") + "xyz"[axis];
+}
 
-/// Arrays of the state with which, and with `Progress`, a restart continues bit for bit. Throws
-/// std::bad_alloc.
-[[nodiscard]] std::vector<StateField> state_fields(const Parameters& parameters);
+/// Indices along x, y and z from those of a `stepping::StateArray` of a flow, the last of which varies along
+/// x. Does not throw.
+[[nodiscard]] inline std::array<int, 3> x_first(const std::vector<std::size_t>& indices) {
+  return {static_cast<int>(indices[2]), static_cast<int>(indices[1]), static_cast<int>(indices[0])};
+}
 
-/// Number of entries of an array of the state on all ranks. Does not throw.
-[[nodiscard]] std::size_t state_size(const Parameters& parameters, StateField field);
+/// In place of the axis that the faces of an array are normal to: its points are the cell centres.
+inline constexpr std::size_t at_cells = 3;
+
+/// Shape of a whole array, x first: the cells; on faces one more along the axis that they are normal to, if
+/// it is not periodic and has more than one cell. Does not throw.
+[[nodiscard]] std::array<int, 3> extents(const Parameters& parameters, std::size_t normal = at_cells);
 
 /// Reason of a failed step in words, such as "the velocity is not finite". Does not throw.
 [[nodiscard]] const char* failure_text(FailureReason reason);
@@ -96,8 +110,8 @@ void check_parameters(const Parameters& parameters);
 /// Solver on a backend, which must be available. Throws std::invalid_argument as `check_parameters` does, and
 /// std::bad_alloc if memory runs out.
 ///
-/// On a group of several ranks each holds a part of the cells: arrays are those of `part_of`
-/// (kernels/flow/halo/decomposition.hpp), and all functions but those that do not throw are collective.
+/// On a group of several ranks each holds a part of the cells and of the arrays, and all functions but those
+/// that do not throw are collective.
 /// Throws std::invalid_argument also if the ranks cannot share the grid.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
                                                     const linear::RankGroup& group = {});

@@ -27,7 +27,7 @@ struct StepFailure : stepping::StepFailure<FailureReason> {
   double pressure_residual = 0.0;  ///< as `PressureSolve::residual`, of the solve that did not converge
 };
 
-/// Progress of a run. A restart that restores it and all `state_fields` continues bit for bit.
+/// Progress of a run. A restart that restores it and all arrays of `Solver::state` continues bit for bit.
 struct Progress : stepping::AdaptiveTime {
   double last_dt = 0.0;               ///< s, of the last step; 0: the next step has no predecessor
   double dt_min = 0.0, dt_max = 0.0;  ///< s, over all steps
@@ -37,22 +37,6 @@ struct Progress : stepping::AdaptiveTime {
   std::uint64_t velocity_rate_bits = 0;  ///< bits of that maximum of the velocity alone, 1/s
   double longest_dt = 0.0;               ///< s, bound of the next dt by the steps so far; 0: none
 };
-
-/// Array of the state. Component c of the velocity lies on the faces normal to axis c.
-enum class StateField : int {
-  velocity_x,
-  velocity_y,
-  velocity_z,  ///< m/s
-  rate_x,
-  rate_y,
-  rate_z,    ///< m/s^2, rate of change without pressure of the previous step; AB2 only
-  pressure,  ///< kinematic, at the cell centres, m^2/s^2: that of the last step, of second order at its
-             ///< middle
-};
-static_assert(static_cast<int>(StateField::velocity_x) == 0 &&
-                  static_cast<int>(StateField::velocity_z) == 2 &&
-                  static_cast<int>(StateField::rate_x) == 3 && static_cast<int>(StateField::rate_z) == 5,
-              "the axis of a velocity or a rate is its number modulo 3, and velocities come before rates");
 
 /// Field at the cell centres that is computed from the state.
 enum class CellField : int {

@@ -14,6 +14,9 @@ struct StateArray {
   std::string name;                 ///< in restart files, such as "velocity_x"
   std::string unit;                 ///< such as "m/s"
   std::vector<std::size_t> extent;  ///< index that varies fastest last
+  /// Of an array that several ranks share: extent of the whole array, and first indices of this part. Empty
+  /// for one that each rank holds.
+  std::vector<std::size_t> whole = {}, begin = {};
 
   /// Number of entries. Does not throw.
   [[nodiscard]] std::size_t size() const {

@@ -23,17 +23,17 @@ constexpr double speed = 10.0;  // m/s
 
 /// State that a sample begins from.
 struct State {
-  std::pmr::vector<std::pmr::vector<double>> flow;    ///< arrays of `flow::state_fields`
+  std::pmr::vector<std::pmr::vector<double>> flow;    ///< arrays of `flow::Solver::state`
   std::map<std::string, std::vector<double>> sheets;  ///< arrays of `coupling::Solver::state`
   coupling::Progress progress;
 };
 
-void save(coupling::Solver& solver, const coupling::Parameters& p, State& state) {
-  const auto fields = flow::state_fields(p.flow);
-  state.flow.resize(fields.size());
-  for (std::size_t k = 0; k < fields.size(); ++k) {
-    state.flow[k].resize(flow::state_size(p.flow, fields[k]));
-    solver.flow().download(fields[k], state.flow[k]);
+void save(coupling::Solver& solver, State& state) {
+  const std::vector<stepping::StateArray> arrays = solver.flow().state();
+  state.flow.resize(arrays.size());
+  for (std::size_t k = 0; k < arrays.size(); ++k) {
+    state.flow[k].resize(arrays[k].size());
+    solver.flow().download(arrays[k].name, state.flow[k]);
   }
   state.progress = solver.progress();
   for (const stepping::StateArray& array : solver.state()) {
@@ -42,19 +42,19 @@ void save(coupling::Solver& solver, const coupling::Parameters& p, State& state)
   }
 }
 
-void restore(coupling::Solver& solver, const coupling::Parameters& p, const State& state) {
+void restore(coupling::Solver& solver, const State& state) {
   std::size_t k = 0;
-  for (const flow::StateField field : flow::state_fields(p.flow))
-    solver.flow().upload(field, state.flow[k++]);
+  for (const stepping::StateArray& array : solver.flow().state())
+    solver.flow().upload(array.name, state.flow[k++]);
   for (const auto& [name, values] : state.sheets) solver.upload(name, values);
   solver.restore(state.progress);
 }
 
 /// Puts the cloth into the uniform stream.
 void start(coupling::Solver& solver, const Problem& problem) {
-  const std::vector<double> stream(flow::state_size(problem.parameters.flow, flow::StateField::velocity_z),
-                                   speed);
-  solver.flow().upload(flow::StateField::velocity_z, stream);
+  for (const stepping::StateArray& array : solver.flow().state())
+    if (array.name == "velocity_z")
+      solver.flow().upload(array.name, std::vector<double>(array.size(), speed));
   solver.fabric().upload(problem.positions, std::vector<fabric::Vector>(problem.positions.size()));
   solver.start();
 }
@@ -78,10 +78,10 @@ struct Run {
 
   /// Restores the state after `lead` seconds, which the first call computes.
   void begin() {
-    if (!start.flow.empty()) return restore(*solver, parameters(), start);
+    if (!start.flow.empty()) return restore(*solver, start);
     inflation::start(*solver, problem);
     fly_to(*solver, lead);
-    save(*solver, parameters(), start);
+    save(*solver, start);
   }
 };
 
@@ -172,8 +172,8 @@ Sample copied_steps(device::Backend backend, const Problem& problem, double lead
               if (run->solver->advance(from.time + 1e3, from.step + steps, {}) != flow::Stop::pause)
                 throw Failure(ExitCode::numerical_failure, "a step of the parachute benchmark failed");
             };
-            now->parts = timed_parts([&] { restore(*run->solver, run->parameters(), now->state); }, step,
-                                     [&] { save(*run->solver, run->parameters(), now->state); });
+            now->parts = timed_parts([&] { restore(*run->solver, now->state); }, step,
+                                     [&] { save(*run->solver, now->state); });
             return steps;
           },
           [=] { return imbalance(run->parameters(), *run->solver); }, [=] { return now->parts; }};

@@ -45,7 +45,7 @@ template <class Function>
 VelocityArrays sampled(const flow::Parameters& p, const Function& function) {
   VelocityArrays arrays;
   for (std::size_t c = 0; c < 3; ++c) {
-    const std::array<int, 3> n = flow::extents(p, static_cast<flow::StateField>(c));
+    const std::array<int, 3> n = flow::extents(p, c);
     const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
     const std::size_t size = nx * ny * static_cast<std::size_t>(n[2]);
     arrays[c].resize(size);
@@ -67,7 +67,7 @@ VelocityArrays sampled(const flow::Parameters& p, const Function& function) {
 }
 
 void start_from(flow::Solver& solver, const VelocityArrays& arrays) {
-  for (std::size_t c = 0; c < 3; ++c) solver.upload(static_cast<flow::StateField>(c), arrays[c]);
+  for (std::size_t c = 0; c < 3; ++c) solver.upload(flow::velocity_name(c), arrays[c]);
   solver.start();
 }
 
@@ -183,7 +183,7 @@ double exact_error(const flow::Parameters& p, flow::Solver& solver, long count) 
   advance_by(solver, count);
   const VelocityArrays last = exact(solver.progress().time);
   VelocityArrays computed = last;
-  for (std::size_t c = 0; c < 3; ++c) solver.download(static_cast<flow::StateField>(c), computed[c]);
+  for (std::size_t c = 0; c < 3; ++c) solver.download(flow::velocity_name(c), computed[c]);
   return std::sqrt(squared_distance(computed, last) / squared_distance(last, first));
 }
 

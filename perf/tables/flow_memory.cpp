@@ -35,13 +35,8 @@ Memory memory_of(device::Backend backend, flow::Parameters p) {
   p.fixed_dt = 1e-6;
   const std::int64_t arrays = device::profiling_counters().device_bytes, used = used_device_memory();
   const auto solver = flow::create_solver(backend, p);
-  for (const flow::StateField field :
-       {flow::StateField::velocity_x, flow::StateField::velocity_y, flow::StateField::velocity_z}) {
-    const std::array<int, 3> n = flow::extents(p, field);
-    solver->upload(field,
-                   std::vector<double>(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) *
-                                       static_cast<std::size_t>(n[2])));
-  }
+  for (const stepping::StateArray& array : solver->state())
+    solver->upload(array.name, std::vector<double>(array.size()));
   solver->start();
   solver->advance(std::numeric_limits<double>::max(), 1, {});
   return {device::profiling_counters().device_bytes - arrays,

@@ -136,7 +136,7 @@ Solution vortex_solution(const FlowProblem& problem, device::Backend backend, co
     // An iterative solver begins with its last solution. From there it may not converge where the right-hand
     // side is round-off, as that of the first projection is.
     if (iterates) solver = flow::create_solver(backend, p);
-    for (std::size_t c = 0; c < 3; ++c) solver->upload(static_cast<flow::StateField>(c), start[c]);
+    for (std::size_t c = 0; c < 3; ++c) solver->upload(flow::velocity_name(c), start[c]);
     solver->start();
     const Stopwatch stopwatch;
     const flow::Stop stop =
@@ -162,7 +162,7 @@ Solution vortex_solution(const FlowProblem& problem, device::Backend backend, co
     return s;
   }
   std::vector<double> u(start[0].size());
-  solver->download(flow::StateField::velocity_x, u);
+  solver->download("velocity_x", u);
   s.error = largest_difference(u, exact_field(problem, n, 0, flow_end_time));
   s.sound = std::isfinite(s.error) && solver->totals().divergence_rms < 1e-6;
   return s;

@@ -14,6 +14,7 @@
 #include "kernels/coupling/staggered_grid.hpp"
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "tests/support/backend.hpp"
+#include "tests/support/flow_state.hpp"
 #include "tests/support/profiled.hpp"
 
 namespace drogue::testing {
@@ -144,22 +145,20 @@ inline void restore_cloth(coupling::Solver& solver, const ClothState& state) {
 
 /// State of cloth and flow on the host.
 struct CoupledState : ClothState {
-  std::vector<std::vector<double>> flow;  ///< arrays of `flow::state_fields`
+  std::vector<std::vector<double>> flow;  ///< arrays of `flow::Solver::state`
 };
 
-inline CoupledState coupled_state(const CoupledCase& c, coupling::Solver& solver) {
+inline CoupledState coupled_state(coupling::Solver& solver) {
   CoupledState state{cloth_state(solver), {}};
-  for (const flow::StateField field : flow::state_fields(c.p.flow)) {
-    state.flow.emplace_back(flow::state_size(c.p.flow, field));
-    solver.flow().download(field, state.flow.back());
-  }
+  for (const stepping::StateArray& array : solver.flow().state())
+    state.flow.push_back(download(solver.flow(), array.name));
   return state;
 }
 
-inline void restore(const CoupledCase& c, const CoupledState& state, coupling::Solver& solver) {
+inline void restore(const CoupledState& state, coupling::Solver& solver) {
   std::size_t k = 0;
-  for (const flow::StateField field : flow::state_fields(c.p.flow))
-    solver.flow().upload(field, state.flow[k++]);
+  for (const stepping::StateArray& array : solver.flow().state())
+    solver.flow().upload(array.name, state.flow[k++]);
   restore_cloth(solver, state);
 }
 

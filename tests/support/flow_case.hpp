@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "kernels/flow/solver.hpp"
 #include "kernels/reference/flow/domain.hpp"
 #include "kernels/reference/flow/step.hpp"
 #include "tests/support/backend.hpp"
+#include "tests/support/flow_state.hpp"
 
 namespace drogue::testing {
 
@@ -44,25 +44,24 @@ StaggeredField sampled_field(const FlowDomain& domain, const Function& function)
   return field;
 }
 
-/// Array of the state.
-inline std::vector<double> download(flow::Solver& solver, const flow::Parameters& p, flow::StateField field) {
-  const std::array<int, 3> shape = flow::extents(p, field);
-  std::vector<double> values(static_cast<std::size_t>(shape[0] * shape[1] * shape[2]));
-  solver.download(field, values);
-  return values;
+inline StaggeredField velocity(flow::Solver& solver) {
+  return {download(solver, "velocity_x"), download(solver, "velocity_y"), download(solver, "velocity_z")};
 }
 
-inline StaggeredField velocity(flow::Solver& solver, const flow::Parameters& p) {
-  return {download(solver, p, flow::StateField::velocity_x),
-          download(solver, p, flow::StateField::velocity_y),
-          download(solver, p, flow::StateField::velocity_z)};
+/// Rates of change of the previous step, with AB2.
+inline StaggeredField rates(flow::Solver& solver) {
+  return {download(solver, "rate_x"), download(solver, "rate_y"), download(solver, "rate_z")};
+}
+
+inline void upload_velocity(flow::Solver& solver, const StaggeredField& u) {
+  for (std::size_t c = 0; c < 3; ++c) solver.upload(flow::velocity_name(c), u[c]);
 }
 
 /// Solver that has started from a velocity field.
 inline std::unique_ptr<flow::Solver> started(device::Backend backend, const flow::Parameters& p,
                                              const StaggeredField& u) {
   auto solver = flow::create_solver(backend, p);
-  for (std::size_t c = 0; c < 3; ++c) solver->upload(static_cast<flow::StateField>(c), u[c]);
+  upload_velocity(*solver, u);
   solver->start();
   return solver;
 }

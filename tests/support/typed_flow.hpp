@@ -11,19 +11,11 @@ namespace drogue::testing {
 template <class Space>
 struct TypedFlow {
   TypedFlow(const flow::Parameters& p, unsigned seed) : parameters(p), domain(p), solver(instance, p) {
-    const StaggeredField u = random_field(domain, seed);
-    for (std::size_t c = 0; c < 3; ++c) solver.upload(static_cast<flow::StateField>(c), u[c]);
+    upload_velocity(solver, random_field(domain, seed));
     solver.start();
   }
 
-  /// Three arrays of the state, from that of the x component on.
-  [[nodiscard]] StaggeredField arrays(flow::StateField first) {
-    StaggeredField values = domain.zero_field();
-    for (std::size_t c = 0; c < 3; ++c)
-      solver.download(static_cast<flow::StateField>(static_cast<std::size_t>(first) + c), values[c]);
-    return values;
-  }
-  [[nodiscard]] StaggeredField velocity() { return arrays(flow::StateField::velocity_x); }
+  [[nodiscard]] StaggeredField velocity() { return testing::velocity(solver); }
 
   flow::Parameters parameters;
   FlowDomain domain;

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "kernels/flow/parameters.hpp"
-#include "kernels/flow/state.hpp"
 #include "kernels/linear/parallel/cell_box.hpp"
 
 namespace drogue::flow {
@@ -71,15 +70,13 @@ inline linear::PencilRanks ranks_of(const Parameters& p, int ranks, int rank) {
   return place;
 }
 
-/// Part of an array of the state that a rank holds: its cells, and on the ranks at a bounded high side the
-/// faces of that side. Does not throw.
-[[nodiscard]] constexpr linear::CellBox part_of(const Parameters& p, const linear::PencilRanks& ranks,
-                                                StateField field) {
+/// Part that a rank holds of an array of the whole shape `extents`: its cells, and on the last ranks along a
+/// bounded axis the faces of the high side. Does not throw.
+[[nodiscard]] constexpr linear::CellBox part_of(const std::array<int, 3>& whole, const Parameters& p,
+                                                const linear::PencilRanks& ranks) {
   linear::CellBox box = linear::box_of(ranks, p.cells);
-  if (field == StateField::pressure) return box;
-  const std::size_t axis = static_cast<std::size_t>(field) % 3, high = 2 * axis + 1;
-  if (p.cells[axis] > 1 && p.boundary[high].kind != BoundaryKind::periodic && !borders_rank(p, ranks, high))
-    ++box.cells[axis];
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (ranks.place[axis] + 1 == ranks.parts[axis]) box.cells[axis] = whole[axis] - box.begin[axis];
   return box;
 }
 

@@ -203,7 +203,7 @@ void complete_and_check_bodies(const Place& root, FlowScene& scene) {
     Body& body = scene.bodies[i];
     const Place at = root.at("body", i);
     body.slip = body.slips();
-    body.spacing = lattice_of(p, flow::StateField::pressure).spacing;
+    body.spacing = lattice_of(p).spacing;
     if (body.kind != BodyKind::file) continue;
     body.surface = framework::read_obj(at, body.scale, scene.file, body.file, scene.notices);
     at.refuse_if(body.surface.triangles.empty(), "file", ": ", body.file, " has no face");

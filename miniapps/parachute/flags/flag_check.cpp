@@ -13,7 +13,7 @@ constexpr double most_flag_vertices = 1048576.0;  // 2^20
 
 /// Checks that a flag resolves its motion on the grid and lies within the domain at the start.
 void check_flag(const Place& at, const flow::Parameters& p, const Flag& flag) {
-  const auto spacing = lattice_of(p, flow::StateField::pressure).spacing;
+  const auto spacing = lattice_of(p).spacing;
   const double width = flag.has_width() ? std::min({spacing[0], spacing[1], spacing[2]})
                                         : std::min(spacing[0], spacing[1]),
                longest = largest_edge_in_cells * width;

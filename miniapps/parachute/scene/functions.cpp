@@ -43,12 +43,12 @@ std::array<double, 3> Lattice::place(std::size_t entry) const {
   return result;
 }
 
-Lattice lattice_of(const flow::Parameters& parameters, flow::StateField field) {
-  Lattice lattice{flow::extents(parameters, field), {}, {}, {0, 0, 0}};
+Lattice lattice_of(const flow::Parameters& parameters, std::size_t normal) {
+  Lattice lattice{flow::extents(parameters, normal), {}, {}, {0, 0, 0}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int cells = parameters.cells[axis];
     const double h = (parameters.high[axis] - parameters.low[axis]) / cells;
-    const bool on_faces = field == velocity_field(axis) && cells > 1;
+    const bool on_faces = normal == axis && cells > 1;
     lattice.spacing[axis] = h;
     lattice.first[axis] = parameters.low[axis] + (on_faces ? 0.0 : 0.5 * h);
   }

@@ -61,16 +61,11 @@ struct Lattice {
   [[nodiscard]] std::array<double, 3> place(std::size_t entry) const;
 };
 
-/// Points of the array `field`, coordinates in m. Does not throw.
-[[nodiscard]] Lattice lattice_of(const flow::Parameters& parameters, flow::StateField field);
+/// Cell centres, or the faces normal to an axis, coordinates in m. Does not throw.
+[[nodiscard]] Lattice lattice_of(const flow::Parameters& parameters, std::size_t normal = flow::at_cells);
 
 /// "(x, y, z)" of a place, m. Throws only std::bad_alloc.
 [[nodiscard]] std::string place_text(const std::array<double, 3>& place);
-
-/// Array of the velocity component along `axis`. Does not throw.
-[[nodiscard]] inline flow::StateField velocity_field(std::size_t axis) {
-  return static_cast<flow::StateField>(static_cast<std::size_t>(flow::StateField::velocity_x) + axis);
-}
 
 /// Values of a function at all points of a lattice, computed by one thread per core. Throws std::bad_alloc.
 [[nodiscard]] std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& lattice,

@@ -100,9 +100,7 @@ std::array<bool, 3> FlowScene::open_axes() const {
   return axes;
 }
 
-double cell_width(const flow::Parameters& p, std::size_t axis) {
-  return lattice_of(p, flow::StateField::pressure).spacing[axis];
-}
+double cell_width(const flow::Parameters& p, std::size_t axis) { return lattice_of(p).spacing[axis]; }
 
 std::string print_flow_scene(const FlowScene& scene) {
   return framework::print_scene(scene, declare_flow_scene);

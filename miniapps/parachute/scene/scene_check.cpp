@@ -95,11 +95,10 @@ void set_velocity(const Place& root, const std::string& key, const VectorExpress
   }
 }
 
-/// Points of a field on a side; by default, the centres of the cell faces.
-Lattice side_lattice(const flow::Parameters& p, std::size_t side,
-                     flow::StateField field = flow::StateField::pressure) {
+/// Points on a side: the centres of the cell faces, or of the faces normal to an axis.
+Lattice side_lattice(const flow::Parameters& p, std::size_t side, std::size_t normal = flow::at_cells) {
   const std::size_t axis = side / 2;
-  Lattice lattice = lattice_of(p, field);
+  Lattice lattice = lattice_of(p, normal);
   lattice.n[axis] = 1;
   lattice.first[axis] = side % 2 == 0 ? p.low[axis] : p.high[axis];
   return lattice;
@@ -123,7 +122,7 @@ void check_velocity(const Place& root, const FlowScene& scene, const std::string
     root.refuse_if(is_closed(scene.parameters, axis) && velocity.constant() != 0.0, key, component,
                    " is normal to the slip sides of an axis with one cell: it must be 0");
     // Tangential components belong to faces that begin at the edges of the side.
-    const Lattice lattice = side_lattice(scene.parameters, side, velocity_field(axis));
+    const Lattice lattice = side_lattice(scene.parameters, side, axis);
     const auto require_finite = [&](double value, std::size_t entry, double time) {
       if (!std::isfinite(value))
         root.refuse(key, component, " is not finite at ", place_text(lattice.place(entry)), " on the side ",
@@ -202,7 +201,7 @@ void check_initial(const Place& root, const FlowScene& scene) {
   const std::string key = scene.initial[0].empty() ? "fluid.velocity" : "initial.velocity";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string& text = scene.initial_velocity()[axis];
-    const Lattice lattice = lattice_of(scene.parameters, velocity_field(axis));
+    const Lattice lattice = lattice_of(scene.parameters, axis);
     const std::vector<double> values = evaluate(SpaceTimeFunction(text), lattice, 0.0);
     const auto refuse = [&](const auto& is_bad, const char* reason) {
       const auto bad = std::ranges::find_if(values, is_bad);

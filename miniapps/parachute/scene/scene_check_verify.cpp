@@ -123,17 +123,16 @@ void check_profiles(const Place& verify, const FlowScene& scene) {
 
 /// The solution is evaluated at the end of the run.
 void check_exact(const Place& exact, const FlowScene& scene) {
-  const auto check = [&](const std::string& key, const std::string& text, flow::StateField field) {
+  const auto check = [&](const std::string& key, const std::string& text, std::size_t normal) {
     const std::vector<double> values =
-        evaluate(SpaceTimeFunction(text), lattice_of(scene.parameters, field), scene.end_time);
+        evaluate(SpaceTimeFunction(text), lattice_of(scene.parameters, normal), scene.end_time);
     exact.refuse_if(!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }), key,
                     " = ", scene::shortened(text),
                     " is not finite on the grid at run.end_time = ", scene.end_time, " s");
   };
   for (std::size_t axis = 0; axis < 3; ++axis)
-    check(axis_names[axis], scene.verify.exact->velocity[axis], velocity_field(axis));
-  if (!scene.verify.exact->pressure.empty())
-    check("pressure", scene.verify.exact->pressure, flow::StateField::pressure);
+    check(axis_names[axis], scene.verify.exact->velocity[axis], axis);
+  if (!scene.verify.exact->pressure.empty()) check("pressure", scene.verify.exact->pressure, flow::at_cells);
 }
 
 }  // namespace

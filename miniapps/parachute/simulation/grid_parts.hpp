@@ -21,29 +21,32 @@ class GridParts {
 
   [[nodiscard]] const linear::RankGroup& group() const { return _group; }
 
-  /// Points of this rank's part. Does not throw.
-  [[nodiscard]] Lattice lattice(flow::StateField field) const;
+  /// This rank's cell centres, or faces normal to an axis. Does not throw.
+  [[nodiscard]] Lattice lattice(std::size_t normal = flow::at_cells) const;
 
-  /// Place of this rank's part in the whole array. Does not throw.
-  [[nodiscard]] run::Blocks blocks(flow::StateField field) const { return blocks(field, _group.rank()); }
+  /// Place of this rank's part in a whole array of that shape, x first. Does not throw.
+  [[nodiscard]] run::Blocks blocks(const std::array<int, 3>& whole) const {
+    return blocks(whole, _group.rank());
+  }
 
   /// This rank's part of a dataset of that shape, in the order of `flow::Solver::sample`. Throws only
   /// std::bad_alloc.
   [[nodiscard]] run::ArrayPart cells(const std::vector<std::uint64_t>& shape) const;
 
-  /// Passes the parts of all ranks to `take` on rank 0, one after the other. `own` is this rank's part, and
-  /// room for others on rank 0. `take` must not throw on several ranks. Collective.
-  void collect(flow::StateField field, std::vector<double>& own,
+  /// Passes the parts of all ranks of an array of that whole shape to `take` on rank 0, one after the other.
+  /// `own` is this rank's part, and room for others on rank 0. `take` must not throw on several ranks.
+  /// Collective.
+  void collect(const std::array<int, 3>& whole, std::vector<double>& own,
                const std::function<void(const run::Blocks&, std::span<const double>)>& take) const;
 
   /// The whole array on rank 0, nothing on others. Collective.
-  [[nodiscard]] std::vector<double> whole(flow::StateField field, std::vector<double> own) const;
+  [[nodiscard]] std::vector<double> whole(const std::array<int, 3>& shape, std::vector<double> own) const;
 
  private:
-  [[nodiscard]] linear::CellBox box(flow::StateField field, int rank) const {
-    return flow::part_of(_parameters, flow::ranks_of(_parameters, _group.size(), rank), field);
+  [[nodiscard]] linear::CellBox box(const std::array<int, 3>& whole, int rank) const {
+    return flow::part_of(whole, _parameters, flow::ranks_of(_parameters, _group.size(), rank));
   }
-  [[nodiscard]] run::Blocks blocks(flow::StateField field, int rank) const;
+  [[nodiscard]] run::Blocks blocks(const std::array<int, 3>& whole, int rank) const;
 
   const flow::Parameters& _parameters;
   linear::RankGroup _group;

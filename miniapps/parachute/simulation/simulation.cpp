@@ -102,8 +102,8 @@ void Simulation::start() {
   const ScopedStopwatch stopwatch(_h2d_s);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string& velocity = _scene.initial_velocity()[axis];
-    const flow::StateField field = velocity_field(axis);
-    _solver->upload(field, evaluate(SpaceTimeFunction(velocity), _parts.lattice(field), 0.0));
+    _solver->upload(flow::velocity_name(axis),
+                    evaluate(SpaceTimeFunction(velocity), _parts.lattice(axis), 0.0));
   }
   if (_coupled != nullptr) {
     _coupled->fabric().upload(_sheets.positions, std::vector<fabric::Vector>(_sheets.positions.size()));

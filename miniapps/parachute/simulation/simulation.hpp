@@ -61,7 +61,7 @@ class Simulation final : public framework::Simulation {
 
   [[nodiscard]] bool meets_image();
   void sample_fields(Snapshot& snapshot);
-  [[nodiscard]] std::vector<double> download_whole(flow::StateField field);
+  [[nodiscard]] std::vector<double> download_whole(std::size_t axis);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
   [[nodiscard]] std::vector<fabric::Vector> body_forces();

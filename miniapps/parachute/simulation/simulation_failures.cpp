@@ -21,7 +21,7 @@ using fabric::Vector;
 
 /// Cell of an index whose x varies fastest, and its centre.
 std::string cell_text(const flow::Parameters& p, std::int64_t index) {
-  const Lattice cells = lattice_of(p, flow::StateField::pressure);
+  const Lattice cells = lattice_of(p);
   const auto centre = cells.place(static_cast<std::size_t>(index));
   std::ostringstream text;
   text << "cell (" << index % cells.n[0] << ", " << index / cells.n[0] % cells.n[1] << ", "
@@ -186,7 +186,7 @@ std::string Simulation::leaving_vertex_text() {
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
   _coupled->fabric().download(positions, velocities);
   const flow::Parameters& p = _scene.parameters;
-  const auto spacing = lattice_of(p, flow::StateField::pressure).spacing;
+  const auto spacing = lattice_of(p).spacing;
   double least = std::numeric_limits<double>::infinity();
   std::size_t vertex = 0, closest = 0;
   for (std::size_t i = 0; i < positions.size(); ++i)

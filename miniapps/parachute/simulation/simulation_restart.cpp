@@ -8,12 +8,6 @@
 namespace drogue::parachute_app {
 namespace {
 
-std::string array_name(flow::StateField field) {
-  constexpr const char* names[] = {"velocity_x", "velocity_y", "velocity_z", "rate_x",
-                                   "rate_y",     "rate_z",     "pressure"};
-  return names[static_cast<int>(field)];
-}
-
 /// Visits every member of the progress of a run. `number` and `integer` write or read one entry.
 template <class Progress, class Number, class Integer>
 void visit(Progress& progress, const Number& number, const Integer& integer) {
@@ -83,12 +77,13 @@ void Simulation::write_restart(run::RestartWriter& writer) {
   _statistics.write(writer, *_solver);
   if (_coupled != nullptr) write_coupling(writer);
   std::vector<double> values;
-  for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
-    values.resize(_parts.lattice(field).size());
-    _solver->download(field, values);
-    writer.array(array_name(field), flow::state_size(_scene.parameters, field));
-    _parts.collect(field, values, [&](const run::Blocks& blocks, std::span<const double> part) {
-      writer.write(array_name(field), blocks, part);
+  for (const stepping::StateArray& array : _solver->state()) {
+    values.resize(array.size());
+    _solver->download(array.name, values);
+    const std::array<int, 3> whole = flow::x_first(array.whole);
+    writer.array(array.name, linear::CellBox{{}, whole}.size());
+    _parts.collect(whole, values, [&](const run::Blocks& blocks, std::span<const double> part) {
+      writer.write(array.name, blocks, part);
     });
   }
 }
@@ -102,10 +97,10 @@ void Simulation::restore(const run::RestartReader& reader) {
         value = std::bit_cast<std::remove_reference_t<decltype(value)>>(reader.integer(name));
       });
   std::vector<double> values;
-  for (const flow::StateField field : flow::state_fields(_scene.parameters)) {
-    values.resize(_parts.lattice(field).size());
-    reader.read(array_name(field), _parts.blocks(field), values);
-    _solver->upload(field, values);
+  for (const stepping::StateArray& array : _solver->state()) {
+    values.resize(array.size());
+    reader.read(array.name, _parts.blocks(flow::x_first(array.whole)), values);
+    _solver->upload(array.name, values);
   }
   if (_coupled != nullptr) {
     read_coupling(reader, progress);

@@ -66,7 +66,7 @@ std::pair<double, double> SampledLine::maximum(double sign) const {
 SampledLine sample_line(std::span<const double> all, const flow::Parameters& parameters,
                         const Profile& profile) {
   const auto along = static_cast<std::size_t>(profile.along);
-  const Lattice lattice = lattice_of(parameters, velocity_field(static_cast<std::size_t>(profile.component)));
+  const Lattice lattice = lattice_of(parameters, static_cast<std::size_t>(profile.component));
   const std::size_t stride[] = {
       1, static_cast<std::size_t>(lattice.n[0]),
       static_cast<std::size_t>(lattice.n[0]) * static_cast<std::size_t>(lattice.n[1])};

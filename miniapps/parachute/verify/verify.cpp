@@ -76,11 +76,11 @@ void check_curves(const Verify& wanted, const run::History& history, run::Result
 
 }  // namespace
 
-/// An array of the state of the whole grid on rank 0, nothing on others. Collective.
-std::vector<double> Simulation::download_whole(flow::StateField field) {
-  std::vector<double> own(_parts.lattice(field).size());
-  _solver->download(field, own);
-  return _parts.whole(field, std::move(own));
+/// Velocity along an axis on the whole grid on rank 0, nothing on others. Collective.
+std::vector<double> Simulation::download_whole(std::size_t axis) {
+  std::vector<double> own(_parts.lattice(axis).size());
+  _solver->download(flow::velocity_name(axis), own);
+  return _parts.whole(flow::extents(_scene.parameters, axis), std::move(own));
 }
 
 std::map<std::string, double> Simulation::error_norms() {
@@ -88,11 +88,11 @@ std::map<std::string, double> Simulation::error_norms() {
   const ExactSolution& exact = _scene.verify.exact.value();
   const double time = _solver->progress().time;
   // Rank 0 adds up, so that the sums do not depend on the number of ranks.
-  const auto sums_of = [&](const std::vector<double>& values, const std::string& wanted,
-                           flow::StateField field, bool up_to_constant) {
+  const auto sums_of = [&](const std::vector<double>& values, const std::string& wanted, std::size_t normal,
+                           bool up_to_constant) {
     ErrorSums sums;
     _communicator.run_on_root([&] {
-      const Lattice lattice = lattice_of(p, field);
+      const Lattice lattice = lattice_of(p, normal);
       sums = errors_of(values, evaluate(SpaceTimeFunction(wanted), lattice, time), lattice, p.cells,
                        up_to_constant);
     });
@@ -100,8 +100,7 @@ std::map<std::string, double> Simulation::error_norms() {
   };
   std::map<std::string, double> norms = {{"l1_velocity", 0.0}, {"l2_velocity", 0.0}, {"linf_velocity", 0.0}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const flow::StateField field = velocity_field(axis);
-    const ErrorSums sums = sums_of(download_whole(field), exact.velocity[axis], field, false);
+    const ErrorSums sums = sums_of(download_whole(axis), exact.velocity[axis], axis, false);
     norms["l1_velocity"] += sums.absolute / sums.volume;
     norms["l2_velocity"] += sums.square / sums.volume;
     double& largest = norms["linf_velocity"];
@@ -111,7 +110,7 @@ std::map<std::string, double> Simulation::error_norms() {
   if (exact.pressure.empty()) return norms;
   const bool up_to_constant = std::ranges::none_of(
       p.boundary, [](const flow::Boundary& side) { return side.kind == flow::BoundaryKind::outflow; });
-  const Lattice cells = _parts.lattice(flow::StateField::pressure);
+  const Lattice cells = _parts.lattice();
   std::vector<double> sampled(cells.size()), own(cells.size());
   sample_flow_field(flow::CellField::pressure, sampled);  // z fastest
   const auto nx = static_cast<std::size_t>(cells.n[0]), ny = static_cast<std::size_t>(cells.n[1]),
@@ -119,8 +118,8 @@ std::map<std::string, double> Simulation::error_norms() {
   for (std::size_t i = 0; i < nx; ++i)
     for (std::size_t j = 0; j < ny; ++j)
       for (std::size_t k = 0; k < nz; ++k) own[i + nx * (j + ny * k)] = sampled[(i * ny + j) * nz + k];
-  const ErrorSums sums = sums_of(_parts.whole(flow::StateField::pressure, std::move(own)), exact.pressure,
-                                 flow::StateField::pressure, up_to_constant);
+  const ErrorSums sums =
+      sums_of(_parts.whole(p.cells, std::move(own)), exact.pressure, flow::at_cells, up_to_constant);
   norms["l1_pressure"] = sums.absolute / sums.volume;
   norms["l2_pressure"] = std::sqrt(sums.square / sums.volume);
   norms["linf_pressure"] = sums.largest;
@@ -152,8 +151,7 @@ void Simulation::check_profiles(run::ResultDocument& result) {
   for (std::size_t i = 0; i < _scene.verify.profiles.size(); ++i) {
     const Profile& profile = _scene.verify.profiles[i];
     const std::string name = "profile_" + std::to_string(i);
-    const std::vector<double> all =
-        download_whole(velocity_field(static_cast<std::size_t>(profile.component)));
+    const std::vector<double> all = download_whole(static_cast<std::size_t>(profile.component));
     if (all.empty()) continue;  // the checks of rank 0 count
     const SampledLine line = sample_line(all, _scene.parameters, profile);
     if (!profile.points.empty()) {

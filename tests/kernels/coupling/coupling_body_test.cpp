@@ -16,10 +16,11 @@ namespace {
 using drogue::testing::counted_steps;
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
+using drogue::testing::download;
+using drogue::testing::fill;
 using drogue::testing::postfix;
 using fabric::Vector;
 using flow::BoundaryKind;
-using flow::StateField;
 
 /// Moves all vertices of a case by a displacement along an axis, m.
 void move(CoupledCase& c, int axis, const device::ExpressionProgram& displacement) {
@@ -32,18 +33,9 @@ device::ExpressionProgram sine(double amplitude, double omega) {
   return postfix({amplitude, omega, "t", "*", "sin", "*"});
 }
 
-/// Array of the state.
-std::vector<double> values(const CoupledCase& c, CoupledRun& run, StateField field) {
-  const std::array<int, 3> n = extents(c.p.flow, field);
-  std::vector<double> result(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) *
-                             static_cast<std::size_t>(n[2]));
-  run.solver->flow().download(field, result);
-  return result;
-}
-
 /// Velocity along x in the middle of the rows of cells, m/s.
 std::vector<double> profile(const CoupledCase& c, CoupledRun& run) {
-  const std::vector<double> u = values(c, run, StateField::velocity_x);
+  const std::vector<double> u = download(run.solver->flow(), "velocity_x");
   std::vector<double> rows;
   for (std::size_t k = 0; k < u.size(); k += u.size() / static_cast<std::size_t>(c.p.flow.cells[1]))
     rows.push_back(u[k]);
@@ -218,9 +210,7 @@ TEST(NoSlipSheet, MovesThroughFluidAtRestAsItStandsInAStream) {
   c.p.flow.viscosity = 0.024;  // Reynolds number 40
   add_circle(c, 2.4, 1.6, 0.4, 50);
   CoupledRun fixed(c);
-  const std::array<int, 3> n = extents(c.p.flow, StateField::velocity_x);
-  fixed.solver->flow().upload(StateField::velocity_x,
-                              std::vector<double>(static_cast<std::size_t>(n[0] * n[1]), speed));
+  fill(fixed.solver->flow(), "velocity_x", speed);
   fixed.solver->start();
   move(c, 0, postfix({-speed, "t", "*"}));
   CoupledRun moving(c);
@@ -244,9 +234,7 @@ struct CircleInStream {
     c.p.sheet.defect_filter = defect_filter;
     add_circle(c, 2.4, 1.6, 0.4, 50);
     CoupledRun run(c);
-    const std::array<int, 3> n = extents(c.p.flow, StateField::velocity_x);
-    run.solver->flow().upload(StateField::velocity_x,
-                              std::vector<double>(static_cast<std::size_t>(n[0] * n[1]), speed));
+    fill(run.solver->flow(), "velocity_x", speed);
     run.solver->start();
     EXPECT_TRUE(run.advance(200));
     std::vector<Vector> air(c.x.size());
@@ -306,7 +294,7 @@ struct ChannelDrag {
     const double h = p.high[0] / p.cells[0], area = p.high[1] * p.high[2] / static_cast<double>(rows);
     // Momentum between the planes, and what advection and viscosity carry through them.
     const auto contents = [&] {
-      const std::vector<double> u = values(c, run, StateField::velocity_x);
+      const std::vector<double> u = download(run.solver->flow(), "velocity_x");
       std::array<double, 2> sum{};
       for (std::size_t row = 0; row < rows; ++row) {
         const double* at = &u[(nx + 1) * row];
@@ -322,7 +310,7 @@ struct ChannelDrag {
     const std::array<double, 2> before = contents();
     EXPECT_TRUE(run.advance(1));
     const std::array<double, 2> after = contents();
-    const std::vector<double> q = values(c, run, StateField::pressure);
+    const std::vector<double> q = download(run.solver->flow(), "pressure");
     for (std::size_t row = 0; row < rows; ++row)
       for (const std::size_t i : planes)
         balance += (i == planes[0] ? 0.5 : -0.5) * p.density * area * (q[i - 1 + nx * row] + q[i + nx * row]);

@@ -14,8 +14,10 @@
 namespace drogue::coupling {
 namespace {
 
+using drogue::testing::coupled_state;
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
+using drogue::testing::fill;
 using drogue::testing::postfix;
 using fabric::Vector;
 
@@ -121,8 +123,7 @@ TEST(ClosingSheets, ObeyTheLawAtOnceWhereTheFlowRateIsPrescribed) {
       c.p.flow.boundary[1].kind = flow::BoundaryKind::outflow;
       c.p.flow.boundary[1].velocity = {1.0, 0.0, 0.0};
       CoupledRun run(c);
-      std::vector<double> one(flow::state_size(c.p.flow, flow::StateField::velocity_x), 1.0);
-      run.solver->flow().upload(flow::StateField::velocity_x, one);
+      fill(run.solver->flow(), "velocity_x", 1.0);
       run.solver->start();
       for (int step = 0; step < 10; ++step) {
         ASSERT_TRUE(run.advance(1));
@@ -140,7 +141,7 @@ TEST(ClosingSheets, ContinueBitForBitAndBackendsAgree) {
     CoupledRun whole(c), first(c), second(c);
     ASSERT_TRUE(whole.advance(20));
     ASSERT_TRUE(first.advance(8));
-    restore(c, coupled_state(c, *first.solver), *second.solver);
+    restore(coupled_state(*first.solver), *second.solver);
     ASSERT_TRUE(second.advance(12));
     EXPECT_EQ(second.force(), whole.force());
     std::vector<Vector> here(c.x.size()), there(c.x.size());

@@ -17,13 +17,15 @@ namespace drogue::coupling {
 namespace {
 
 using drogue::testing::counted_steps;
+using drogue::testing::coupled_state;
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
+using drogue::testing::download;
+using drogue::testing::fill;
 using drogue::testing::postfix;
 using drogue::testing::tested_backend;
 using fabric::Vector;
 using flow::BoundaryKind;
-using flow::StateField;
 
 /// Frees the cloth of a case, and lets the frame follow its first vertex along x.
 void follow_first_vertex(CoupledCase& c) {
@@ -31,13 +33,6 @@ void follow_first_vertex(CoupledCase& c) {
   c.p.follow.vertex = 0;
   c.p.follow.axes = {true, false, false};
   c.p.follow.place = c.x.front();
-}
-
-std::vector<double> array_of(const CoupledCase& c, Solver& solver, StateField field) {
-  const std::array<int, 3> n = extents(c.p.flow, field);
-  std::vector<double> values(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]));
-  solver.flow().download(field, values);
-  return values;
 }
 
 struct FabricState {
@@ -72,8 +67,8 @@ double vortex_error(int n, flow::TimeScheme time) {
       u.push_back(exact(i * h, (j + 0.5) * h, 0.0));
       v.push_back(-exact(j * h, (i + 0.5) * h, 0.0));
     }
-  run->flow().upload(StateField::velocity_x, u);
-  run->flow().upload(StateField::velocity_y, v);
+  run->flow().upload("velocity_x", u);
+  run->flow().upload("velocity_y", v);
   run->fabric().upload(c.x, c.v);
   run->start();
   EXPECT_EQ(run->advance(end, -1, {}), flow::Stop::target);
@@ -84,7 +79,7 @@ double vortex_error(int n, flow::TimeScheme time) {
   const FabricState cloth = fabric_of(c, *run);
   EXPECT_NEAR(cloth.v[0][0] + frame.velocity[0], fall * end, 1e-10);
   EXPECT_NEAR(cloth.x[0][0] + moved - c.x[0][0], 0.5 * fall * end * end, 0.02);
-  u = array_of(c, *run, StateField::velocity_x);
+  u = download(run->flow(), "velocity_x");
   double sum = 0.0;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
@@ -147,11 +142,9 @@ TEST(MovingFrame, ContinuesBitForBit) {
     ASSERT_TRUE(whole.advance(23));
     ASSERT_TRUE(first.advance(48));
     const auto second = create_solver(tested_backend, c.p);
-    const std::vector<StateField> fields = flow::state_fields(c.p.flow);
-    drogue::testing::restore(c, coupled_state(c, *first.solver), *second);
+    drogue::testing::restore(coupled_state(*first.solver), *second);
     ASSERT_EQ(second->advance(1e9, 71, {}), flow::Stop::pause);
-    for (const StateField field : fields)
-      EXPECT_EQ(array_of(c, *second, field), array_of(c, *whole.solver, field));
+    EXPECT_EQ(coupled_state(*second).flow, coupled_state(*whole.solver).flow);
     const FabricState one = fabric_of(c, *second), other = fabric_of(c, *whole.solver);
     EXPECT_EQ(one.x, other.x);
     EXPECT_EQ(one.v, other.v);
@@ -212,18 +205,15 @@ TEST(MovingFrame, MovesAnInflowAndKeepsAUniformStreamUniform) {
   follow_first_vertex(c);
   c.p.fabric.gravity = {-20.0, 0.0, 0.0};
   const auto solver = create_solver(tested_backend, c.p);
-  for (const StateField field : {StateField::velocity_x, StateField::velocity_y}) {
-    std::vector<double> stream = array_of(c, *solver, field);
-    std::ranges::fill(stream, field == StateField::velocity_x ? 5.0 : 0.3);
-    solver->flow().upload(field, stream);
-  }
+  fill(solver->flow(), "velocity_x", 5.0);
+  fill(solver->flow(), "velocity_y", 0.3);
   solver->fabric().upload(c.x, c.v);
   solver->start();
   ASSERT_EQ(solver->advance(1e9, 100, {}), flow::Stop::pause);
   const double w = solver->progress().frame.velocity[0];
   EXPECT_LT(w, -5.0);
-  for (const double u : array_of(c, *solver, StateField::velocity_x)) EXPECT_NEAR(u, 5.0 - w, 1e-12);
-  for (const double v : array_of(c, *solver, StateField::velocity_y)) EXPECT_NEAR(v, 0.3, 1e-12);
+  for (const double u : download(solver->flow(), "velocity_x")) EXPECT_NEAR(u, 5.0 - w, 1e-12);
+  for (const double v : download(solver->flow(), "velocity_y")) EXPECT_NEAR(v, 0.3, 1e-12);
 }
 
 TEST(MovingFrame, RejectsInvalidParameters) {

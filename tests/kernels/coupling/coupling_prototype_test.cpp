@@ -18,9 +18,9 @@ namespace {
 
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
+using drogue::testing::fill;
 using fabric::Vector;
 using flow::BoundaryKind;
-using flow::StateField;
 
 TEST(FixedSheet, LeaksInProportionToTheStepWithoutTheFilteredAcceleration) {
   // The impulse of a step, dp dt, slows the copies of the air down by its product with the row sum before the
@@ -182,10 +182,7 @@ void set_stream(CoupledCase& c, double speed) {
 
 CoupledRun started(const CoupledCase& c, double speed) {
   CoupledRun run(c);
-  const std::array<int, 3> n = extents(c.p.flow, StateField::velocity_x);
-  run.solver->flow().upload(
-      StateField::velocity_x,
-      std::vector<double>(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]), speed));
+  fill(run.solver->flow(), "velocity_x", speed);
   run.solver->start();
   return run;
 }

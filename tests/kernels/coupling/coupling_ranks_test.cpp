@@ -21,7 +21,6 @@ using drogue::testing::joined;
 using drogue::testing::tested_backend;
 using fabric::Vector;
 using flow::BoundaryKind;
-using flow::StateField;
 using flow::Stop;
 
 constexpr double tolerance = 1e-9, endless = 1e9;
@@ -44,7 +43,6 @@ class SharedRun {
   SharedRun(const Case& of, const linear::RankGroup& group)
       : _p(of.p.flow),
         _group(group),
-        _ranks(flow::decompose(_p.cells, group.size(), group.rank())),
         _vertices(of.x.size()),
         _solver(create_solver(tested_backend, of.p, group)) {}
 
@@ -52,23 +50,19 @@ class SharedRun {
 
   void start(const Case& from) {
     _solver->fabric().upload(from.x, from.v);
-    for (const StateField field : {StateField::velocity_x, StateField::velocity_y, StateField::velocity_z}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       // The stream of the inflow, with a wave.
-      const linear::CellBox part = flow::part_of(_p, _ranks, field);
-      const auto axis = static_cast<std::size_t>(field);
-      std::vector<double> own(part.size());
-      drogue::testing::for_each_entry(extents(_p, field), part, [&](std::size_t whole, std::size_t at) {
-        own[at] = _p.boundary[0].velocity[axis] + 0.3 * std::sin(0.7 * static_cast<double>(whole + axis));
-      });
-      _solver->flow().upload(field, own);
+      std::vector<double> wave(linear::CellBox{{}, extents(_p, axis)}.size());
+      for (std::size_t i = 0; i < wave.size(); ++i)
+        wave[i] = _p.boundary[0].velocity[axis] + 0.3 * std::sin(0.7 * static_cast<double>(i + axis));
+      _solver->flow().upload(flow::velocity_name(axis), cut(wave, _solver->flow().state()[axis]));
     }
     _solver->start();
   }
   void restore(const State& state) {
     std::size_t k = 0;
-    for (const StateField field : flow::state_fields(_p))
-      _solver->flow().upload(field,
-                             cut(state.flow[k++], extents(_p, field), flow::part_of(_p, _ranks, field)));
+    for (const stepping::StateArray& array : _solver->flow().state())
+      _solver->flow().upload(array.name, cut(state.flow[k++], array));
     drogue::testing::restore_cloth(*_solver, state);
   }
   [[nodiscard]] State state() {
@@ -76,12 +70,8 @@ class SharedRun {
     std::vector<Vector> air(_vertices);
     _solver->air_velocity(air);
     s.air.assign(numbers(air).begin(), numbers(air).end());
-    for (const StateField field : flow::state_fields(_p)) {
-      const linear::CellBox part = flow::part_of(_p, _ranks, field);
-      std::vector<double> own(part.size());
-      _solver->flow().download(field, own);
-      s.flow.push_back(joined(_group, own, extents(_p, field), part));
-    }
+    for (const stepping::StateArray& array : _solver->flow().state())
+      s.flow.push_back(joined(_group, _solver->flow(), array));
     return s;
   }
   /// Numbers of the cloth as the ranks have them, one row per rank.
@@ -99,7 +89,6 @@ class SharedRun {
  private:
   flow::Parameters _p;
   linear::RankGroup _group;
-  linear::PencilRanks _ranks;
   std::size_t _vertices;
   std::unique_ptr<Solver> _solver;
 };

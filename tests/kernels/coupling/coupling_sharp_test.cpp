@@ -209,9 +209,9 @@ TEST(SharpSheet, ContinuesBitForBitAndBackendsAgree) {
   ASSERT_TRUE(whole.advance(20));
   ASSERT_TRUE(whole.advance(20));
   ASSERT_TRUE(first.advance(20));
-  const drogue::testing::CoupledState middle = coupled_state(c, *first.solver);
+  const auto middle = drogue::testing::coupled_state(*first.solver);
   EXPECT_EQ(middle.arrays.at("face_acceleration").size(), 3 * 16U * 8U);
-  restore(c, middle, *second.solver);
+  restore(middle, *second.solver);
   EXPECT_THROW(second.solver->upload("face_acceleration", std::vector<double>(7)), std::invalid_argument);
   ASSERT_TRUE(second.advance(20));
   EXPECT_EQ(second.force(), whole.force());

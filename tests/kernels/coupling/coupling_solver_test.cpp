@@ -22,9 +22,12 @@ namespace drogue::coupling {
 namespace {
 
 using drogue::testing::counted_steps;
+using drogue::testing::coupled_state;
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
 using drogue::testing::CoupledState;
+using drogue::testing::download;
+using drogue::testing::fill;
 using drogue::testing::restore;
 using drogue::testing::tested_backend;
 using fabric::Vector;
@@ -62,9 +65,7 @@ struct State : CoupledState {
   Vector total_force;
 };
 
-State state_of(const CoupledCase& c, Solver& solver) {
-  return {coupled_state(c, solver), solver.total_force_on_air()};
-}
+State state_of(Solver& solver) { return {coupled_state(solver), solver.total_force_on_air()}; }
 
 double distance(const std::vector<double>& a, const std::vector<double>& b) {
   double largest = a.size() == b.size() ? 0.0 : std::numeric_limits<double>::infinity();
@@ -101,12 +102,12 @@ TEST(CoupledSolver, ContinuesBitForBit) {
     ASSERT_TRUE(whole.advance(21));
     ASSERT_TRUE(whole.advance(19));
     ASSERT_TRUE(first.advance(21));
-    const State middle = state_of(c, *first.solver);
+    const State middle = state_of(*first.solver);
     CoupledRun second(c);
-    restore(c, middle, *second.solver);
-    EXPECT_EQ(distance(state_of(c, *second.solver), middle), 0.0);
+    restore(middle, *second.solver);
+    EXPECT_EQ(distance(state_of(*second.solver), middle), 0.0);
     ASSERT_TRUE(second.advance(19));
-    EXPECT_EQ(distance(state_of(c, *second.solver), state_of(c, *whole.solver)), 0.0);
+    EXPECT_EQ(distance(state_of(*second.solver), state_of(*whole.solver)), 0.0);
   }
 }
 
@@ -116,22 +117,22 @@ TEST(CoupledSolver, ContinuesBitForBitWithTheFilteredDefect) {
   CoupledRun whole(c), first(c);
   ASSERT_TRUE(whole.advance(40));
   ASSERT_TRUE(first.advance(21));
-  State middle = state_of(c, *first.solver);
+  State middle = state_of(*first.solver);
   double largest = 0.0;
   for (std::size_t k = 0; k < middle.arrays["defect"].size(); k += 3)
     largest = std::max(largest, std::abs(middle.arrays["defect"][k]));
   EXPECT_GT(largest, 0.1);
   CoupledRun second(c), without(c);
-  restore(c, middle, *second.solver);
-  EXPECT_EQ(distance(state_of(c, *second.solver), middle), 0.0);
+  restore(middle, *second.solver);
+  EXPECT_EQ(distance(state_of(*second.solver), middle), 0.0);
   ASSERT_TRUE(second.advance(19));
-  const State end = state_of(c, *whole.solver);
-  EXPECT_EQ(distance(state_of(c, *second.solver), end), 0.0);
+  const State end = state_of(*whole.solver);
+  EXPECT_EQ(distance(state_of(*second.solver), end), 0.0);
   // It is a part of the state.
   std::ranges::fill(middle.arrays["defect"], 0.0);
-  restore(c, middle, *without.solver);
+  restore(middle, *without.solver);
   ASSERT_TRUE(without.advance(19));
-  EXPECT_GT(distance(state_of(c, *without.solver), end), 1e-6);
+  EXPECT_GT(distance(state_of(*without.solver), end), 1e-6);
 }
 
 TEST(CoupledSolver, ContinuesBitForBitWithABodyInMotion) {
@@ -144,14 +145,14 @@ TEST(CoupledSolver, ContinuesBitForBitWithABodyInMotion) {
   for (const std::int64_t first : {1, 7, 16, 29}) {
     CoupledRun begun(c), continued(c);
     ASSERT_TRUE(begun.advance(first));
-    const State middle = state_of(c, *begun.solver);
-    restore(c, middle, *continued.solver);
-    EXPECT_EQ(distance(state_of(c, *continued.solver).arrays.at("sheet_position"),
-                       middle.arrays.at("sheet_position")),
-              0.0)
+    const State middle = state_of(*begun.solver);
+    restore(middle, *continued.solver);
+    EXPECT_EQ(
+        distance(state_of(*continued.solver).arrays.at("sheet_position"), middle.arrays.at("sheet_position")),
+        0.0)
         << first;
     ASSERT_TRUE(continued.advance(40 - first));
-    EXPECT_EQ(distance(state_of(c, *continued.solver), state_of(c, *whole.solver)), 0.0) << first;
+    EXPECT_EQ(distance(state_of(*continued.solver), state_of(*whole.solver)), 0.0) << first;
   }
 }
 
@@ -160,11 +161,11 @@ TEST(CoupledSolver, ContinuesBitForBitInContact) {
   CoupledRun whole(c), first(c);
   ASSERT_TRUE(whole.advance(13));
   ASSERT_TRUE(first.advance(7));
-  const State middle = state_of(c, *first.solver);
+  const State middle = state_of(*first.solver);
   CoupledRun second(c);
-  restore(c, middle, *second.solver);
+  restore(middle, *second.solver);
   ASSERT_TRUE(second.advance(6));
-  EXPECT_EQ(distance(state_of(c, *second.solver), state_of(c, *whole.solver)), 0.0);
+  EXPECT_EQ(distance(state_of(*second.solver), state_of(*whole.solver)), 0.0);
 }
 
 /// Intersections of the strips at the ends of steps, and largest change of the momentum of cloth and air in a
@@ -304,9 +305,9 @@ TEST(CoupledSolver, ContinuesBitForBitAroundACut) {
   for (const std::int64_t first : {5, 12, 13, 14, 20, 35}) {
     CoupledRun begun(c), continued(c);
     ASSERT_TRUE(begun.advance(first));
-    restore(c, state_of(c, *begun.solver), *continued.solver);
+    restore(state_of(*begun.solver), *continued.solver);
     ASSERT_TRUE(continued.advance(40 - first));
-    EXPECT_EQ(distance(state_of(c, *continued.solver), state_of(c, *whole.solver)), 0.0) << first;
+    EXPECT_EQ(distance(state_of(*continued.solver), state_of(*whole.solver)), 0.0) << first;
   }
 }
 
@@ -317,7 +318,7 @@ TEST(CoupledSolver, BackendsAgree) {
     const auto end = [&](device::Backend backend) {
       const auto solver = c.solver(backend);
       EXPECT_EQ(solver->advance(1e9, 30, {}), flow::Stop::pause);
-      return state_of(c, *solver);
+      return state_of(*solver);
     };
     const State here = end(tested_backend);
     for (const device::Backend backend : device::compiled_backends()) {
@@ -404,11 +405,8 @@ void expect_air_velocity(const CoupledCase& c) {
         c.p.fabric.mesh, [](const Vector& inward) { return std::abs(inward[2]) > 0.5; },
         c.p.sheet.edge_inset * h, inset_band * h, x);
   reference::FaceField velocity;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const flow::StateField field = flow::state_fields(c.p.flow)[axis];
-    velocity[axis].resize(flow::state_size(c.p.flow, field));
-    run.solver->flow().download(field, velocity[axis]);
-  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    velocity[axis] = download(run.solver->flow(), flow::velocity_name(axis));
   const std::vector<Vector> expected = reference::interpolate(grid, c.p.sheet.delta, velocity, x);
   double largest = 0.0;
   for (const Vector& of_vertex : expected) largest = std::max(largest, std::abs(of_vertex[0]));
@@ -417,7 +415,7 @@ void expect_air_velocity(const CoupledCase& c) {
   // It changes no step.
   ASSERT_TRUE(other.advance(10));
   for (CoupledRun* each : {&run, &other}) ASSERT_TRUE(each->advance(10));
-  EXPECT_EQ(distance(state_of(c, *run.solver), state_of(c, *other.solver)), 0.0);
+  EXPECT_EQ(distance(state_of(*run.solver), state_of(*other.solver)), 0.0);
 }
 
 TEST(CoupledSolver, ReportsTheVelocityOfTheAirAtTheVertices) {
@@ -433,9 +431,7 @@ TEST(CoupledSolver, StepSizeFollowsTheSpeedOfTheAir) {
   c.p.flow.cfl = 0.3;
   for (std::size_t side = 0; side < 2; ++side) c.p.flow.boundary[side].kind = flow::BoundaryKind::periodic;
   CoupledRun run(c);
-  const std::array<int, 3> n = extents(c.p.flow, flow::StateField::velocity_x);
-  const std::vector<double> wind(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]), 8.0);
-  run.solver->flow().upload(flow::StateField::velocity_x, wind);
+  fill(run.solver->flow(), "velocity_x", 8.0);
   run.solver->start();
   ASSERT_TRUE(run.advance(1));
   EXPECT_NEAR(run.solver->progress().flow.last_dt, 0.3 * h / 8.0, 1e-3 * h);
@@ -455,13 +451,13 @@ void expect_failure(const CoupledCase& c, FailureReason reason) {
   CoupledRun run(c);
   ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
   EXPECT_EQ(run.solver->failure().reason, reason);
-  const State last = state_of(c, *run.solver);
+  const State last = state_of(*run.solver);
   EXPECT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
   CoupledRun again(c);
   if (last.progress.flow.step > 0) {
     ASSERT_TRUE(again.advance(last.progress.flow.step));
   }
-  const State expected = state_of(c, *again.solver);
+  const State expected = state_of(*again.solver);
   EXPECT_EQ(distance(expected, last), 0.0);
   std::vector<Vector> air(c.x.size()), expected_air(c.x.size());
   run.solver->air_velocity(air);
@@ -481,12 +477,7 @@ TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
   CoupledRun run(c);
   ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
   run.solver->fabric().upload(c.x, c.v);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::array<int, 3> n = extents(c.p.flow, flow::state_fields(c.p.flow)[k]);
-    const auto faces =
-        static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
-    run.solver->flow().upload(flow::state_fields(c.p.flow)[k], std::vector<double>(faces, 0.0));
-  }
+  for (std::size_t axis = 0; axis < 3; ++axis) fill(run.solver->flow(), flow::velocity_name(axis), 0.0);
   run.solver->start();
   EXPECT_TRUE(run.advance(5));
   EXPECT_EQ(run.solver->failure().reason, FailureReason::flow);
@@ -503,16 +494,16 @@ TEST(CoupledSolver, FailedStepsReturnToEveryArrayOfTheState) {
   for (const CoupledCase& c : cases) {
     CoupledRun run(c);
     ASSERT_TRUE(run.advance(3)) << static_cast<int>(c.p.sheet.method);
-    CoupledState changed = coupled_state(c, *run.solver);
+    CoupledState changed = coupled_state(*run.solver);
     double place = 0.0;
     for (auto& [name, values] : changed.arrays)
       for (double& value : values) value += 1e-3 * std::sin(place += 1.0);
     // The next step fails, whatever the cloth does.
     changed.flow[0].assign(changed.flow[0].size(), std::nan(""));
-    restore(c, changed, *run.solver);
+    restore(changed, *run.solver);
     EXPECT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
     EXPECT_EQ(run.solver->progress().flow.step, 3);
-    EXPECT_EQ(coupled_state(c, *run.solver).arrays, changed.arrays);
+    EXPECT_EQ(coupled_state(*run.solver).arrays, changed.arrays);
   }
 }
 
@@ -612,7 +603,7 @@ TEST(CoupledSolver, StepsShortenWithinABlock) {
   // Pauses do not change the steps.
   while (paused.solver->progress().flow.time < end)
     ASSERT_NE(paused.solver->advance(end, paused.solver->progress().flow.step + 1, {}), flow::Stop::failed);
-  EXPECT_EQ(distance(state_of(c, *paused.solver), state_of(c, *run.solver)), 0.0);
+  EXPECT_EQ(distance(state_of(*paused.solver), state_of(*run.solver)), 0.0);
 }
 
 TEST(CoupledSolver, RejectsInvalidParameters) {

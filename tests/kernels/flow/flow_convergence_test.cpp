@@ -43,7 +43,7 @@ Parameters taylor_green_parameters(int n, Advection advection, TimeScheme time) 
 StaggeredField solution(const Parameters& p, const StaggeredField& initial, double time) {
   const auto solver = started(backend, p, initial);
   EXPECT_EQ(solver->advance(time, -1, {}), Stop::target);
-  return velocity(*solver, p);
+  return velocity(*solver);
 }
 
 /// Orders between consecutive errors, each with half the step of the one before.

@@ -34,9 +34,9 @@ TEST(FlowFrame, RatesOfThePreviousStepBecomeThoseOfTheNewFrame) {
       integration.set(p);
       TypedFlow<DROGUE_TEST_SPACE> flow(p, 21);
       ASSERT_EQ(flow.solver.advance(endless, 1, {}), Stop::pause);
-      const StaggeredField u = flow.velocity(), old = flow.arrays(StateField::rate_x);
+      const StaggeredField u = flow.velocity(), old = rates(flow.solver);
       flow.solver.change_frame(frame);
-      const StaggeredField moved = flow.velocity(), rate = flow.arrays(StateField::rate_x);
+      const StaggeredField moved = flow.velocity(), rate = rates(flow.solver);
       Parameters moving = p;
       if (integration.diffusion == Diffusion::crank_nicolson) p.viscosity = moving.viscosity = 0.0;
       for (Boundary& side : moving.boundary)
@@ -66,7 +66,7 @@ StaggeredField after_all_frames(const Parameters& p,
   const StaggeredField u = sampled_field(flow.domain, [&](std::size_t c, const reference::Point& at) {
     return initial(c, at[0] + 2.0 * at[1]);
   });
-  for (std::size_t c = 0; c < 3; ++c) flow.solver.upload(static_cast<StateField>(c), u[c]);
+  upload_velocity(flow.solver, u);
   flow.solver.start();
   double end = 0.0;
   for (const double speed : frames) {
@@ -141,8 +141,7 @@ TEST(FlowFrame, FluidAtRestBetweenOutflowsStaysAtRest) {
     integration.set(p);
     TypedFlow<DROGUE_TEST_SPACE> flow(p, 22);
     // A frame that moves faster from step to step.
-    const StaggeredField rest = flow.domain.zero_field();
-    for (std::size_t c = 0; c < 3; ++c) flow.solver.upload(static_cast<StateField>(c), rest[c]);
+    upload_velocity(flow.solver, flow.domain.zero_field());
     flow.solver.start();
     for (int step = 1; step <= 20; ++step) {
       const std::array<double, 3> frame{0.05 * step, 0.0, -0.1 * step};

@@ -32,22 +32,20 @@ class SharedSolver {
 
   Solver* operator->() { return _solver.get(); }
 
-  void upload(StateField field, const std::vector<double>& values) {
-    _solver->upload(field, cut(values, extents(_p, field), part_of(_p, _ranks, field)));
+  /// Sets the first arrays of the state.
+  template <class Arrays>
+  void upload(const Arrays& arrays) {
+    const std::vector<stepping::StateArray> state = _solver->state();
+    for (std::size_t i = 0; i < arrays.size(); ++i) _solver->upload(state[i].name, cut(arrays[i], state[i]));
   }
   void start(const StaggeredField& u) {
-    for (std::size_t c = 0; c < 3; ++c) upload(static_cast<StateField>(c), u[c]);
+    upload(u);
     _solver->start();
-  }
-  std::vector<double> download(StateField field) {
-    const linear::CellBox part = part_of(_p, _ranks, field);
-    std::vector<double> own(part.size());
-    _solver->download(field, own);
-    return joined(_group, own, extents(_p, field), part);
   }
   std::vector<std::vector<double>> state() {
     std::vector<std::vector<double>> arrays;
-    for (const StateField field : state_fields(_p)) arrays.push_back(download(field));
+    for (const stepping::StateArray& array : _solver->state())
+      arrays.push_back(joined(_group, *_solver, array));
     return arrays;
   }
   /// Component of the vorticity, and the Q-criterion, at the cell centres.
@@ -326,7 +324,7 @@ TEST_F(FlowRanks, ContinueBitForBitOnAsManyRanksAndNearlyOnOthers) {
       const Progress end = first->progress();
       if (!belongs_to_first(ranks)) continue;
       SharedSolver next(p, group);
-      for (std::size_t i = 0; i < saved.size(); ++i) next.upload(state_fields(p)[i], saved[i]);
+      next.upload(saved);
       next->restore(progress);
       EXPECT_EQ(Stop::pause, next->advance(endless, 6, {}));
       const auto found = next.state();

@@ -78,18 +78,15 @@ void expect_equal_rates(Parameters p, unsigned seed) {
   p.fixed_dt = 1e-3;                // stable on the finest grid
   const FlowDomain domain(p);
   const auto solver = started(backend, p, random_field(domain, seed));
-  const StaggeredField u = velocity(*solver, p);
+  const StaggeredField u = velocity(*solver);
   ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause);
   const StaggeredField expected = reference::momentum_rate(domain, u, 0.0);
   const double scale = std::max({largest(expected[0]), largest(expected[1]), largest(expected[2])});
-  std::vector<double> rates[3];
-  for (std::size_t c = 0; c < 3; ++c)
-    rates[c] = download(*solver, p,
-                        static_cast<StateField>(static_cast<int>(StateField::rate_x) + static_cast<int>(c)));
+  const StaggeredField found = rates(*solver);
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
     const int side = domain.side_of(c, face);
     if (side >= 0 && domain.kind(static_cast<std::size_t>(side)) != BoundaryKind::outflow) return;
-    ASSERT_NEAR(rates[c][domain.at(c, face)], expected[c][domain.at(c, face)], tolerance * scale)
+    ASSERT_NEAR(found[c][domain.at(c, face)], expected[c][domain.at(c, face)], tolerance * scale)
         << text(p) << ": component " << c << " at " << face[0] << " " << face[1] << " " << face[2];
   });
 }
@@ -149,7 +146,7 @@ void expect_equal_steps(const Parameters& p, unsigned seed,
   state.pressure = reference::project(domain, state.velocity, 1.0);
   if (is_implicit) {
     // Pressure of the present velocity, but for differences over 1e-4 dt, without viscosity in long steps.
-    state.pressure = download(*solver, p, StateField::pressure);
+    state.pressure = download(*solver, "pressure");
     double squares = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (p.cells[axis] > 1) squares += 1.0 / (domain.spacing(axis) * domain.spacing(axis));
@@ -160,7 +157,7 @@ void expect_equal_steps(const Parameters& p, unsigned seed,
     for (std::size_t i = 0; i < present.size(); ++i)
       ASSERT_NEAR(state.pressure[i], present[i], 0.01 * largest(present)) << text(p);
   }
-  ASSERT_LT(largest_difference(velocity(*solver, p), state.velocity), tolerance)
+  ASSERT_LT(largest_difference(velocity(*solver), state.velocity), tolerance)
       << text(p) << ": initial projection";
   double time = 0.0;
   // The first step is shortened by its target.
@@ -171,9 +168,8 @@ void expect_equal_steps(const Parameters& p, unsigned seed,
                                                : reference::runge_kutta_step(domain, state, time, dt);
     time += dt;
     ASSERT_EQ(solver->progress().time, time);
-    ASSERT_LT(largest_difference(velocity(*solver, p), state.velocity), tolerance)
-        << text(p) << " at " << time;
-    ASSERT_LT(largest_difference(download(*solver, p, StateField::pressure), state.pressure),
+    ASSERT_LT(largest_difference(velocity(*solver), state.velocity), tolerance) << text(p) << " at " << time;
+    ASSERT_LT(largest_difference(download(*solver, "pressure"), state.pressure),
               100.0 * tolerance * (1.0 + largest(state.pressure)))
         << text(p) << " at " << time;
   }

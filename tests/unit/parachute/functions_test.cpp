@@ -18,15 +18,14 @@ flow::Parameters channel() {
 }
 
 TEST(Lattice, ComponentsLieOnTheFacesNormalToTheirAxis) {
-  const Lattice x = lattice_of(channel(), flow::StateField::velocity_x);
+  const Lattice x = lattice_of(channel(), 0);
   EXPECT_EQ(x.n, (std::array<int, 3>{4, 5, 1}));
   EXPECT_EQ(x.place(0), (std::array<double, 3>{1.0, -0.8, 0.25}));
-  const Lattice y = lattice_of(channel(), flow::StateField::velocity_y);
+  const Lattice y = lattice_of(channel(), 1);
   EXPECT_EQ(y.n, (std::array<int, 3>{4, 6, 1}));
   EXPECT_EQ(y.place(0), (std::array<double, 3>{1.25, -1.0, 0.25}));
   EXPECT_EQ(y.place(23), (std::array<double, 3>{2.75, 1.0, 0.25}));
-  EXPECT_EQ(lattice_of(channel(), flow::StateField::velocity_z).place(0),
-            (std::array<double, 3>{1.25, -0.8, 0.25}));
+  EXPECT_EQ(lattice_of(channel(), 2).place(0), (std::array<double, 3>{1.25, -0.8, 0.25}));
 }
 
 TEST(Evaluate, ThreadsFillEveryPoint) {
