@@ -176,13 +176,15 @@ void Communicator::run_on_root(const std::function<void()>& action) {
   });
 }
 
-void Communicator::run_or_abort(const std::function<void()>& action) {
+void Communicator::run_or_abort(const std::function<void()>& action,
+                                const std::function<void()>& before_abort) {
   if (_size == 1) return action();
   try {
     action();
   } catch (const Failure&) {
     throw;
   } catch (...) {
+    if (is_root() && before_abort) before_abort();
     abort();
   }
 }

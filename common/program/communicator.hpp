@@ -58,16 +58,18 @@ class Communicator {
     return value;
   }
 
-  /// Runs `action` on every rank. Collective; blocks until all ranks are done. If it throws on some ranks,
-  /// all ranks throw the `Failure` of the lowest one, so that no rank waits for one that has given up.
+  /// Runs `action`, which must not communicate, on every rank. Collective; blocks until all ranks are done.
+  /// If it throws on some ranks, all ranks throw the `Failure` of the lowest one, so that no rank waits for
+  /// one that has given up.
   void run_collectively(const std::function<void()>& action);
 
   /// Runs `action` on rank 0. Collective; blocks until it is done. All ranks throw the `Failure` of rank 0.
   void run_on_root(const std::function<void()>& action);
 
   /// Runs an action in which ranks communicate. An exception other than a `Failure`, which all ranks throw
-  /// alike, ends all ranks (`abort`), because the others wait for this one; a process alone throws it.
-  void run_or_abort(const std::function<void()>& action);
+  /// alike, ends all ranks (`abort`), because the others wait for this one: after `before_abort`, if it is
+  /// that of rank 0. A process alone throws it.
+  void run_or_abort(const std::function<void()>& action, const std::function<void()>& before_abort = {});
 
   /// Prints the exception that is being handled and ends all ranks with its exit code, where other ranks wait
   /// for this one. Call it in a catch block only.

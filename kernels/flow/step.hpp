@@ -49,7 +49,7 @@ struct Step {
                          FinishStepFunctor<ExecutionSpace>{control, status, constants});
   }
 
-  /// Adams-Bashforth of second order, Kim and Moin 1985, eqs. (3) to (5), for a variable dt:
+  /// Adams-Bashforth of second order, as Kim and Moin 1985, for a variable dt:
   /// u = P(u + dt ((1 + r/2) L(u) - r/2 L(u of the step before))), r = dt / dt of the step before.
   void enqueue_ab2(const ExecutionSpace& space) {
     predict(space, fields.velocity, {.state = 0.0, .rate = 1.0, .adams_bashforth = true}, 1.0);

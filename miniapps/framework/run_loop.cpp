@@ -157,7 +157,7 @@ ExitCode run_to_end(Simulation& simulation, const RunRequest& request, run::Resu
   RunLoop loop(simulation, request, result);
   ExitCode code = ExitCode::ok;
   // Here, since the end of `loop` is collective.
-  request.files.communicator.run_or_abort([&] { code = loop.run(); });
+  request.files.communicator.run_or_abort([&] { code = loop.run(); }, request.before_abort);
   return code;
 }
 

@@ -13,6 +13,7 @@ struct RunRequest {
   bool keeps_restart = true;  ///< the run leaves restart.h5, also at its end unless the scene forbids
   /// Called at every output time, also if no fields are written; may be empty.
   std::function<void()> at_output;
+  std::function<void()> before_abort = {};  ///< as of `Communicator::run_or_abort`
 };
 
 /// Sets the initial state, or the state of `files.restart`. Collective. Throws `Failure` (io_error) for a

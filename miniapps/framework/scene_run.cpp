@@ -53,7 +53,7 @@ class SceneRun {
 
   ExitCode run() {
     try {
-      _communicator.run_or_abort([&] { execute(); });
+      _communicator.run_or_abort([&] { execute(); }, [&] { record_abort(); });
     } catch (...) {
       const Failure failure = current_failure();
       if (_communicator.is_root()) record(failure);
@@ -103,10 +103,9 @@ class SceneRun {
       session->print_shared_cores(_app.program());
     }
     _result.precision = scene->precision();
-    std::unique_ptr<Simulation> simulation;
-    _communicator.run_collectively([&] {
-      simulation = scene->create({backend, _options.baseline, _options.quiet, _communicator});
-    });
+    // Ranks communicate in it: not collectively, where one that has failed would wait for the others.
+    const std::unique_ptr<Simulation> simulation =
+        scene->create({backend, _options.baseline, _options.quiet, _communicator});
     set_up(*simulation, files);
     _communicator.run_on_root([&] {
       require_not_finished_later(simulation->end_time());
@@ -114,7 +113,8 @@ class SceneRun {
       _directory->write_scene(printed);
     });
     _result.timing.setup_s = _stopwatch.seconds() - simulation->phases().phases();
-    _result.exit_code = run_to_end(*simulation, {files, _options.quiet, true, {}}, _result);
+    const RunRequest request{files, _options.quiet, true, {}, [&] { record_abort(); }};
+    _result.exit_code = run_to_end(*simulation, request, _result);
     if (_result.exit_code != ExitCode::ok) return;
     {
       const ScopedStopwatch stopwatch(_result.timing.verify_s);
@@ -207,6 +207,9 @@ class SceneRun {
     });
     if (failure.code() == ExitCode::verification_failed && !_options.quiet) print_summary();
   }
+
+  /// Describes the end of all ranks by an exception of this one, which is being handled.
+  void record_abort() { record(current_failure()); }
 
   void write_result() {
     _result.timing.wall_s = _stopwatch.seconds();

@@ -32,11 +32,11 @@ class RanksTest(parachute_program.FlowTest):
         self.addCleanup(process.kill)
         return process
 
-    def begin_each(self, *lines):
+    def begin_each(self, *lines, program=(PROGRAM,)):
         """A rank for each command line."""
         words = [LAUNCHER, "--oversubscribe"]
         for line in lines:
-            words += [*([":"] if len(words) > 2 else []), "-n", "1", PROGRAM, *map(str, line)]
+            words += [*([":"] if len(words) > 2 else []), "-n", "1", *program, *map(str, line)]
         process = subprocess.Popen(list(map(str, words)), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    stdin=subprocess.DEVNULL, text=True, env=RANK_ENVIRONMENT)
         self.addCleanup(process.kill)
@@ -199,6 +199,21 @@ class Failures(RanksTest):
                 self.assertIn(words, ended[1][0])
                 self.assertIn("(on rank 1)", ended[1][0])
                 self.assertFalse((self.folder / "out" / "history.csv").exists())
+
+    def test_ends_all_ranks_if_one_lacks_memory(self):
+        """Rank 1 fails while the others communicate with it; rank 0, if it fails, describes the end of the run."""
+        large = VORTICES.replace("cells = [16, 16, 1]", "cells = [192, 192, 96]").replace('y = "periodic" }', 'y = "periodic", z = "periodic" }')
+        scene = self.write(large)
+        limit = ("sh", "-c", 'ulimit -v 380000; exec "$0" "$@"')
+        words = (PROGRAM, scene, *QUIET, "--out", "out", "--overwrite")
+        for rank, lines in enumerate((((*limit, *words), words), (words, (*limit, *words)))):
+            with self.subTest(rank):
+                process = self.begin_each(*lines, program=())
+                errors = process.communicate(timeout=120)[1]
+                self.assertEqual(6, process.returncode, errors)
+                self.assertIn("out of memory", errors)
+                if rank == 0:
+                    self.assertIn("out of memory", self.result("out")["message"])
 
     def test_refuses_a_run_directory_on_all_ranks(self):
         scene = self.write(VORTICES)

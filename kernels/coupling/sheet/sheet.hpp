@@ -182,19 +182,19 @@ class Sheet {
     laws.push_back(p.law);
     for (const PorousLaw& law : laws)
       if (!is_valid(law.alpha) || !is_valid(law.beta))
-        throw std::invalid_argument("immersed sheet: alpha and beta must be finite and not negative");
+        throw std::invalid_argument("sheet: alpha and beta must be finite and not negative");
     if (!(density > 0.0) || !is_valid(density))
-      throw std::invalid_argument("immersed sheet: the density must be positive");
+      throw std::invalid_argument("sheet: the density must be positive");
     if (!(p.filter >= 0.0 && p.filter <= 1.0))
-      throw std::invalid_argument("immersed sheet: the weight of the filter must be 0 to 1");
+      throw std::invalid_argument("sheet: the weight of the filter must be 0 to 1");
     if (!(p.defect_filter >= 0.0 && p.defect_filter <= 0.2))
-      throw std::invalid_argument("immersed sheet: the weight of the defect must be 0 to 0.2");
+      throw std::invalid_argument("sheet: the weight of the defect must be 0 to 0.2");
     if (p.defect_filter > 0.0 && p.method != CouplingMethod::spread)
-      throw std::invalid_argument("immersed sheet: the defect is filtered with CouplingMethod::spread alone");
+      throw std::invalid_argument("sheet: the defect is filtered with CouplingMethod::spread alone");
     if (!(p.edge_inset >= 0.0 && p.edge_inset <= 1.0))
-      throw std::invalid_argument("immersed sheet: the inset of edges must be 0 to 1 cells");
+      throw std::invalid_argument("sheet: the inset of edges must be 0 to 1 cells");
     if (p.edge_inset > 0.0 && p.method == CouplingMethod::sharp)
-      throw std::invalid_argument("immersed sheet: a sharp sheet has no inset of edges");
+      throw std::invalid_argument("sheet: a sharp sheet has no inset of edges");
   }
 
   static bool has_no_slip(const SheetParameters& p) {
@@ -216,7 +216,7 @@ class Sheet {
       for (const int i : corners)
         for (std::size_t axis = 0; axis < 3; ++axis)
           if (_parameters.method == CouplingMethod::sharp && mirror(static_cast<std::size_t>(i), axis) > 0.0)
-            throw std::invalid_argument("immersed sheet: a sharp sheet needs prescribed motion");
+            throw std::invalid_argument("sheet: a sharp sheet needs prescribed motion");
     Kokkos::deep_copy(space, result, mirror);
     space.fence("drogue::coupling::inverse_masses");
     return result;
@@ -225,7 +225,7 @@ class Sheet {
   [[nodiscard]] Laws laws(const ExecutionSpace& space) const {
     const std::vector<PorousLaw>& of_vertex = _parameters.law_of_vertex;
     if (!of_vertex.empty() && of_vertex.size() != rows())
-      throw std::invalid_argument("immersed sheet: there must be one porous law per vertex, or none");
+      throw std::invalid_argument("sheet: there must be one porous law per vertex, or none");
     const Laws result("drogue::coupling::porosity", rows());
     const auto mirror = Kokkos::create_mirror_view(result);
     for (std::size_t i = 0; i < rows(); ++i) mirror(i) = of_vertex.empty() ? _parameters.law : of_vertex[i];

@@ -20,7 +20,7 @@ namespace drogue::parachute_app {
 /// A scene on a solver. Functions as of `framework::Simulation`.
 class Simulation final : public framework::Simulation {
  public:
-  /// Keeps a reference to `scene`. Throws `Failure` (no_backend, numerical_failure).
+  /// Keeps a reference to `scene`. Throws `Failure` (usage) if ranks cannot share it, alike on all of them.
   Simulation(const FlowScene& scene, const framework::SimulationSettings& settings);
 
   [[nodiscard]] const framework::OutputRequest& output() const override { return _scene.output; }
