@@ -6,8 +6,8 @@ namespace drogue::scene {
 
 Condition operator&&(const Condition& first, const Condition& second) {
   const std::string clause = second.text.starts_with("with ") ? second.text.substr(5) : second.text;
-  return {[a = first.applies, b = second.applies] { return (!a || a()) && (!b || b()); }, first.text + " and " + clause,
-          second.decided_by};
+  return {[a = first.applies, b = second.applies] { return (!a || a()) && (!b || b()); },
+          first.text + " and " + clause, second.decided_by};
 }
 
 Key& Table::add(Key::Kind kind, const std::string& name, std::string help, KeyRules rules) {
