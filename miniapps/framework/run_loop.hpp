@@ -22,9 +22,8 @@ struct RunRequest {
 void set_up(Simulation& simulation, const RunFiles& files);
 
 /// Runs `simulation` to its end, writes the files of the run, and fills in `result`, also if it throws.
-/// Collective.
-/// Returns `interrupted` after a signal, with the restart file written; otherwise `ok`. Throws `Failure`:
-/// numerical_failure once the last good state is on disk, io_error.
+/// Collective. Returns `interrupted` after a signal, with the restart file written; otherwise `ok`. Throws
+/// `Failure`: numerical_failure once the last good state is on disk, io_error.
 ExitCode run_to_end(Simulation& simulation, const RunRequest& request, run::ResultDocument& result);
 
 }  // namespace drogue::framework

@@ -46,8 +46,7 @@ class Simulation final : public framework::Simulation {
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
   /// Errors against the exact solution of the scene at the present time, by the names of the tolerances. On
-  /// several ranks collective.
-  /// Throws std::bad_optional_access without an exact solution.
+  /// several ranks collective. Throws std::bad_optional_access without an exact solution.
   [[nodiscard]] std::map<std::string, double> error_norms();
 
   /// Root-mean-square divergence of the present state, 1/s.
