@@ -36,9 +36,9 @@ struct CopyRowsFunctor {
   }
 };
 
-/// Arrays of cloth in air, listed in one place. Loops over the list save the state at the beginning of a step,
-/// return to it after a failed one, and write and read restarts by name: a new member costs one line. That of
-/// a fabric, `stepping::StateList`, packs its arrays into one checkpoint instead.
+/// Arrays of cloth in air, listed in one place. Loops over the list save the state at the beginning of a
+/// step, return to it after a failed one, and write and read restarts by name: a new member costs one line.
+/// That of a fabric, `stepping::StateList`, packs its arrays into one checkpoint instead.
 template <class ExecutionSpace>
 class StateList {
  public:
