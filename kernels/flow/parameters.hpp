@@ -90,8 +90,11 @@ struct Parameters {
   std::array<int, 3> cells = {64, 64, 64};      ///< number of cells per axis; 1: no variation along this axis
   std::array<double, 3> low = {0.0, 0.0, 0.0};  ///< lower corner of the domain, m
   std::array<double, 3> high = {1.0, 1.0, 1.0};  ///< upper corner of the domain, m
-  double density = 1.0;                          ///< kg/m^3
-  double viscosity = 0.0;                        ///< dynamic viscosity, Pa s
+  /// Coordinates of the faces along each axis, m, ascending from `low` to `high`, one more than cells. Empty:
+  /// cells of one width.
+  std::array<std::vector<double>, 3> faces;
+  double density = 1.0;    ///< kg/m^3
+  double viscosity = 0.0;  ///< dynamic viscosity, Pa s
   /// Sides x low, x high, y low, y high, z low, z high.
   std::array<Boundary, 6> boundary;
   std::array<double, 3> body_force = {0.0, 0.0, 0.0};     ///< per volume, N/m^3

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "kernels/flow/parameters.hpp"
+
+namespace drogue::flow {
+
+/// True if the cells of an axis have widths of their own. Does not throw.
+[[nodiscard]] inline bool is_stretched(const Parameters& p, std::size_t axis) {
+  return !p.faces[axis].empty();
+}
+
+/// Coordinate of face `i` of an axis, 0 to the number of cells, m. Does not throw.
+[[nodiscard]] inline double face_coordinate(const Parameters& p, std::size_t axis, int i) {
+  if (is_stretched(p, axis)) return p.faces[axis][static_cast<std::size_t>(i)];
+  return p.low[axis] + i * ((p.high[axis] - p.low[axis]) / p.cells[axis]);
+}
+
+/// Width of cell `i` of an axis, m. Does not throw.
+[[nodiscard]] inline double cell_width(const Parameters& p, std::size_t axis, int i) {
+  if (!is_stretched(p, axis)) return (p.high[axis] - p.low[axis]) / p.cells[axis];
+  return face_coordinate(p, axis, i + 1) - face_coordinate(p, axis, i);
+}
+
+/// Coordinate of the centre of cell `i` of an axis, m. Does not throw.
+[[nodiscard]] inline double centre_coordinate(const Parameters& p, std::size_t axis, int i) {
+  if (is_stretched(p, axis)) return 0.5 * (face_coordinate(p, axis, i) + face_coordinate(p, axis, i + 1));
+  const double width = cell_width(p, axis, i);
+  return (p.low[axis] + 0.5 * width) + i * width;
+}
+
+/// Cells of a grid that have one width along each axis: a box that sheets and bodies may lie in.
+struct Core {
+  std::array<int, 3> begin = {0, 0, 0}, cells = {0, 0, 0};
+  std::array<double, 3> low{}, high{};  ///< corners, m
+  std::array<double, 3> spacing{};      ///< m
+
+  friend bool operator==(const Core&, const Core&) = default;
+};
+
+/// Along each axis the longest run of cells whose widths are the least one to 1e-9 of it; of a uniform axis
+/// all cells. Does not throw.
+[[nodiscard]] Core core_of(const Parameters& p);
+
+}  // namespace drogue::flow
