@@ -432,6 +432,7 @@ void complete_and_check(const Place& root, FlowScene& scene) {
     if (!scene.flags.empty()) sheets = make_all_sheets({}, {}, p.density, p.viscosity, scene.flags);
     check_images(root, scene, sheets);
     note_narrow_channels(root, scene, sheets);
+    note_unfit_canopies(root, scene);
   } else {
     check_steps(root, scene);
   }
