@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "kernels/flow/parameters.hpp"
 
@@ -29,6 +30,13 @@ namespace drogue::flow {
   if (is_stretched(p, axis)) return 0.5 * (face_coordinate(p, axis, i) + face_coordinate(p, axis, i + 1));
   const double width = cell_width(p, axis, i);
   return (p.low[axis] + 0.5 * width) + i * width;
+}
+
+/// Widths of all cells of an axis, m; none if they have one width. Throws std::bad_alloc.
+[[nodiscard]] inline std::vector<double> widths(const Parameters& p, std::size_t axis) {
+  std::vector<double> result;
+  for (int i = 0; is_stretched(p, axis) && i < p.cells[axis]; ++i) result.push_back(cell_width(p, axis, i));
+  return result;
 }
 
 /// Cells of a grid that have one width along each axis: a box that sheets and bodies may lie in.

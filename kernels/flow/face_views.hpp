@@ -13,12 +13,13 @@ using FaceView = Kokkos::View<double***, Kokkos::LayoutStride, typename Executio
                               Kokkos::MemoryUnmanaged>;
 
 /// Whole grid in the form that transfers between points and faces take; lengths in m. Axes with one cell are
-/// periodic. Does not throw.
+/// periodic. A stretched axis is continued from its core with the width of the cells there, so that
+/// coordinates are true in the core alone. Does not throw.
 [[nodiscard]] inline coupling::StaggeredGrid coupling_grid(const MacGrid& g) {
   coupling::StaggeredGrid grid;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     grid.cells[axis] = g.whole[axis];
-    grid.origin[axis] = g.low[axis];
+    grid.origin[axis] = g.start[axis];
     grid.spacing[axis] = g.h[axis];
     grid.periodic[axis] = g.whole_periodic[axis] || g.whole[axis] == 1;
   }

@@ -118,6 +118,9 @@ void check_parameters(const Parameters& p) {
           "cfl must be at most 1.4 with the time scheme RK3, 0.7 with AB2");
   require(p.diffusion == Diffusion::explicit_ || p.time_scheme == TimeScheme::ab2,
           "Crank-Nicolson diffusion needs the time scheme AB2");
+  require(p.pressure_solver != PressureSolver::fft ||
+              std::ranges::all_of(p.faces, [](const std::vector<double>& faces) { return faces.empty(); }),
+          "fast transforms need axes without faces, whose cells have one width");
 #if !defined(DROGUE_HAVE_HYPRE)
   require(p.pressure_solver != PressureSolver::hypre_pfmg, "this build lacks hypre");
 #endif

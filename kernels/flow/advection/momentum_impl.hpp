@@ -12,11 +12,10 @@ static_assert(ghost_width == 3, "advective_flux reads three cells on each side o
 
 /// Flux of momentum component c through a face normal to axis d, per density, m^2/s^2: advection minus
 /// diffusion. The face is the low face along d of the control volume of the component. `carried` points at
-/// component c at the control volume, `carrier` at component d of the same cell.
-template <Advection scheme, class R>
-KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carrier, std::int64_t stride_c,
-                                       std::int64_t stride_d, double nu_over_h, R epsilon) {
-  const R speed = 0.5 * (load_field<R>(carrier - stride_c) + load_field<R>(carrier));
+/// component c at the control volume; `speed` is that of the fluid through the face, m/s.
+template <Advection scheme, class R, class Factor>
+KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, R speed, std::int64_t stride_d,
+                                       Factor nu_over_h, R epsilon) {
   return advective_flux<scheme, R>(speed, carried, stride_d, epsilon) -
          nu_over_h * (load_field<R>(carried) - load_field<R>(carried - stride_d));
 }
@@ -44,7 +43,7 @@ struct MomentumFunctor {
     std::int64_t at = g.offset(i, j, k_begin);
     double below[3] = {0.0, 0.0, 0.0};
     if (g.n[2] > 1)
-      for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at);
+      for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at, {i, j, k_begin});
     for (int k = k_begin; k < k_end; ++k, at += g.stride[2]) {
       double value[3], rates[3];
 #if defined(__CUDA_ARCH__)
@@ -56,11 +55,15 @@ struct MomentumFunctor {
         const double other = adams_bashforth ? factors.old_rate * setup.old_rate(place)
                                              : device::load_constant(setup.state.data() + place);
         double rate = setup.acceleration[c];
-        if (g.n[0] > 1) rate -= g.inverse_h[0] * (flux(c, 0, at + g.stride[0]) - flux(c, 0, at));
-        if (g.n[1] > 1) rate -= g.inverse_h[1] * (flux(c, 1, at + g.stride[1]) - flux(c, 1, at));
+        if (g.n[0] > 1)
+          rate -= g.inverse_extent(c, 0, i) *
+                  (flux(c, 0, at + g.stride[0], {i + 1, j, k}) - flux(c, 0, at, {i, j, k}));
+        if (g.n[1] > 1)
+          rate -= g.inverse_extent(c, 1, j) *
+                  (flux(c, 1, at + g.stride[1], {i, j + 1, k}) - flux(c, 1, at, {i, j, k}));
         if (g.n[2] > 1) {
-          const double above = flux(c, 2, at + g.stride[2]);
-          rate -= g.inverse_h[2] * (above - below[c]);
+          const double above = flux(c, 2, at + g.stride[2], {i, j, k + 1});
+          rate -= g.inverse_extent(c, 2, k) * (above - below[c]);
           below[c] = above;
         }
         if (setup.eddy.data() != nullptr) rate += setup.eddy(place);
@@ -79,12 +82,16 @@ struct MomentumFunctor {
     }
   }
 
-  KOKKOS_FUNCTION double flux(int c, int d, std::int64_t at) const {
+  /// Flux of component c along axis d into the control volume at `index`, whose place is `at`.
+  KOKKOS_FUNCTION double flux(int c, int d, std::int64_t at, const int (&index)[3]) const {
     const MacGrid& g = setup.grid;
-    const double* u = setup.stage.data();
-    return momentum_flux<scheme, double>(u + c * g.component + at, u + d * g.component + at,
-                                         g.n[c] > 1 ? g.stride[c] : 0, g.stride[d], setup.nu * g.inverse_h[d],
-                                         setup.epsilon);
+    const double* carried = setup.stage.data() + c * g.component + at;
+    const double* carrier = setup.stage.data() + d * g.component + at;
+    const double before = device::load_constant(carrier - (g.n[c] > 1 ? g.stride[c] : 0)),
+                 after = device::load_constant(carrier);
+    const double speed = c == d ? 0.5 * (before + after) : g.mean(c, index[c], before, after);
+    return momentum_flux<scheme, double>(carried, speed, g.stride[d],
+                                         setup.nu * g.inverse_step(c, d, index[d]), setup.epsilon);
   }
 };
 
@@ -136,13 +143,10 @@ struct MomentumRowsFunctor {
             Access::store(rate_row(next, c, length) + i, R(setup.acceleration[c]));
         if (g.n[0] > 1) {
           fluxes(0, j, k, g.n[0] + 1, west);
-          for (int c = 0; c < 3; ++c)
-            for (int i = 0; i < g.n[0]; i += lanes)
-              subtract(next + c * length + i, g.inverse_h[0],
-                       Access::load(west + c * length + i + 1) - Access::load(west + c * length + i));
+          for (int c = 0; c < 3; ++c) subtract_along_row(c, west + c * length, next + c * length);
         }
-        if (g.n[1] > 1) add_difference(1, j + 1, k, g.inverse_h[1], length, south, west, next);
-        if (g.n[2] > 1) add_difference(2, j, k + 1, g.inverse_h[2], length, under, west, next);
+        if (g.n[1] > 1) add_difference(1, j + 1, k, length, south, west, next);
+        if (g.n[2] > 1) add_difference(2, j, k + 1, length, under, west, next);
         for (int c = 0; c < 3; ++c) finish_row(c * g.component + at, next + c * length, factors);
       }
     }
@@ -150,8 +154,22 @@ struct MomentumRowsFunctor {
 
  private:
   static double* rate_row(double* rows, int c, int length) { return rows + c * length; }
-  static void subtract(double* place, double factor, R difference) {
+  template <class Factor>
+  static void subtract(double* place, Factor factor, R difference) {
     Access::store(place, Access::load(place) - factor * difference);
+  }
+
+  /// Subtracts the differences of fluxes along x.
+  void subtract_along_row(int c, const double* west, double* rates) const {
+    const MacGrid& g = setup.grid;
+    const auto difference = [west](int i) { return Access::load(west + i + 1) - Access::load(west + i); };
+    if (!g.is_stretched(0)) {
+      for (int i = 0; i < g.n[0]; i += lanes) subtract(rates + i, g.inverse_h[0], difference(i));
+      return;
+    }
+    const double* inverse_extent = g.row(0, c == 0 ? AxisRow::inverse_gap : AxisRow::inverse_width);
+    for (int i = 0; i < g.n[0]; i += lanes)
+      subtract(rates + i, Access::load(inverse_extent + i), difference(i));
   }
 
   /// Fluxes of all components through the low faces along d of `count` control volumes of a row.
@@ -163,25 +181,55 @@ struct MomentumRowsFunctor {
     for (int c = 0; c < 3; ++c) {
       const double *carried = u + c * g.component + at, *carrier = u + d * g.component + at;
       const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
+      if (g.is_stretched(d) || (c != d && g.is_stretched(c))) {
+        stretched_fluxes(c, d, {0, j, k}, count, carried, carrier, rows + c * length);
+        continue;
+      }
       for (int i = 0; i < count; i += lanes)
         Access::store(rows + c * length + i,
-                      momentum_flux<scheme, R>(carried + i, carrier + i, stride_c, g.stride[d],
+                      momentum_flux<scheme, R>(carried + i, half_sum(carrier + i, stride_c), g.stride[d],
                                                setup.nu * g.inverse_h[d], R(setup.epsilon)));
+    }
+  }
+  static R half_sum(const double* carrier, std::int64_t stride) {
+    return 0.5 * (load_field<R>(carrier - stride) + load_field<R>(carrier));
+  }
+
+  /// Those of one component from cell `first` on, where widths change along d, or speeds are means over
+  /// halves of unequal widths.
+  void stretched_fluxes(int c, int d, const int (&first)[3], int count, const double* carried,
+                        const double* carrier, double* row) const {
+    const MacGrid& g = setup.grid;
+    const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
+    const double* skew = c != d && g.is_stretched(c) ? g.row(c, AxisRow::skew) + first[c] : nullptr;
+    const double* inverse_step = d != 0 || !g.is_stretched(0) ? nullptr
+                                 : c == 0                     ? g.row(0, AxisRow::inverse_width) - 1
+                                                              : g.row(0, AxisRow::inverse_gap);
+    const R along_row = setup.nu * g.inverse_step(c, d, first[d]);
+    for (int i = 0; i < count; i += lanes) {
+      R speed = half_sum(carrier + i, stride_c);
+      if (skew != nullptr)
+        speed = speed + (c == 0 ? Access::load(skew + i) : R(*skew)) *
+                            (load_field<R>(carrier + i) - load_field<R>(carrier + i - stride_c));
+      const R nu_over_h = inverse_step != nullptr ? setup.nu * Access::load(inverse_step + i) : along_row;
+      Access::store(row + i,
+                    momentum_flux<scheme, R>(carried + i, speed, g.stride[d], nu_over_h, R(setup.epsilon)));
     }
   }
 
   /// Subtracts the difference of the fluxes at the row (j, k) and those kept in `kept`, and keeps the new
   /// ones.
-  void add_difference(int d, int j, int k, double inverse_h, int length, double* kept, double* work,
-                      double* rates) const {
+  void add_difference(int d, int j, int k, int length, double* kept, double* work, double* rates) const {
     const MacGrid& g = setup.grid;
     fluxes(d, j, k, g.n[0], work);
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; ++c) {
+      const double inverse_extent = g.inverse_extent(c, d, (d == 1 ? j : k) - 1);
       for (int i = 0; i < g.n[0]; i += lanes) {
         const R high = Access::load(work + c * length + i);
-        subtract(rates + c * length + i, inverse_h, high - Access::load(kept + c * length + i));
+        subtract(rates + c * length + i, inverse_extent, high - Access::load(kept + c * length + i));
         Access::store(kept + c * length + i, high);
       }
+    }
   }
 
   void finish_row(std::int64_t place, double* rates, const StageFactors& factors) const {

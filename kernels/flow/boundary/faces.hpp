@@ -64,9 +64,10 @@ struct BoundaryFacesFunctor {
     const double inner = setup.stage(place + inward), mean = 0.5 * (value + inner);
     // Where fluid enters, upwind advection has nothing to carry from inside, and central fluxes have a mean.
     const double speed = outward > 0.0 ? outward : upwind ? 0.0 : high ? mean : -mean;
-    double rate = setup.acceleration[axis] - speed * g.inverse_h[axis] * (value - inner);
+    const double inverse_width = g.inverse_width(axis, cell[axis]);
+    double rate = setup.acceleration[axis] - speed * inverse_width * (value - inner);
     if (outward < 0.0) {
-      const double push = 2.0 * g.inverse_h[axis] * entering_pressure(side, outward);
+      const double push = 2.0 * inverse_width * entering_pressure(side, outward);
       rate += high ? -push : push;
     }
     for (int end = 0; end < 6; ++end)
@@ -99,10 +100,11 @@ struct BoundaryFacesFunctor {
     const MacGrid& g = setup.grid;
     const std::int64_t outward = (end % 2 == 1 ? 1 : -1) * g.stride[end / 2];
     const double speed = setup.stage(place_of(end, cell)), inward = end % 2 == 1 ? -speed : speed;
+    const double inverse_width = g.inverse_width(end / 2, cell[end / 2]);
     if (is_beside_outflow(end, cell))
-      return inward > 0.0 ? inward * g.inverse_h[end / 2] * (boundary.velocity[end][side / 2] - value) : 0.0;
+      return inward > 0.0 ? inward * inverse_width * (boundary.velocity[end][side / 2] - value) : 0.0;
     const double weight = !upwind ? 0.5 * inward : inward > 0.0 ? inward : 0.0;
-    return weight * g.inverse_h[end / 2] * (setup.stage(place_of(side, cell) + outward) - value);
+    return weight * inverse_width * (setup.stage(place_of(side, cell) + outward) - value);
   }
 
   /// True for the outermost cells beside an outflow.
@@ -137,10 +139,11 @@ struct BoundaryFacesFunctor {
   [[nodiscard]] KOKKOS_FUNCTION double carried_rate(int side, int c, const int cell[3]) const {
     const MacGrid& g = setup.grid;
     const std::int64_t face = place_of(side, cell), before = face - (g.n[c] > 1 ? g.stride[c] : 0);
-    const double mean = 0.5 * (setup.stage(before) + setup.stage(face));
+    const double mean = g.mean(c, cell[c], setup.stage(before), setup.stage(face));
     const double outward = side % 2 == 1 ? mean : -mean;
     const double inside = setup.stage(c * g.component + g.offset(cell[0], cell[1], cell[2]));
-    return outward < 0.0 ? -outward * g.inverse_h[side / 2] * (boundary.velocity[side][c] - inside) : 0.0;
+    const double inverse_width = g.inverse_width(side / 2, cell[side / 2]);
+    return outward < 0.0 ? -outward * inverse_width * (boundary.velocity[side][c] - inside) : 0.0;
   }
 };
 

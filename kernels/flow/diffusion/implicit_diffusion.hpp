@@ -18,7 +18,7 @@ namespace drogue::flow {
 
 /// Laplacian of the change of a velocity component in a step, at the faces inside the domain. The change is
 /// zero on sides with a prescribed velocity, after known changes have moved to the right-hand side; its
-/// normal derivative is zero on slip sides and outflows. Does not throw.
+/// normal derivative is zero on slip sides and outflows. Throws std::bad_alloc.
 inline linear::PoissonProblem diffusion_problem(const Parameters& parameters, std::size_t component) {
   linear::PoissonProblem problem;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -31,7 +31,10 @@ inline linear::PoissonProblem diffusion_problem(const Parameters& parameters, st
     };
     problem.cells[axis] = parameters.cells[axis] - (on_faces ? 1 : 0);
     problem.spacing[axis] = (parameters.high[axis] - parameters.low[axis]) / parameters.cells[axis];
-    problem.axes[axis] = {periodic, end(2 * axis), end(2 * axis + 1), on_faces};
+    problem.widths[axis] = widths(parameters, axis);
+    // Without widths, unknowns on periodic faces have the equation of those at centres.
+    const bool on_periodic_faces = axis == component && periodic && is_stretched(parameters, axis);
+    problem.axes[axis] = {periodic, end(2 * axis), end(2 * axis + 1), on_faces || on_periodic_faces};
   }
   return problem;
 }
@@ -122,9 +125,15 @@ struct DiffusionSourceFunctor {
     for (int axis = 0; axis < 3; ++axis) {
       if (g.n[axis] == 1) continue;
       const std::int64_t stride = g.stride[axis];
-      const double w = g.inverse_h[axis] * g.inverse_h[axis];
+      const int i = index[axis];
+      const double extent = g.inverse_extent(component, axis, i),
+                   step_low = g.inverse_step(component, axis, i),
+                   step_high = g.inverse_step(component, axis, i + 1);
+      const double w_low = extent * step_low, w_high = extent * step_high;
       const double below = u[-stride], above = u[stride];
-      laplacian += w * ((above - u[0]) - (u[0] - below));
+      laplacian += (g.is_stretched(axis) ? extent : w_low) *
+                   (g.is_stretched(axis) ? step_high * (above - u[0]) - step_low * (u[0] - below)
+                                         : (above - u[0]) - (u[0] - below));
       // Half of these differences lead to the values on sides.
       const double sides[2] = {u[0] + 0.5 * (below - u[0]), u[0] + 0.5 * (above - u[0])};
       for (const double value : sides) {
@@ -133,14 +142,14 @@ struct DiffusionSourceFunctor {
       }
       if (g.periodic[axis]) continue;
       if (axis == component) {
-        if (index[axis] == 1 && setup.is_side(2 * axis))
-          change += w * normal_change(2 * axis, index, place - stride, dt);
-        if (index[axis] + 1 == g.n[axis] && setup.is_side(2 * axis + 1))
-          change += w * normal_change(2 * axis + 1, index, place + stride, dt);
+        if (i == 1 && setup.is_side(2 * axis))
+          change += w_low * normal_change(2 * axis, index, place - stride, dt);
+        if (i + 1 == g.n[axis] && setup.is_side(2 * axis + 1))
+          change += w_high * normal_change(2 * axis + 1, index, place + stride, dt);
       } else {
-        if (index[axis] == 0) change += 2.0 * w * tangential_change(2 * axis, index, place, -stride);
-        if (index[axis] + 1 == g.n[axis])
-          change += 2.0 * w * tangential_change(2 * axis + 1, index, place, stride);
+        if (i == 0) change += 2.0 * w_low * tangential_change(2 * axis, index, place, -stride);
+        if (i + 1 == g.n[axis])
+          change += 2.0 * w_high * tangential_change(2 * axis + 1, index, place, stride);
       }
     }
     // Bits, which let NaN prevail.
@@ -161,11 +170,11 @@ struct DiffusionSourceFunctor {
     const double here = pressure_at(index[0], index[1], index[2]);
     const double* other_rank = setup.pressure_below[component];
     if (index[component] == 0 && other_rank != nullptr)
-      return g.inverse_h[component] *
+      return g.inverse_gap(component, 0) *
              (here - other_rank[index[0] + g.n[0] * (component == 1 ? index[2] : index[1])]);
     int below[3] = {index[0], index[1], index[2]};
     below[component] = (index[component] == 0 ? g.n[component] : index[component]) - 1;
-    return g.inverse_h[component] * (here - pressure_at(below[0], below[1], below[2]));
+    return g.inverse_gap(component, index[component]) * (here - pressure_at(below[0], below[1], below[2]));
   }
   /// Change of the normal velocity on a side in this step, m/s, next to the unknown `index`.
   [[nodiscard]] KOKKOS_FUNCTION double normal_change(int side, const int index[3], std::int64_t face,
@@ -174,7 +183,8 @@ struct DiffusionSourceFunctor {
       int cell[3] = {index[0], index[1], index[2]};
       if (side % 2 == 0) --cell[component];
       // The pressure on the side is zero until the projection.
-      const double gradient = 2.0 * setup.grid.inverse_h[component] * pressure_at(cell[0], cell[1], cell[2]);
+      const double gradient =
+          2.0 * setup.grid.inverse_width(component, cell[component]) * pressure_at(cell[0], cell[1], cell[2]);
       setup.predicted(face) -= dt * (side % 2 == 0 ? gradient : -gradient);
     }
     return setup.predicted(face) - setup.velocity(face);

@@ -6,11 +6,13 @@ namespace drogue::flow {
 
 /// Derivative of velocity component i along axis j around a cell of a staggered field with ghost cells, 1/s:
 /// at the centre for i == j, else at the edge at the low sides along i and j. Zero along axes with one cell.
-/// `u` points at component 0 of the cell.
-KOKKOS_INLINE_FUNCTION double staggered_derivative(const MacGrid& g, const double* u, int i, int j) {
+/// `u` points at component 0 of the cell, whose index along axis j is `index`.
+KOKKOS_INLINE_FUNCTION double staggered_derivative(const MacGrid& g, const double* u, int i, int j,
+                                                   int index) {
   if (g.n[j] == 1) return 0.0;
   const double* q = u + i * g.component;
-  return g.inverse_h[j] * (i == j ? q[g.stride[j]] - q[0] : q[0] - q[-g.stride[j]]);
+  return (i == j ? g.inverse_width(j, index) : g.inverse_gap(j, index)) *
+         (i == j ? q[g.stride[j]] - q[0] : q[0] - q[-g.stride[j]]);
 }
 
 /// Step to the next edge along an axis; zero along axes with one cell, whose ghost cells do not exist.
@@ -20,17 +22,20 @@ KOKKOS_INLINE_FUNCTION std::int64_t edge_step(const MacGrid& g, int axis) {
 
 /// Velocity gradient at the centre of a cell, 1/s, second order: `gradient[i][j]` is the derivative of
 /// component i along axis j, a mean over the four edges parallel to the third axis for i != j.
-KOKKOS_INLINE_FUNCTION void centred_gradient(const MacGrid& g, const double* u, double gradient[3][3]) {
+KOKKOS_INLINE_FUNCTION void centred_gradient(const MacGrid& g, const double* u, const int (&cell)[3],
+                                             double gradient[3][3]) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       if (i == j) {
-        gradient[i][j] = staggered_derivative(g, u, i, j);
+        gradient[i][j] = staggered_derivative(g, u, i, j, cell[j]);
         continue;
       }
       const std::int64_t a = edge_step(g, i), b = edge_step(g, j);
+      const int low = cell[j], high = low + 1;
       gradient[i][j] =
-          0.25 * (staggered_derivative(g, u, i, j) + staggered_derivative(g, u + a, i, j) +
-                  staggered_derivative(g, u + b, i, j) + staggered_derivative(g, u + a + b, i, j));
+          0.25 *
+          (staggered_derivative(g, u, i, j, low) + staggered_derivative(g, u + a, i, j, low) +
+           staggered_derivative(g, u + b, i, j, high) + staggered_derivative(g, u + a + b, i, j, high));
     }
 }
 

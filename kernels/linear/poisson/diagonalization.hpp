@@ -44,10 +44,11 @@ class DiagonalizationSolver {
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
   /// Allocates the matrices and one work array, and one more for the tridiagonal systems; blocks. Throws
-  /// std::runtime_error if memory runs out.
+  /// std::invalid_argument for cells of different widths and std::runtime_error if memory runs out.
   DiagonalizationSolver(const ExecutionSpace& space, const PoissonProblem& problem,
                         InvertedOperators operators = InvertedOperators::any)
       : _space(space), _problem(problem), _operators(operators), _product(space) {
+    refuse_stretched(problem);
     // The first product copies the right-hand side, which a solver of lines overwrites.
     const bool has_lines = operators == InvertedOperators::laplacian &&
                            (problem.varies_along(0) || problem.varies_along(1)) &&

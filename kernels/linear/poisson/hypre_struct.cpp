@@ -220,6 +220,7 @@ void HypreStructSolver::Objects::make_solver() {
 HypreStructSolver::HypreStructSolver(const PoissonProblem& problem, const RankGroup& group,
                                      const CellBox& box, double tolerance, int max_iterations)
     : _objects(std::make_unique<Objects>(group)) {
+  refuse_stretched(problem);
   Objects& o = *_objects;
   o.singular = problem.is_singular();
   o.tolerance = tolerance;

@@ -25,10 +25,10 @@ enum class AxisMethod {
 /// throw.
 [[nodiscard]] inline CellBox unknowns_of(const PencilRanks& ranks, const PoissonProblem& problem) {
   std::array<int, 3> cells = problem.cells;
-  for (std::size_t axis = 0; axis < 3; ++axis) cells[axis] += problem.axes[axis].on_faces ? 1 : 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) cells[axis] += problem.axes[axis].on_inner_faces() ? 1 : 0;
   CellBox box = box_of(ranks, cells);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!problem.axes[axis].on_faces) continue;
+    if (!problem.axes[axis].on_inner_faces()) continue;
     int& changed = box.begin[axis] == 0 ? box.cells[axis] : box.begin[axis];
     --changed;
   }
@@ -47,6 +47,7 @@ class PencilSolver {
   PencilSolver(const ExecutionSpace& space, const PoissonProblem& problem, const RankGroup& group,
                const PencilRanks& ranks, AxisMethod method)
       : _space(space), _method(method), _product(space) {
+    refuse_stretched(problem);
     if (method == AxisMethod::fourier && !device::is_host<ExecutionSpace>)
       throw std::invalid_argument("the Fourier solver on CUDA works on one rank");
     const RankGroup rows = group.split(ranks.place[2]), columns = group.split(ranks.place[1]);
@@ -107,7 +108,7 @@ class PencilSolver {
     _boxes[gathered] = _boxes[from];
     if (group.size() == 1) return;
     _turns[from].emplace(group, _boxes[from], gathered, problem.cells[gathered], split,
-                         problem.axes[gathered].on_faces ? 1 : 0);
+                         problem.axes[gathered].on_inner_faces() ? 1 : 0);
     _boxes[gathered] = _turns[from]->after();
   }
 

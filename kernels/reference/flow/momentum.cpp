@@ -52,10 +52,11 @@ double outflow_rate(const FlowDomain& domain, const StaggeredField& u, std::size
   // Normal advection. Fluid that enters has no inner upwind value; central fluxes carry the mean.
   const double other = u[c][domain.at(c, inner)];
   const double carrier = entering < 0.0 ? own : central ? 0.5 * (own + other) : 0.0;
-  double rate = -carrier * (other - own) * inward / domain.spacing(c);
+  const double width = domain.width(c, cell[c]);
+  double rate = -carrier * (other - own) * inward / width;
   if (entering > 0.0) {
     const double still = std::max(0.0, inward * domain.parameters().boundary[side].velocity[c]);
-    rate += inward * 0.5 * (still * still - own * own) / (0.5 * domain.spacing(c));
+    rate += inward * 0.5 * (still * still - own * own) / (0.5 * width);
   }
   // Advection along the side by the velocities of the cell, without its divergence along the side.
   for (std::size_t d = 0; d < 3; ++d) {
@@ -69,7 +70,8 @@ double outflow_rate(const FlowDomain& domain, const StaggeredField& u, std::size
       const double neighbour = end >= 0
                                    ? domain.parameters().boundary[static_cast<std::size_t>(end)].velocity[c]
                                    : domain.velocity(u, c, beyond, time);
-      rate += (central && end < 0 ? 0.5 * into : std::max(0.0, into)) * (neighbour - own) / domain.spacing(d);
+      rate += (central && end < 0 ? 0.5 * into : std::max(0.0, into)) * (neighbour - own) /
+              domain.width(d, cell[d]);
     }
   }
   return rate;
@@ -86,11 +88,16 @@ double momentum_flux(const FlowDomain& domain, const StaggeredField& u, std::siz
   };
   GridIndex before = face;
   before[c] -= 1;
-  const double speed = 0.5 * (domain.velocity(u, d, before, time) + domain.velocity(u, d, face, time));
+  // Across its own axis, a control volume consists of half a cell on each side of the face.
+  const double first = c == d ? 1.0 : domain.width(c, before[c]),
+               second = c == d ? 1.0 : domain.width(c, face[c]);
+  const double speed =
+      (first * domain.velocity(u, d, before, time) + second * domain.velocity(u, d, face, time)) /
+      (first + second);
   if (const int side = outflow_at(domain, d, face); side >= 0 && c != d && (side % 2 == 0) == (speed > 0.0))
     return speed * domain.parameters().boundary[static_cast<std::size_t>(side)].velocity[c];
   const double viscous = domain.parameters().viscosity / domain.parameters().density *
-                         (carried(0) - carried(-1)) / domain.spacing(d);
+                         (carried(0) - carried(-1)) / domain.step(c, d, face[d]);
   if (domain.parameters().advection == Advection::central)
     return speed * 0.5 * (carried(-1) + carried(0)) - viscous;
   std::array<double, 5> q{};
@@ -112,7 +119,7 @@ StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, 
         GridIndex next = face;
         next[d] += 1;
         result -= (momentum_flux(domain, u, c, d, next, time) - momentum_flux(domain, u, c, d, face, time)) /
-                  domain.spacing(d);
+                  domain.extent(c, d, face[d]);
       }
     } else if (p.boundary[static_cast<std::size_t>(side)].kind == BoundaryKind::outflow) {
       result = acceleration + outflow_rate(domain, u, static_cast<std::size_t>(side), face, time);
@@ -131,10 +138,10 @@ StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, d
       GridIndex low = face, high = face;
       --low[axis];
       ++high[axis];
-      rate[c][domain.at(c, face)] += nu *
-                                     (domain.velocity(u, c, low, time) - 2.0 * u[c][domain.at(c, face)] +
-                                      domain.velocity(u, c, high, time)) /
-                                     (domain.spacing(axis) * domain.spacing(axis));
+      const double own = u[c][domain.at(c, face)];
+      const double below = (own - domain.velocity(u, c, low, time)) / domain.step(c, axis, face[axis]),
+                   above = (domain.velocity(u, c, high, time) - own) / domain.step(c, axis, high[axis]);
+      rate[c][domain.at(c, face)] += nu * (above - below) / domain.extent(c, axis, face[axis]);
     }
   });
   return rate;
