@@ -39,7 +39,8 @@ struct PoissonProblem {
   [[nodiscard]] bool is_stretched() const { return is_stretched(0) || is_stretched(1) || is_stretched(2); }
 
   /// True if the solution of Poisson's equation is determined up to a constant only. The solvers then return
-  /// the solution of mean zero of the equation whose right-hand side has its mean subtracted. Does not throw.
+  /// the solution of mean zero of the equation whose right-hand side has its mean subtracted; the volumes of
+  /// the cells weigh both means. Does not throw.
   [[nodiscard]] bool is_singular() const {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (varies_along(axis) && !axes[axis].periodic &&
