@@ -24,7 +24,7 @@ double inflated_diameter(const Canopy& canopy) { return 0.67 * std::sqrt(4.0 / p
 /// Cells across an open canopy.
 double cells_across(const flow::Parameters& p, const Canopy& canopy) {
   double width = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) width = std::max(width, cell_width(p, axis));
+  for (std::size_t axis = 0; axis < 3; ++axis) width = std::max(width, core_width(p, axis));
   return inflated_diameter(canopy) / width;
 }
 
