@@ -65,7 +65,7 @@ struct FabricForces {
 
   /// Takes over E A of the lines of `parameters`, N. Blocks.
   void update_line_stiffness() {
-    // The slots stay, so that captured graphs remain valid.
+    // The slots stay, so that graphs of the launcher remain valid.
     const SpringAdjacency springs = spring_adjacency(parameters.mesh, parameters.material);
     device::copy(space, fabric.springs.value,
                  table_view(space, "drogue::fabric::slot_values", springs.value));

@@ -17,6 +17,19 @@ enum class Advection {
   weno_z,   ///< fifth-order upwind-biased, weights of Borges, Carmona, Costa and Don 2008
 };
 
+/// Whether the fluxes of a scheme are biased to the side that fluid comes from, so that on outflows they are
+/// of first order and upwind.
+[[nodiscard]] constexpr bool is_upwind(Advection scheme) {
+  switch (scheme) {
+    case Advection::central:
+      return false;
+    case Advection::weno_js:
+    case Advection::weno_z:
+      return true;
+  }
+  return true;
+}
+
 /// Explicit time integration of advection, and of diffusion if that is explicit.
 enum class TimeScheme {
   ab2,  ///< Adams-Bashforth of second order with variable dt; one projection per step

@@ -229,6 +229,8 @@ class SceneRun {
       std::printf("  %-*s %.4g  (tolerance %.4g)  %s%s\n", static_cast<int>(width), check.name.c_str(),
                   check.value, check.tolerance, check.passed ? "passed" : "FAILED",
                   check.measurement ? (": " + check.measured()).c_str() : "");
+    if (_result.checks.empty() && _result.exit_code == ExitCode::ok)
+      std::printf("  nothing verified: the scene has no checks in [verify]\n");
     std::printf("files in %s\n", _out.string().c_str());
   }
 

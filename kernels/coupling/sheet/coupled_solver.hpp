@@ -89,12 +89,12 @@ class CoupledSolver : public Solver {
     const FailureReason reason = _step.reason();
     return {reason, reason == FailureReason::line ? _step.failed_line() : -1, _cloth_failure};
   }
-  [[nodiscard]] std::vector<stepping::StateArray> state() const final { return _step.state().arrays(); }
+  [[nodiscard]] std::vector<stepping::StateArray> state() const final { return state_list().arrays(); }
   void upload(std::string_view name, std::span<const double> values) final {
-    _step.state().upload(_space, name, values);
+    state_list().upload(_space, name, values);
   }
   void download(std::string_view name, std::span<double> values) final {
-    _step.state().download(_space, name, values);
+    state_list().download(_space, name, values);
   }
   [[nodiscard]] std::array<double, 3> total_force_on_air() final {
     std::array<double, 3> force =
@@ -114,7 +114,6 @@ class CoupledSolver : public Solver {
     _pulls = fabric::PeakPulls<ExecutionSpace>(_space, _parameters.fabric.mesh, _cuts.stiffness(), pulls);
   }
   [[nodiscard]] std::vector<fabric::PeakPull> peak_pulls() final { return _pulls.peaks(_space); }
-  void set_peak_pulls(std::span<const fabric::PeakPull> peaks) final { _pulls.set_peaks(_space, peaks); }
 
  private:
   static Parameters with_coupling_settings(Parameters p) {
@@ -133,6 +132,13 @@ class CoupledSolver : public Solver {
     p.flow.external_force = true;
     if (p.flow.horizon > 0.0 && p.flow.motion.empty()) p.flow.motion = vertex_motion(p);
     return p;
+  }
+  /// That of the step, and the peaks, which failed steps do not change.
+  [[nodiscard]] stepping::StateList<ExecutionSpace> state_list() const {
+    stepping::StateList<ExecutionSpace> list = _step.state();
+    list.add("peak_pull", "N", _pulls.present(), &fabric::PeakPull::force, {.saved = false});
+    list.add("peak_pull_time", "s", _pulls.present(), &fabric::PeakPull::time, {.saved = false});
+    return list;
   }
   void set_frame(const FrameMotion& frame);
   /// Gives the lines their stiffness after the cuts so far. Blocks.
@@ -185,7 +191,7 @@ void CoupledSolver<ExecutionSpace>::start() {
   _cloth_failure.reset();
   _step.start();
   if (_cuts.restart_at(0.0)) set_lines();
-  _pulls.set_peaks(_space, std::vector<fabric::PeakPull>(_pulls.size()));
+  _pulls.reset(_space);
   record_pulls();
 }
 

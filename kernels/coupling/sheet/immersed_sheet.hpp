@@ -33,6 +33,17 @@ struct BeginSheetStepFunctor {
   }
 };
 
+/// Copies the position of vertex i.
+template <class ExecutionSpace>
+struct CopyPositionFunctor {
+  fabric::PointsView<ExecutionSpace> from;
+  typename LocalAir<ExecutionSpace>::Vectors to;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    spatial::store_vector(to, i, spatial::load_vector(from, i));
+  }
+};
+
 /// Velocity along its axis of a closing sheet relative to the copies of the air, m/s, weighted by area.
 template <class ExecutionSpace>
 struct ClosingVelocity {
@@ -165,7 +176,7 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
         _interpolated_force(Base::vectors("interpolated_force")) {
     if (!(parameters.defect_filter > 0.0)) return;
     _defect = Base::vectors("defect");
-    _state.add("defect", "m/s^2", _defect);
+    _state.add("defect", "m/s^2", _defect, _surface.vertices());
   }
 
   void update_acceleration(const ExecutionSpace& space) const override {
@@ -224,7 +235,7 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
   [[nodiscard]] Vectors exchange_points(const ExecutionSpace& space, const Cloth& cloth) const override {
     if (_inset.size() == 0) return cloth.positions;
     device::launch_each(space, "drogue::coupling::present_positions", _transfer.points,
-                        CopyRowsFunctor<ExecutionSpace>{1, {cloth.positions}, {_present}});
+                        CopyPositionFunctor<ExecutionSpace>{cloth.positions, _present});
     _inset(space, cloth, 0.0, _present);
     return _present;
   }

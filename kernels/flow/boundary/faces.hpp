@@ -151,7 +151,7 @@ struct BoundaryFacesFunctor {
 template <class ExecutionSpace>
 void launch_boundary_faces(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                            const BoundaryConditions<ExecutionSpace>& boundary, Advection advection) {
-  BoundaryFacesFunctor<ExecutionSpace> functor{setup, boundary, advection != Advection::central, {}};
+  BoundaryFacesFunctor<ExecutionSpace> functor{setup, boundary, is_upwind(advection), {}};
   const MacGrid& g = setup.grid;
   int total = 0;
   for (int side = 0; side < 6; ++side) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "kernels/reference/flow/turbulence.hpp"
 
@@ -20,10 +21,20 @@ double upwind_value(const std::array<double, 5>& q, Advection scheme) {
       13.0 / 12.0 * square(q[1] - 2.0 * q[2] + q[3]) + 0.25 * square(q[1] - q[3]),
       13.0 / 12.0 * square(q[2] - 2.0 * q[3] + q[4]) + 0.25 * square(3.0 * q[2] - 4.0 * q[3] + q[4])};
   const double linear[3] = {0.1, 0.6, 0.3}, epsilon = 1e-72, tau = std::abs(beta[0] - beta[2]);
+  const auto weight_of = [&](std::size_t s) {
+    switch (scheme) {
+      case Advection::weno_js:
+        return linear[s] / square(epsilon + beta[s]);
+      case Advection::weno_z:
+        return linear[s] * (1.0 + tau / (epsilon + beta[s]));
+      case Advection::central:
+        break;
+    }
+    throw std::invalid_argument("no weights of this scheme");
+  };
   double sum = 0.0, value = 0.0;
   for (std::size_t s = 0; s < 3; ++s) {
-    const double weight = scheme == Advection::weno_js ? linear[s] / square(epsilon + beta[s])
-                                                       : linear[s] * (1.0 + tau / (epsilon + beta[s]));
+    const double weight = weight_of(s);
     sum += weight;
     value += weight * candidate[s];
   }
@@ -42,7 +53,7 @@ int outflow_at(const FlowDomain& domain, std::size_t d, const GridIndex& face) {
 /// the face over half a cell.
 double outflow_rate(const FlowDomain& domain, const StaggeredField& u, std::size_t side,
                     const GridIndex& face, double time) {
-  const bool central = domain.parameters().advection == Advection::central;
+  const bool central = !flow::is_upwind(domain.parameters().advection);
   const std::size_t c = side / 2;
   const int inward = side % 2 == 0 ? 1 : -1;
   GridIndex inner = face, cell = face;
@@ -98,11 +109,21 @@ double momentum_flux(const FlowDomain& domain, const StaggeredField& u, std::siz
     return speed * domain.parameters().boundary[static_cast<std::size_t>(side)].velocity[c];
   const double viscous = domain.parameters().viscosity / domain.parameters().density *
                          (carried(0) - carried(-1)) / domain.step(c, d, face[d]);
-  if (domain.parameters().advection == Advection::central)
-    return speed * 0.5 * (carried(-1) + carried(0)) - viscous;
-  std::array<double, 5> q{};
-  for (int m = 0; m < 5; ++m) q[static_cast<std::size_t>(m)] = carried(speed > 0.0 ? m - 3 : 2 - m);
-  return speed * upwind_value(q, domain.parameters().advection) - viscous;
+  const Advection scheme = domain.parameters().advection;
+  const auto value = [&] {
+    switch (scheme) {
+      case Advection::central:
+        return 0.5 * (carried(-1) + carried(0));
+      case Advection::weno_js:
+      case Advection::weno_z: {
+        std::array<double, 5> q{};
+        for (int m = 0; m < 5; ++m) q[static_cast<std::size_t>(m)] = carried(speed > 0.0 ? m - 3 : 2 - m);
+        return upwind_value(q, scheme);
+      }
+    }
+    throw std::invalid_argument("unknown advection scheme");
+  };
+  return speed * value() - viscous;
 }
 
 StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, double time) {

@@ -43,9 +43,14 @@ void complete_sides(const Place& root, FlowScene& scene) {
 
 void complete_scheme(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  p.advection = scene.advection == AdvectionScheme::central ? flow::Advection::central
-                : scene.weights == Weights::js              ? flow::Advection::weno_js
-                                                            : flow::Advection::weno_z;
+  switch (scene.advection) {
+    case AdvectionScheme::central:
+      p.advection = flow::Advection::central;
+      break;
+    case AdvectionScheme::weno5:
+      p.advection = scene.weights == Weights::js ? flow::Advection::weno_js : flow::Advection::weno_z;
+      break;
+  }
   for (std::size_t axis = 0; axis < 3; ++axis)
     root.refuse_if(p.pressure_drop[axis] != 0.0 && p.boundary[2 * axis].kind != BoundaryKind::periodic,
                    "flow.pressure_drop", ": the axis ", axis_names[axis], " has no periodic sides");

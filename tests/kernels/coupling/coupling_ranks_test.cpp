@@ -8,7 +8,7 @@
 #include "kernels/flow/halo/decomposition.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/flow_faces.hpp"
-#include "tests/support/ranks.hpp"
+#include "tests/support/flow_ranks.hpp"
 
 // Cloth in air on several ranks against itself on one.
 
