@@ -93,6 +93,7 @@ class CoupledStep {
         _flow(flow),
         _sheet(sheet),
         _fabric(fabric),
+        _box(flow::force_box(parameters.flow)),
         _state(sheet.state()),
         _saved_step("drogue::coupling::saved_step"),
         _reason("drogue::coupling::failure_reason"),
@@ -179,7 +180,7 @@ class CoupledStep {
 
  private:
   [[nodiscard]] auto faces(const flow::List<ExecutionSpace>& values) const {
-    return flow::face_views<ExecutionSpace>(_flow.grid(), values);
+    return flow::face_views<ExecutionSpace>(_flow.grid(), _box, values);
   }
   template <class View>
   [[nodiscard]] typename View::non_const_value_type read(const View& view) const {
@@ -217,6 +218,7 @@ class CoupledStep {
   Flow& _flow;
   const Sheet<ExecutionSpace>& _sheet;
   Fabric& _fabric;
+  flow::Core _box;  ///< of the grid, that sheets lie in
   StateList _state;
   typename StateList::Packed _saved;
   SavedStep<ExecutionSpace> _saved_step;
