@@ -32,4 +32,19 @@ Core core_of(const Parameters& p) {
   return core;
 }
 
+Core force_box(const Parameters& p) {
+  Core box = core_of(p);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int begin = box.begin[axis] + (box.begin[axis] > 0 ? 1 : 0),
+              core_end = box.begin[axis] + box.cells[axis],
+              end = core_end - (core_end < p.cells[axis] ? 1 : 0);
+    if (end - begin == box.cells[axis]) continue;
+    box.begin[axis] = begin;
+    box.cells[axis] = end - begin;
+    box.low[axis] = face_coordinate(p, axis, begin);
+    box.high[axis] = face_coordinate(p, axis, end);
+  }
+  return box;
+}
+
 }  // namespace drogue::flow

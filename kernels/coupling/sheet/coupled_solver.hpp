@@ -65,14 +65,15 @@ class CoupledSolver : public Solver {
         _parameters(with_coupling_settings(parameters)),
         _group(group),
         _flow(instance, _parameters.flow, group),
-        _sheet(make_sheet<ExecutionSpace>(_parameters.sheet.method, _space, flow::coupling_grid(_flow.grid()),
-                                          _parameters.fabric, _parameters.sheet, _parameters.flow.density,
-                                          group, flow::face_window(_flow.grid()))),
+        _box(flow::force_box(_parameters.flow)),
+        _sheet(make_sheet<ExecutionSpace>(
+            _parameters.sheet.method, _space, flow::coupling_grid(_flow.grid(), _box), _parameters.fabric,
+            _parameters.sheet, _parameters.flow.density, group, flow::face_window(_flow.grid(), _box))),
         _fabric(instance, _parameters.fabric, _sheet->relaxation()),
         _step(_space, _parameters, _flow, *_sheet, _fabric),
         _plan(_parameters),
-        _total_force(flow::coupling_grid(_flow.grid())),
-        _frame(_parameters.follow, _parameters.fabric),
+        _total_force(flow::coupling_grid(_flow.grid(), _box)),
+        _frame(_space, _parameters.follow, _parameters.fabric),
         _cuts(_parameters.cuts, _parameters.fabric) {
     _step.set_line_stiffness(_cuts.stiffness());
     if (_frame.follows()) _flow.check_frame(_parameters.follow.axes);
@@ -97,7 +98,7 @@ class CoupledSolver : public Solver {
   }
   [[nodiscard]] std::array<double, 3> total_force_on_air() final {
     std::array<double, 3> force =
-        _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
+        _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _box, _flow.force()));
     _group.sum(force);
     return force;
   }
@@ -169,6 +170,7 @@ class CoupledSolver : public Solver {
   Parameters _parameters;
   linear::RankGroup _group;
   Flow _flow;
+  flow::Core _box;  ///< of the grid, that sheets lie in
   std::unique_ptr<Sheet<ExecutionSpace>> _sheet;
   Fabric _fabric;
   CoupledStep<ExecutionSpace> _step;

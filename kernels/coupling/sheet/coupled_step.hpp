@@ -93,6 +93,7 @@ class CoupledStep {
         _flow(flow),
         _sheet(sheet),
         _fabric(fabric),
+        _box(flow::force_box(parameters.flow)),
         _state(sheet.state()),
         _saved_step("drogue::coupling::saved_step"),
         _reason("drogue::coupling::failure_reason"),
@@ -137,7 +138,6 @@ class CoupledStep {
     _state.download(_space, "sheet_position", numbers(positions));
     _state.download(_space, "sheet_velocity", numbers(velocities));
     _fabric.upload(positions, velocities);
-    _sheet.update_acceleration(_space);
   }
 
   /// True if the last state saved is that at the beginning of this step of the flow. Blocks.
@@ -179,7 +179,7 @@ class CoupledStep {
 
  private:
   [[nodiscard]] auto faces(const flow::List<ExecutionSpace>& values) const {
-    return flow::face_views<ExecutionSpace>(_flow.grid(), values);
+    return flow::face_views<ExecutionSpace>(_flow.grid(), _box, values);
   }
   template <class View>
   [[nodiscard]] typename View::non_const_value_type read(const View& view) const {
@@ -217,6 +217,7 @@ class CoupledStep {
   Flow& _flow;
   const Sheet<ExecutionSpace>& _sheet;
   Fabric& _fabric;
+  flow::Core _box;  ///< of the grid, that sheets lie in
   StateList _state;
   typename StateList::Packed _saved;
   SavedStep<ExecutionSpace> _saved_step;

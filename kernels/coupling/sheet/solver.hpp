@@ -63,7 +63,7 @@ struct FrameMotion {
 struct Progress {
   flow::Progress flow;
   BlockProgress block;
-  FrameMotion frame;  ///< at rest unless `Parameters::follow` has a vertex
+  FrameMotion frame;  ///< at rest unless `Parameters::follow` has vertices
 };
 
 /// Failure that ended an `advance` with `flow::Stop::failed`.
