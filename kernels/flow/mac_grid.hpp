@@ -40,14 +40,16 @@ enum class AxisRow : int {
 /// On one of several ranks it is the part of a whole grid that the rank holds. Sides towards other ranks are
 /// `BoundaryKind::neighbour`; along such an axis, face n belongs to the neighbour.
 struct MacGrid {
-  static constexpr bool are_equal = false;  ///< all widths, for what takes `UniformWidths` too
-  int n[3];                                 ///< cells per axis
-  int ghost[3];                             ///< ghost cells at each side; 0 along axes with one cell
-  int whole[3];                             ///< cells of the whole grid per axis
-  int origin[3];                            ///< index of cell (0, 0, 0) in the whole grid
-  bool periodic[3];                         ///< with both sides on this rank
-  bool whole_periodic[3];                   ///< of the whole grid
-  double low[3], high[3];                   ///< corners of the whole grid, m
+  /// Of all widths, for what takes `UniformWidths` in place of the grid.
+  static constexpr bool are_equal = false;
+
+  int n[3];                ///< cells per axis
+  int ghost[3];            ///< ghost cells at each side; 0 along axes with one cell
+  int whole[3];            ///< cells of the whole grid per axis
+  int origin[3];           ///< index of cell (0, 0, 0) in the whole grid
+  bool periodic[3];        ///< with both sides on this rank
+  bool whole_periodic[3];  ///< of the whole grid
+  double low[3], high[3];  ///< corners of the whole grid, m
   double h[3];             ///< width of the cells, m; of a stretched axis that of its `Core`, the least
   double inverse_h[3];     ///< 1/m
   double start[3];         ///< coordinate of face 0 of the whole grid if all of its cells were h wide, m

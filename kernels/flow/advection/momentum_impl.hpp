@@ -301,4 +301,16 @@ void choose_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionS
   setup.weights.adams_bashforth ? launch.template operator()<true>() : launch.template operator()<false>();
 }
 
+template <class ExecutionSpace>
+void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                       Advection advection) {
+  choose_momentum<false>(space, setup, advection);
+}
+
+template <class ExecutionSpace>
+void dispatch_stretched_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                                 Advection advection) {
+  choose_momentum<true>(space, setup, advection);
+}
+
 }  // namespace drogue::flow

@@ -9,8 +9,8 @@ namespace drogue::flow {
 /// `u` points at component 0 of the cell, whose index along axis j is `index`. `widths`: the grid, or its
 /// `UniformWidths`.
 template <class Widths>
-KOKKOS_INLINE_FUNCTION double staggered_derivative(const MacGrid& g, const Widths& widths, const double* u,
-                                                   int i, int j, int index) {
+KOKKOS_FORCEINLINE_FUNCTION double staggered_derivative(const MacGrid& g, const Widths& widths,
+                                                        const double* u, int i, int j, int index) {
   if (g.n[j] == 1) return 0.0;
   const double* q = u + i * g.component;
   return (i == j ? widths.inverse_width(j, index) : widths.inverse_gap(j, index)) *
@@ -24,21 +24,20 @@ KOKKOS_INLINE_FUNCTION std::int64_t edge_step(const MacGrid& g, int axis) {
 
 /// `centred_gradient` with the widths of the grid, or its `UniformWidths`.
 template <class Widths>
-KOKKOS_INLINE_FUNCTION void gradient_of_widths(const MacGrid& g, const Widths& widths, const double* u,
-                                               const int (&cell)[3], double gradient[3][3]) {
-  const auto derivative = [&](const double* at, int i, int j, int index) {
-    return staggered_derivative(g, widths, at, i, j, index);
-  };
+KOKKOS_FORCEINLINE_FUNCTION void gradient_of_widths(const MacGrid& g, const Widths& widths, const double* u,
+                                                    const int (&cell)[3], double gradient[3][3]) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const int low = cell[j], high = low + 1;
       if (i == j) {
-        gradient[i][j] = derivative(u, i, j, low);
+        gradient[i][j] = staggered_derivative(g, widths, u, i, j, low);
         continue;
       }
       const std::int64_t a = edge_step(g, i), b = edge_step(g, j);
-      gradient[i][j] = 0.25 * (derivative(u, i, j, low) + derivative(u + a, i, j, low) +
-                               derivative(u + b, i, j, high) + derivative(u + a + b, i, j, high));
+      gradient[i][j] = 0.25 * (staggered_derivative(g, widths, u, i, j, low) +
+                               staggered_derivative(g, widths, u + a, i, j, low) +
+                               staggered_derivative(g, widths, u + b, i, j, high) +
+                               staggered_derivative(g, widths, u + a + b, i, j, high));
     }
 }
 

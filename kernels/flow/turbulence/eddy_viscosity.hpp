@@ -118,11 +118,20 @@ struct EddyViscosityFunctor {
     Control& c = control();
     if (c.trial.stop != stepping::Stop::running) return;
     const int cell[3] = {i + cells.first[0], j + cells.first[1], k + cells.first[2]};
-    double gradient[3][3];
-    centred_gradient(grid, velocity.data() + grid.offset(cell[0], cell[1], cell[2]), cell, gradient);
-    const double value = eddy_viscosity(model_in_cell(model, grid, cell), gradient);
+    const double value = grid.is_stretched() ? viscosity_at(grid, model_in_cell(model, grid, cell), cell)
+                                             : viscosity_at(UniformWidths{grid}, model, cell);
     viscosity(cells.nearest(cell)) = value;
     raise(c.eddy_viscosity, Kokkos::bit_cast<std::uint64_t>(value));
+  }
+
+ private:
+  template <class Widths>
+  [[nodiscard]] KOKKOS_FUNCTION double viscosity_at(const Widths& widths, const EddyModel& of_cell,
+                                                    const int (&cell)[3]) const {
+    double gradient[3][3];
+    gradient_of_widths(grid, widths, velocity.data() + grid.offset(cell[0], cell[1], cell[2]), cell,
+                       gradient);
+    return eddy_viscosity(of_cell, gradient);
   }
 };
 

@@ -9,6 +9,7 @@
 
 #include "kernels/flow/halo/decomposition.hpp"
 #include "tests/support/flow_case.hpp"
+#include "tests/support/flow_faces.hpp"
 #include "tests/support/flow_ranks.hpp"
 
 // The flow solver on several ranks against itself on one.
@@ -162,6 +163,13 @@ std::vector<Case> cases() {
   set_sides(profile, 0, inflow, outflow);
   set_expressions(profile.boundary[0]);
   profile.turbulence = Turbulence::smagorinsky;
+  set_random_widths(add("stretched, periodic", {6, 11, 17}), 3.0, 1);
+  Parameters& graded = add("stretched, sides", {7, 11, 12});
+  set_sides(graded, 0, inflow, outflow);
+  set_sides(graded, 1, outflow, wall);
+  set_expressions(graded.boundary[0]);
+  graded.turbulence = Turbulence::smagorinsky;
+  set_random_widths(graded, 3.0, 2);
   return all;
 }
 
