@@ -11,6 +11,7 @@
 #include "kernels/fabric/elastic/stress_evaluator.hpp"
 #include "kernels/fabric/loads/dirichlet.hpp"
 #include "kernels/fabric/loads/make_loads.hpp"
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/stepping/step_state.hpp"
 #include "kernels/fabric/totals.hpp"
 #include "kernels/fabric/vertex_force.hpp"

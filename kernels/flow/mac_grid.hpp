@@ -40,13 +40,14 @@ enum class AxisRow : int {
 /// On one of several ranks it is the part of a whole grid that the rank holds. Sides towards other ranks are
 /// `BoundaryKind::neighbour`; along such an axis, face n belongs to the neighbour.
 struct MacGrid {
-  int n[3];                ///< cells per axis
-  int ghost[3];            ///< ghost cells at each side; 0 along axes with one cell
-  int whole[3];            ///< cells of the whole grid per axis
-  int origin[3];           ///< index of cell (0, 0, 0) in the whole grid
-  bool periodic[3];        ///< with both sides on this rank
-  bool whole_periodic[3];  ///< of the whole grid
-  double low[3], high[3];  ///< corners of the whole grid, m
+  static constexpr bool are_equal = false;  ///< all widths, for what takes `UniformWidths` too
+  int n[3];                                 ///< cells per axis
+  int ghost[3];                             ///< ghost cells at each side; 0 along axes with one cell
+  int whole[3];                             ///< cells of the whole grid per axis
+  int origin[3];                            ///< index of cell (0, 0, 0) in the whole grid
+  bool periodic[3];                         ///< with both sides on this rank
+  bool whole_periodic[3];                   ///< of the whole grid
+  double low[3], high[3];                   ///< corners of the whole grid, m
   double h[3];             ///< width of the cells, m; of a stretched axis that of its `Core`, the least
   double inverse_h[3];     ///< 1/m
   double start[3];         ///< coordinate of face 0 of the whole grid if all of its cells were h wide, m
@@ -57,6 +58,10 @@ struct MacGrid {
   std::int64_t first;      ///< offset of cell (0, 0, 0) in a component
 
   [[nodiscard]] KOKKOS_FUNCTION bool is_stretched(int axis) const { return table[axis] != nullptr; }
+  /// True with a stretched axis.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_stretched() const {
+    return is_stretched(0) || is_stretched(1) || is_stretched(2);
+  }
   /// Row of the table of a stretched axis, at cell 0.
   [[nodiscard]] KOKKOS_FUNCTION const double* row(int axis, AxisRow which) const {
     return table[axis] + static_cast<int>(which) * table_row;
@@ -77,17 +82,17 @@ struct MacGrid {
   [[nodiscard]] KOKKOS_FUNCTION double inverse_step(int c, int axis, int i) const {
     return c == axis ? inverse_width(axis, i - 1) : inverse_gap(axis, i);
   }
-  /// 1 / least width of the cells on both sides of face i, 1/m.
+  /// 1 / least width of the cells on both sides of face i of a stretched axis, 1/m.
   [[nodiscard]] KOKKOS_FUNCTION double inverse_least_width(int axis, int i) const {
-    return is_stretched(axis) ? Kokkos::fmax(inverse_width(axis, i - 1), inverse_width(axis, i))
-                              : inverse_h[axis];
+    const double* inverse = row(axis, AxisRow::inverse_width) + i;
+    return inverse[-1] > inverse[0] ? inverse[-1] : inverse[0];
   }
-  /// Mean over the two halves of a control volume that reaches from the centre of cell i - 1 along an axis to
-  /// that of cell i, with the value `before` in the first: the mass that leaves the volume is half of what
-  /// leaves both cells. Equal values are kept bit for bit.
-  [[nodiscard]] KOKKOS_FUNCTION double mean(int axis, int i, double before, double after) const {
-    const double half = 0.5 * (before + after);
-    return is_stretched(axis) ? half + row(axis, AxisRow::skew)[i] * (after - before) : half;
+  /// Half the difference over the sum of the widths of cells i and i - 1. With it, half the sum of two values
+  /// a in cell i - 1 and b in cell i, plus `skew` (b - a), is their mean over the two halves of a control
+  /// volume from the centre of cell i - 1 to that of cell i: the mass that leaves the volume is half of what
+  /// leaves both cells, and equal values are kept bit for bit.
+  [[nodiscard]] KOKKOS_FUNCTION double skew(int axis, int i) const {
+    return is_stretched(axis) ? row(axis, AxisRow::skew)[i] : 0.0;
   }
   /// Ratio of the width of cell i to h.
   [[nodiscard]] KOKKOS_FUNCTION double relative_width(int axis, int i) const {
@@ -154,5 +159,21 @@ inline MacGrid make_grid(const Parameters& p, const linear::PencilRanks& ranks =
   grid.first = before + grid.ghost[1] * grid.stride[1] + grid.ghost[2] * grid.stride[2];
   return grid;
 }
+
+/// The widths of a grid without stretched axes in the form of `MacGrid`. What takes either as a parameter is
+/// compiled for such grids as if there were no others: with the same bits and the same speed.
+struct UniformWidths {
+  static constexpr bool are_equal = true;
+  const MacGrid& grid;
+
+  [[nodiscard]] KOKKOS_FUNCTION double inverse_width(int axis, int) const { return grid.inverse_h[axis]; }
+  [[nodiscard]] KOKKOS_FUNCTION double inverse_gap(int axis, int) const { return grid.inverse_h[axis]; }
+  [[nodiscard]] KOKKOS_FUNCTION double inverse_extent(int, int axis, int) const {
+    return grid.inverse_h[axis];
+  }
+  [[nodiscard]] KOKKOS_FUNCTION double inverse_step(int, int axis, int) const { return grid.inverse_h[axis]; }
+  [[nodiscard]] KOKKOS_FUNCTION double relative_width(int, int) const { return 1.0; }
+  [[nodiscard]] KOKKOS_FUNCTION double relative_volume(int, int, int) const { return 1.0; }
+};
 
 }  // namespace drogue::flow

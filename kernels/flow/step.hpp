@@ -155,7 +155,10 @@ struct Step {
       if (i == 0 && parts.size() > 1) enqueue_side_ghosts(space, setup.stage);
       if (i == 1 || parts.size() == 1) finish_ghosts(space, setup.stage);
       setup.grid = parts[i];
-      dispatch_momentum(space, setup, parameters.advection);
+      if (grid.is_stretched())
+        dispatch_stretched_momentum(space, setup, parameters.advection);
+      else
+        dispatch_momentum(space, setup, parameters.advection);
     }
   }
 

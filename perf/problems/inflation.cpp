@@ -11,6 +11,7 @@
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
 #include "common/program/stopwatch.hpp"
+#include "kernels/coupling/sheet/corrections.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 #include "perf/measure/parts.hpp"
@@ -85,6 +86,13 @@ struct Run {
   }
 };
 
+/// The corrections that drogue-parachute has by default.
+void correct(coupling::Parameters& p, double cfl) {
+  p.sheet.leak_filter = coupling::standard_leak_filter;
+  p.sheet.edge_inset = coupling::standard_edge_inset(p.sheet.delta, cfl);
+  p.sheet.filter_of_vertex.assign(p.fabric.mass.size(), {.by_law = true});
+}
+
 /// The canopy in the stream, with a fixed payload and edges of the discretization.
 Problem with_canopy(const Discretization& d, parachute_app::Canopy canopy) {
   Problem result;
@@ -109,7 +117,7 @@ Problem with_canopy(const Discretization& d, parachute_app::Canopy canopy) {
   p.sheet.law_of_vertex = std::move(sheets.laws);
   p.sheet.delta = d.delta;
   p.sheet.edge_inset = d.edge_inset;
-  p.sheet.defect_filter = d.defect_filter;
+  if (d.corrected) correct(p, d.cfl);
   p.fabric.contact.self = d.with_contact;
   result.positions = std::move(sheets.positions);
   return result;

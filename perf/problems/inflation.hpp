@@ -21,8 +21,8 @@ struct Discretization {
   double cfl = 0.25;
   double edge = 0.7;  ///< longest edges of the cloth over the length of a cell along x, at most 1 / 1.4
   coupling::DeltaFunction delta = coupling::DeltaFunction::cbs43;
-  double edge_inset = 0.0;     ///< cells
-  double defect_filter = 0.0;  ///< weight of the present step in the mean defect of the coupling
+  double edge_inset = 0.0;  ///< cells
+  bool corrected = false;   ///< against leak, wide edges and late forces, as by default in drogue-parachute
   bool with_contact = false;
 };
 

@@ -58,9 +58,9 @@ Discretization on_grid(Discretization d, int across) {
   return d;
 }
 
-/// Discretizations but for the grid. The first has the settings of drogue-parachute. Each other one changes
-/// the mesh of the cloth, the time step, the time scheme, or the delta function of the coupling, its inset
-/// and its filtered defect.
+/// Discretizations but for the grid. The first has the settings of drogue-parachute with plain coupling. Each
+/// other one changes the mesh of the cloth, the time step, the time scheme, or the delta function of the
+/// coupling, its inset and its corrections.
 std::vector<Discretization> discretizations(bool quick) {
   std::vector<Discretization> all = {{}};
   const auto add = [&](auto change) {
@@ -79,11 +79,7 @@ std::vector<Discretization> discretizations(bool quick) {
   add([](Discretization& d) { d.delta = coupling::DeltaFunction::cbs32; });
   add([](Discretization& d) { d.delta = coupling::DeltaFunction::ib4; });
   add([](Discretization& d) { d.edge_inset = 0.55; });
-  add([](Discretization& d) { d.defect_filter = 0.1; });
-  add([](Discretization& d) {
-    d.edge_inset = 0.55;
-    d.defect_filter = 0.1;
-  });
+  add([](Discretization& d) { d.corrected = true; });
   return all;
 }
 
@@ -92,13 +88,13 @@ Discretization reference_of(const Grids& grids, double edge_inset) {
   return on_grid({.cfl = 0.125, .edge = 0.5, .edge_inset = edge_inset}, grids.reference);
 }
 
-/// Delta function, with inset of edges and filtered defect where there are.
+/// Delta function, with inset of edges and corrections where there are.
 std::string exchange_of(const Discretization& d) {
   std::string name = d.delta == coupling::DeltaFunction::cbs43   ? "cbs43"
                      : d.delta == coupling::DeltaFunction::cbs32 ? "cbs32"
                                                                  : "ib4";
   if (d.edge_inset != 0.0) name += " inset " + nlohmann::json(d.edge_inset).dump();
-  if (d.defect_filter != 0.0) name += " defect " + nlohmann::json(d.defect_filter).dump();
+  if (d.corrected) name += " corrected";
   return name;
 }
 

@@ -52,6 +52,9 @@ BAD_LINES = [
     (14, 'porosity = { law = "forchheimer", alpha = 0, beta = 0 }', 14, ["body[0].porosity: alpha and beta are 0", "no obstacle"]),
     (16, 'method = "spred"', 16, ["coupling.method", 'did you mean "spread"?']),
     (16, "filter = 1.5", 16, ["coupling.filter", "0 .. 1"]),
+    (16, "leak_filter = 1.5", 16, ["coupling.leak_filter", "0 .. 1"]),
+    (16, "defect_filter = 0.1", 16, ['"coupling.defect_filter" is now "coupling.leak_filter", by default 0.5']),
+    (16, 'corrections = "none"', 16, ["coupling.corrections", '"default"', '"plain"']),
     # contradictions
     (14, 'porosity = { law = "none", alpha = 10 }', 14, ["body[0].porosity.alpha", "forchheimer"]),
     (14, "retraction = 0.3", 14, ["body[0].retraction", '"sphere" or "cylinder" or "cup"']),

@@ -420,6 +420,8 @@ class BadFlows(parachute_program.FlowTest):
         sharp = 'coupling.method="sharp"'
         self.sound(bad_bodies.GOOD, sharp)
         self.assertIn("coupling.edge_inset", self.refusal(sharp, "coupling.edge_inset=0.55"))
+        for key in ("leak_filter=0.5", 'corrections="plain"'):
+            self.assertIn("coupling." + key.split("=")[0], self.refusal(sharp, "coupling." + key))
         self.accept("coupling.edge_inset=0.55")
         self.assertIn("coupling.edge_inset", self.refusal("coupling.edge_inset=1.5"))
         self.assertIn('body[0].slip = false: with coupling.method = "sharp" the fluid slips along plates and disks',

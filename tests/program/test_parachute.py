@@ -1123,7 +1123,7 @@ class Restart(parachute_program.FlowTest):
     def test_interrupted_inflation_equals_uninterrupted_inflation(self):
         drag = statistic("canopy_0_drag_coefficient", "mean", 1, 10, from_=0.05, to=0.2)
         self.SETS = ("output.restart_every=5", "verify={force_balance=1e-14,history=[" + drag + "],leak=[{from=0.05,to=0.2,tolerance=1}]}")
-        for coupling in (["contact=false"], ["contact=true"], ["defect_filter=0.1", "edge_inset=0.55"]):
+        for coupling in (["contact=false"], ["contact=true"], ["corrections=\"plain\"", "edge_inset=0.55"]):
             with self.subTest(coupling):
                 self.compare("serial", ["coupling." + text for text in coupling], lambda process: process.send_signal(signal.SIGINT), 130, CANOPY)
 

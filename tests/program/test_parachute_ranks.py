@@ -174,7 +174,7 @@ class Sheets(RanksTest):
         self.assertNotEqual(self.history("thin")["cloth_kinetic_energy"], self.history("2")["cloth_kinetic_energy"])
 
     def test_ranks_may_differ_after_a_restart(self):
-        for name, text in (("bodies", PLATE), ("canopy", CANOPY + "[coupling]\ndefect_filter = 0.1\nedge_inset = 0.55\n")):
+        for name, text in (("bodies", PLATE), ("canopy", CANOPY + "[coupling]\nleak_filter = 0.5\nedge_inset = 0.55\n")):
             with self.subTest(name):
                 scene = self.write(text)
                 sets = [*self.SETS, "output.restart_every=10"]

@@ -250,8 +250,8 @@ struct EndSharpStepFunctor {
 template <class ExecutionSpace>
 class SharpSheet final : public Sheet<ExecutionSpace> {
   using Base = Sheet<ExecutionSpace>;
-  using Base::_air, Base::_closing, Base::_density, Base::_force, Base::_state, Base::_surface,
-      Base::_transfer;
+  using Base::_air, Base::_closing, Base::_density, Base::_force, Base::_parameters, Base::_state,
+      Base::_surface, Base::_transfer;
 
  public:
   using typename Base::Cloth;
@@ -330,7 +330,7 @@ class SharpSheet final : public Sheet<ExecutionSpace> {
 
  private:
   void filter(const ExecutionSpace& space, const Faces& velocity, const Faces& force_density, double dt,
-              double weight, const flow::ControlView<ExecutionSpace>& control) const override {
+              bool is_first, const flow::ControlView<ExecutionSpace>& control) const override {
     EndSharpStepFunctor<ExecutionSpace> end{.before = constant(_before),
                                             .after = constant(velocity),
                                             .force_density = constant(force_density),
@@ -338,7 +338,7 @@ class SharpSheet final : public Sheet<ExecutionSpace> {
                                             .faces = {},
                                             .inverse_dt = 1.0 / dt,
                                             .inverse_density = 1.0 / _density,
-                                            .filter = weight,
+                                            .filter = weight_of(_parameters.filter, is_first),
                                             .control = control,
                                             .foretold = face_arrays(_transfer.window, _foretold),
                                             .closing = _closing.views()};

@@ -138,7 +138,6 @@ class CoupledStep {
     _state.download(_space, "sheet_position", numbers(positions));
     _state.download(_space, "sheet_velocity", numbers(velocities));
     _fabric.upload(positions, velocities);
-    _sheet.update_acceleration(_space);
   }
 
   /// True if the last state saved is that at the beginning of this step of the flow. Blocks.

@@ -19,6 +19,12 @@ struct PorousLaw {
   bool no_slip = false;  ///< the air has the velocity of the sheet along its tangents; else no shear stress
 };
 
+/// Running mean of the acceleration of the air at a vertex.
+struct AirFilter {
+  double weight = 0.5;  ///< of the present step, 0 to 1
+  bool by_law = false;  ///< `weight` does not count, but that of `FilterWeights` for the law of the vertex
+};
+
 /// Coupling of sheets to the air. The first two give prescribed motion the same forces.
 enum class CouplingMethod {
   spread,  ///< cloth and air relax against each other in each step of the cloth; cloth of any mass
@@ -45,14 +51,14 @@ struct SheetParameters {
   PorousLaw law;
   std::vector<PorousLaw> law_of_vertex;  ///< one per vertex, or empty: `law` for all
   /// Weight of the present step in the running mean of the acceleration of the air, 0 to 1. With 0 for this
-  /// and for `defect_filter` the energy cannot grow, but the sheet leaks in proportion to dt; nearly
+  /// and for `leak_filter` the energy cannot grow, but the sheet leaks in proportion to dt; nearly
   /// impermeable sheets need 0.2 or less if dt exceeds the period of their oscillations over 2 pi.
   double filter = 0.5;
-  /// Weight of the present step in the running mean of the defect: of what spreading and interpolation give
-  /// the air at a vertex, less the row sum times its impulse. 0: without it, so that curved and folded sheets
-  /// leak in proportion to dt; 0.2 at most, since single modes grow above. For `CouplingMethod::spread`
-  /// alone.
-  double defect_filter = 0.0;
+  std::vector<AirFilter> filter_of_vertex;  ///< one per vertex, or empty: `filter` for all
+  /// Weight of the present step in the running mean of the defect, smoothed along the sheet: of what
+  /// spreading and interpolation give the air at a vertex, less the row sum times its impulse. 0: without it,
+  /// so that curved and folded sheets leak in proportion to dt. For `CouplingMethod::spread` alone.
+  double leak_filter = 0.0;
   /// Cells by which free edges lie farther inwards where the sheet exchanges forces with the air, 0 to 1:
   /// `EdgeInset`. With `DeltaFunction::cbs43`, 0.55 takes most of the error of drag away, which is of first
   /// order in the cells with 0. Not for `CouplingMethod::sharp`.

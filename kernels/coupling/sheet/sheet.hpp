@@ -23,6 +23,16 @@
 
 namespace drogue::coupling {
 
+/// Weight of the present step in a running mean, which begins with the first step. Does not throw.
+KOKKOS_INLINE_FUNCTION double weight_of(double filter, bool is_first) {
+  return is_first && filter > 0.0 ? 1.0 : filter;
+}
+
+/// True if the running means of vertices have a trend. Does not throw.
+inline bool has_trend(const SheetParameters& p) {
+  return std::ranges::any_of(p.filter_of_vertex, [](const AirFilter& filter) { return filter.by_law; });
+}
+
 /// Sheet that exchanges forces with the air once per step of the flow: `ImmersedSheet` by delta functions,
 /// `SharpSheet` by pressure jumps (`make_sheet`).
 ///
@@ -61,16 +71,12 @@ class Sheet {
     _state.clear(space);
     forget_force(space);
     for (const ClosingSheet& sheet : _parameters.closing) set_driving(space, sheet);
-    update_acceleration(space);
   }
 
   /// Sets the force to zero unless it is a part of the state. Does not throw.
   void forget_force(const ExecutionSpace& space) const {
     if (!_air.is_explicit()) Kokkos::deep_copy(space, _force, 0.0);
   }
-
-  /// Enqueues what a change of the state makes necessary. Throws only after a failed kernel.
-  virtual void update_acceleration(const ExecutionSpace&) const {}
 
   /// Enqueues the geometry of the sheet, and its weights, in the middle of a step of dt, s.
   virtual void freeze(const ExecutionSpace& space, const Cloth& cloth, double dt) const = 0;
@@ -88,8 +94,7 @@ class Sheet {
   /// flow.
   void filter_acceleration(const ExecutionSpace& space, const Faces& velocity, const Faces& force_density,
                            double dt, bool is_first, const flow::ControlView<ExecutionSpace>& control) const {
-    const double weight = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
-    filter(space, velocity, force_density, dt, weight, control);
+    filter(space, velocity, force_density, dt, is_first, control);
   }
 
   /// Enqueues zeros in `force_density` where the last forces were spread.
@@ -130,7 +135,8 @@ class Sheet {
                  Vectors("drogue::coupling::no_slip_impulse", has_no_slip(parameters) ? rows() : 0),
              .law = laws(space),
              .last_force = Vectors()},
-        _acceleration(parameters.defect_filter > 0.0 ? vectors("mean_acceleration") : _air.acceleration),
+        _acceleration(parameters.leak_filter > 0.0 || has_trend(parameters) ? vectors("mean_acceleration")
+                                                                            : _air.acceleration),
         _force(vectors("force")),
         _after(vectors("velocity_after")),
         _closing(space, parameters.closing, _air.law, corners) {
@@ -146,6 +152,21 @@ class Sheet {
     return Vectors("drogue::coupling::" + name, rows());
   }
 
+  /// `each` on the device, or `all` for every vertex if it is empty. Throws std::invalid_argument for another
+  /// number.
+  template <class T>
+  [[nodiscard]] Kokkos::View<T*, typename ExecutionSpace::memory_space> of_vertices(
+      const ExecutionSpace& space, const std::string& name, const std::vector<T>& each, const T& all) const {
+    if (!each.empty() && each.size() != rows())
+      throw std::invalid_argument("sheet: there must be one " + name + " per vertex, or none");
+    const Kokkos::View<T*, typename ExecutionSpace::memory_space> result("drogue::coupling::" + name, rows());
+    const auto mirror = Kokkos::create_mirror_view(result);
+    for (std::size_t i = 0; i < rows(); ++i) mirror(i) = each.empty() ? all : each[i];
+    Kokkos::deep_copy(space, result, mirror);
+    space.fence("drogue::coupling::of_vertices");
+    return result;
+  }
+
   /// Sets the acceleration of the air beside a closing sheet to that of what drives it.
   virtual void set_driving(const ExecutionSpace& space, const ClosingSheet& sheet) const {
     Kokkos::deep_copy(space,
@@ -153,9 +174,9 @@ class Sheet {
                                       static_cast<std::size_t>(sheet.axis)),
                       sheet.driving);
   }
-  /// As `filter_acceleration` with a weight of the present step.
+  /// As `filter_acceleration`.
   virtual void filter(const ExecutionSpace& space, const Faces& velocity, const Faces& force_density,
-                      double dt, double weight, const flow::ControlView<ExecutionSpace>& control) const = 0;
+                      double dt, bool is_first, const flow::ControlView<ExecutionSpace>& control) const = 0;
   /// Enqueues the places where the vertices at their present positions exchange forces with the air, m.
   [[nodiscard]] virtual Vectors exchange_points(const ExecutionSpace&, const Cloth& cloth) const {
     return cloth.positions;
@@ -186,9 +207,12 @@ class Sheet {
       throw std::invalid_argument("sheet: the density must be positive");
     if (!(p.filter >= 0.0 && p.filter <= 1.0))
       throw std::invalid_argument("sheet: the weight of the filter must be 0 to 1");
-    if (!(p.defect_filter >= 0.0 && p.defect_filter <= 0.2))
-      throw std::invalid_argument("sheet: the weight of the defect must be 0 to 0.2");
-    if (p.defect_filter > 0.0 && p.method != CouplingMethod::spread)
+    for (const AirFilter& filter : p.filter_of_vertex)
+      if (!(filter.weight >= 0.0 && filter.weight <= 1.0))
+        throw std::invalid_argument("sheet: the weight of the filter of a vertex must be 0 to 1");
+    if (!(p.leak_filter >= 0.0 && p.leak_filter <= 1.0))
+      throw std::invalid_argument("sheet: the weight of the defect must be 0 to 1");
+    if (p.leak_filter > 0.0 && p.method != CouplingMethod::spread)
       throw std::invalid_argument("sheet: the defect is filtered with CouplingMethod::spread alone");
     if (!(p.edge_inset >= 0.0 && p.edge_inset <= 1.0))
       throw std::invalid_argument("sheet: the inset of edges must be 0 to 1 cells");
@@ -222,15 +246,7 @@ class Sheet {
   }
 
   [[nodiscard]] Laws laws(const ExecutionSpace& space) const {
-    const std::vector<PorousLaw>& of_vertex = _parameters.law_of_vertex;
-    if (!of_vertex.empty() && of_vertex.size() != rows())
-      throw std::invalid_argument("sheet: there must be one porous law per vertex, or none");
-    const Laws result("drogue::coupling::porosity", rows());
-    const auto mirror = Kokkos::create_mirror_view(result);
-    for (std::size_t i = 0; i < rows(); ++i) mirror(i) = of_vertex.empty() ? _parameters.law : of_vertex[i];
-    Kokkos::deep_copy(space, result, mirror);
-    space.fence("drogue::coupling::laws");
-    return result;
+    return of_vertices(space, "porosity", _parameters.law_of_vertex, _parameters.law);
   }
 };
 

@@ -12,17 +12,21 @@ static_assert(ghost_width == 3, "advective_flux reads three cells on each side o
 
 /// Flux of momentum component c through a face normal to axis d, per density, m^2/s^2: advection minus
 /// diffusion. The face is the low face along d of the control volume of the component. `carried` points at
-/// component c at the control volume; `speed` is that of the fluid through the face, m/s.
-template <Advection scheme, class R, class Factor>
-KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, R speed, std::int64_t stride_d,
-                                       Factor nu_over_h, R epsilon) {
+/// component c at the control volume, `carrier` at component d of the same cell. `skew` as
+/// `AxisRow::skew`; nothing along uniform axes.
+template <Advection scheme, class R, class Factor, class... Skew>
+KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carrier, std::int64_t stride_c,
+                                       std::int64_t stride_d, Factor nu_over_h, R epsilon, Skew... skew) {
+  R speed = 0.5 * (load_field<R>(carrier - stride_c) + load_field<R>(carrier));
+  if constexpr (sizeof...(skew) > 0)
+    speed = speed + (skew * ...) * (load_field<R>(carrier) - load_field<R>(carrier - stride_c));
   return advective_flux<scheme, R>(speed, carried, stride_d, epsilon) -
          nu_over_h * (load_field<R>(carried) - load_field<R>(carried - stride_d));
 }
 
-/// Momentum stage on a device. A thread marches along z and keeps the fluxes through the face between two
-/// planes.
-template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
+/// Momentum stage on a device; on grids with stretched axes another kernel, so that the widths cost nothing
+/// on others. A thread marches along z and keeps the fluxes through the face between two planes.
+template <class ExecutionSpace, Advection scheme, bool adams_bashforth, bool is_stretched>
 struct MomentumFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<device::largest_block, 1>>;
   using Member = typename Policy::member_type;
@@ -56,14 +60,14 @@ struct MomentumFunctor {
                                              : device::load_constant(setup.state.data() + place);
         double rate = setup.acceleration[c];
         if (g.n[0] > 1)
-          rate -= g.inverse_extent(c, 0, i) *
+          rate -= inverse_extent(c, 0, i) *
                   (flux(c, 0, at + g.stride[0], {i + 1, j, k}) - flux(c, 0, at, {i, j, k}));
         if (g.n[1] > 1)
-          rate -= g.inverse_extent(c, 1, j) *
+          rate -= inverse_extent(c, 1, j) *
                   (flux(c, 1, at + g.stride[1], {i, j + 1, k}) - flux(c, 1, at, {i, j, k}));
         if (g.n[2] > 1) {
           const double above = flux(c, 2, at + g.stride[2], {i, j, k + 1});
-          rate -= g.inverse_extent(c, 2, k) * (above - below[c]);
+          rate -= inverse_extent(c, 2, k) * (above - below[c]);
           below[c] = above;
         }
         if (setup.eddy.data() != nullptr) rate += setup.eddy(place);
@@ -85,19 +89,26 @@ struct MomentumFunctor {
   /// Flux of component c along axis d into the control volume at `index`, whose place is `at`.
   KOKKOS_FUNCTION double flux(int c, int d, std::int64_t at, const int (&index)[3]) const {
     const MacGrid& g = setup.grid;
-    const double* carried = setup.stage.data() + c * g.component + at;
-    const double* carrier = setup.stage.data() + d * g.component + at;
-    const double before = device::load_constant(carrier - (g.n[c] > 1 ? g.stride[c] : 0)),
-                 after = device::load_constant(carrier);
-    const double speed = c == d ? 0.5 * (before + after) : g.mean(c, index[c], before, after);
-    return momentum_flux<scheme, double>(carried, speed, g.stride[d],
-                                         setup.nu * g.inverse_step(c, d, index[d]), setup.epsilon);
+    const double *u = setup.stage.data(), *carried = u + c * g.component + at,
+                 *carrier = u + d * g.component + at;
+    const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
+    if constexpr (is_stretched)
+      return momentum_flux<scheme, double>(carried, carrier, stride_c, g.stride[d],
+                                           setup.nu * g.inverse_step(c, d, index[d]), setup.epsilon,
+                                           c == d ? 0.0 : g.skew(c, index[c]));
+    else
+      return momentum_flux<scheme, double>(carried, carrier, stride_c, g.stride[d], setup.nu * g.inverse_h[d],
+                                           setup.epsilon);
+  }
+  /// 1 / width of the control volumes of component c along axis d, 1/m.
+  KOKKOS_FUNCTION double inverse_extent(int c, int d, int i) const {
+    return is_stretched ? setup.grid.inverse_extent(c, d, i) : setup.grid.inverse_h[d];
   }
 };
 
 /// Momentum stage on a host: packs of cells along x, rows in turn. A row keeps the fluxes that the next row
 /// and the next plane need, so that each is evaluated once.
-template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
+template <class ExecutionSpace, Advection scheme, bool adams_bashforth, bool is_stretched>
 struct MomentumRowsFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
   using Member = typename Policy::member_type;
@@ -163,7 +174,7 @@ struct MomentumRowsFunctor {
   void subtract_along_row(int c, const double* west, double* rates) const {
     const MacGrid& g = setup.grid;
     const auto difference = [west](int i) { return Access::load(west + i + 1) - Access::load(west + i); };
-    if (!g.is_stretched(0)) {
+    if (!is_stretched || !g.is_stretched(0)) {
       for (int i = 0; i < g.n[0]; i += lanes) subtract(rates + i, g.inverse_h[0], difference(i));
       return;
     }
@@ -181,40 +192,35 @@ struct MomentumRowsFunctor {
     for (int c = 0; c < 3; ++c) {
       const double *carried = u + c * g.component + at, *carrier = u + d * g.component + at;
       const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
-      if (g.is_stretched(d) || (c != d && g.is_stretched(c))) {
+      if constexpr (is_stretched) {
         stretched_fluxes(c, d, {0, j, k}, count, carried, carrier, rows + c * length);
         continue;
       }
       for (int i = 0; i < count; i += lanes)
         Access::store(rows + c * length + i,
-                      momentum_flux<scheme, R>(carried + i, half_sum(carrier + i, stride_c), g.stride[d],
+                      momentum_flux<scheme, R>(carried + i, carrier + i, stride_c, g.stride[d],
                                                setup.nu * g.inverse_h[d], R(setup.epsilon)));
     }
   }
-  static R half_sum(const double* carrier, std::int64_t stride) {
-    return 0.5 * (load_field<R>(carrier - stride) + load_field<R>(carrier));
-  }
 
-  /// Those of one component from cell `first` on, where widths change along d, or speeds are means over
-  /// halves of unequal widths.
+  /// Those of one component, of control volumes from `first` on.
   void stretched_fluxes(int c, int d, const int (&first)[3], int count, const double* carried,
                         const double* carrier, double* row) const {
     const MacGrid& g = setup.grid;
     const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
-    const double* skew = c != d && g.is_stretched(c) ? g.row(c, AxisRow::skew) + first[c] : nullptr;
-    const double* inverse_step = d != 0 || !g.is_stretched(0) ? nullptr
-                                 : c == 0                     ? g.row(0, AxisRow::inverse_width) - 1
-                                                              : g.row(0, AxisRow::inverse_gap);
-    const R along_row = setup.nu * g.inverse_step(c, d, first[d]);
-    for (int i = 0; i < count; i += lanes) {
-      R speed = half_sum(carrier + i, stride_c);
-      if (skew != nullptr)
-        speed = speed + (c == 0 ? Access::load(skew + i) : R(*skew)) *
-                            (load_field<R>(carrier + i) - load_field<R>(carrier + i - stride_c));
-      const R nu_over_h = inverse_step != nullptr ? setup.nu * Access::load(inverse_step + i) : along_row;
+    const bool is_skewed = c != d && g.is_stretched(c), varies_along_row = d == 0 && g.is_stretched(0);
+    const R skew_of_row = is_skewed ? g.skew(c, first[c]) : 0.0,
+            step_of_row = setup.nu * g.inverse_step(c, d, first[d]);
+    const double* inverse_step = !varies_along_row ? nullptr
+                                 : c == 0          ? g.row(0, AxisRow::inverse_width) - 1
+                                                   : g.row(0, AxisRow::inverse_gap);
+    const double* skew = is_skewed && c == 0 ? g.row(0, AxisRow::skew) : nullptr;
+    for (int i = 0; i < count; i += lanes)
       Access::store(row + i,
-                    momentum_flux<scheme, R>(carried + i, speed, g.stride[d], nu_over_h, R(setup.epsilon)));
-    }
+                    momentum_flux<scheme, R>(
+                        carried + i, carrier + i, stride_c, g.stride[d],
+                        inverse_step != nullptr ? setup.nu * Access::load(inverse_step + i) : step_of_row,
+                        R(setup.epsilon), skew != nullptr ? Access::load(skew + i) : skew_of_row));
   }
 
   /// Subtracts the difference of the fluxes at the row (j, k) and those kept in `kept`, and keeps the new
@@ -223,7 +229,8 @@ struct MomentumRowsFunctor {
     const MacGrid& g = setup.grid;
     fluxes(d, j, k, g.n[0], work);
     for (int c = 0; c < 3; ++c) {
-      const double inverse_extent = g.inverse_extent(c, d, (d == 1 ? j : k) - 1);
+      const double inverse_extent =
+          is_stretched ? g.inverse_extent(c, d, (d == 1 ? j : k) - 1) : g.inverse_h[d];
       for (int i = 0; i < g.n[0]; i += lanes) {
         const R high = Access::load(work + c * length + i);
         subtract(rates + c * length + i, inverse_extent, high - Access::load(kept + c * length + i));
@@ -256,19 +263,19 @@ struct MomentumRowsFunctor {
 };
 
 /// Enqueues a momentum stage. Asynchronous.
-template <Advection scheme, bool adams_bashforth, class ExecutionSpace>
+template <Advection scheme, bool adams_bashforth, bool is_stretched, class ExecutionSpace>
 void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) {
   const MacGrid& g = setup.grid;
   const auto parts = [](int n, int size) { return (n + size - 1) / size; };
   if constexpr (device::is_host<ExecutionSpace>) {
-    using Functor = MomentumRowsFunctor<ExecutionSpace, scheme, adams_bashforth>;
+    using Functor = MomentumRowsFunctor<ExecutionSpace, scheme, adams_bashforth, is_stretched>;
     const int planes = parts(g.n[2], space.concurrency());
     const int slabs = parts(g.n[2], planes);
     auto policy = typename Functor::Policy(space, slabs, 1)
                       .set_scratch_size(1, Kokkos::PerTeam(Functor::scratch_bytes(g)));
     device::launch_teams("drogue::flow::momentum", policy, Functor{setup, slabs, planes});
   } else {
-    using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth>;
+    using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth, is_stretched>;
     const int tiles_x = parts(g.n[0], tile_x), tiles_y = parts(g.n[1], setup.rows);
     const int planes = momentum_planes(scheme, tiles_x * tiles_y, g.n[2]);
     const typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes),
@@ -277,17 +284,18 @@ void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionS
   }
 }
 
-template <class ExecutionSpace>
-void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
-                       Advection advection) {
+/// Enqueues a momentum stage on a grid with stretched axes, or without.
+template <bool is_stretched, class ExecutionSpace>
+void choose_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                     Advection advection) {
   const auto launch = [&]<bool adams_bashforth>() {
     switch (advection) {
       case Advection::central:
-        return launch_momentum<Advection::central, adams_bashforth>(space, setup);
+        return launch_momentum<Advection::central, adams_bashforth, is_stretched>(space, setup);
       case Advection::weno_js:
-        return launch_momentum<Advection::weno_js, adams_bashforth>(space, setup);
+        return launch_momentum<Advection::weno_js, adams_bashforth, is_stretched>(space, setup);
       case Advection::weno_z:
-        return launch_momentum<Advection::weno_z, adams_bashforth>(space, setup);
+        return launch_momentum<Advection::weno_z, adams_bashforth, is_stretched>(space, setup);
     }
   };
   setup.weights.adams_bashforth ? launch.template operator()<true>() : launch.template operator()<false>();

@@ -107,15 +107,20 @@ struct DiffusionSourceFunctor {
     Control& control = setup.control();
     if (control.trial.stop != stepping::Stop::running) return;
     Maxima maxima;
+    const MacGrid& g = setup.grid;
     for (int k = march.begin(part); k < march.end(part); ++k)
-      source[march.offset(i, j, k)] = source_at({i, j, k}, control.trial.dt, maxima);
+      source[march.offset(i, j, k)] = g.is_stretched()
+                                          ? source_at(g, {i, j, k}, control.trial.dt, maxima)
+                                          : source_at(UniformWidths{g}, {i, j, k}, control.trial.dt, maxima);
     raise(control.viscous_acceleration, maxima.viscous_acceleration);
     raise(control.highest[component], maxima.highest);
     raise(control.lowest[component], maxima.lowest);
   }
 
  private:
-  [[nodiscard]] KOKKOS_FUNCTION double source_at(const int (&unknown)[3], double dt, Maxima& maxima) const {
+  template <class Widths>
+  [[nodiscard]] KOKKOS_FUNCTION double source_at(const Widths& widths, const int (&unknown)[3], double dt,
+                                                 Maxima& maxima) const {
     const MacGrid& g = setup.grid;
     int index[3] = {unknown[0], unknown[1], unknown[2]};
     index[component] += setup.first_unknown(component);
@@ -126,14 +131,15 @@ struct DiffusionSourceFunctor {
       if (g.n[axis] == 1) continue;
       const std::int64_t stride = g.stride[axis];
       const int i = index[axis];
-      const double extent = g.inverse_extent(component, axis, i),
-                   step_low = g.inverse_step(component, axis, i),
-                   step_high = g.inverse_step(component, axis, i + 1);
+      const double extent = widths.inverse_extent(component, axis, i),
+                   step_low = widths.inverse_step(component, axis, i),
+                   step_high = widths.inverse_step(component, axis, i + 1);
       const double w_low = extent * step_low, w_high = extent * step_high;
       const double below = u[-stride], above = u[stride];
-      laplacian += (g.is_stretched(axis) ? extent : w_low) *
-                   (g.is_stretched(axis) ? step_high * (above - u[0]) - step_low * (u[0] - below)
-                                         : (above - u[0]) - (u[0] - below));
+      if constexpr (Widths::are_equal)
+        laplacian += w_low * ((above - u[0]) - (u[0] - below));
+      else
+        laplacian += extent * (step_high * (above - u[0]) - step_low * (u[0] - below));
       // Half of these differences lead to the values on sides.
       const double sides[2] = {u[0] + 0.5 * (below - u[0]), u[0] + 0.5 * (above - u[0])};
       for (const double value : sides) {

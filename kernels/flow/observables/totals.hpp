@@ -58,13 +58,22 @@ struct ColumnTotalsFunctor {
   TotalsView<ExecutionSpace> columns;
 
   KOKKOS_FUNCTION void operator()(const int column) const {
+    if (grid.is_stretched())
+      add_column(grid, column);
+    else
+      add_column(UniformWidths{grid}, column);
+  }
+
+ private:
+  template <class Widths>
+  KOKKOS_FUNCTION void add_column(const Widths& widths, const int column) const {
     const MacGrid& g = grid;
     double sum[total_count] = {};
     for (int k = 0; k < g.n[2]; ++k) {
       double own[total_count];
       const int cell[3] = {column % g.n[0], column / g.n[0], k};
-      of_cell(velocity.data() + g.offset(cell[0], cell[1], cell[2]), cell, own);
-      const double volume = g.relative_volume(cell[0], cell[1], cell[2]);
+      of_cell(widths, velocity.data() + g.offset(cell[0], cell[1], cell[2]), cell, own);
+      const double volume = widths.relative_volume(cell[0], cell[1], cell[2]);
       for (int q = 0; q < total_sums; ++q) own[q] *= volume;
       combine_totals(sum, own);
     }
@@ -72,8 +81,9 @@ struct ColumnTotalsFunctor {
       columns(static_cast<std::size_t>(column), static_cast<std::size_t>(q)) = sum[q];
   }
 
- private:
-  KOKKOS_FUNCTION void of_cell(const double* u, const int (&cell)[3], double own[total_count]) const {
+  template <class Widths>
+  KOKKOS_FUNCTION void of_cell(const Widths& widths, const double* u, const int (&cell)[3],
+                               double own[total_count]) const {
     const MacGrid& g = grid;
     double energy = 0.0, squared_speed = 0.0, squared_vorticity = 0.0, squared_strain = 0.0, divergence = 0.0;
     for (int c = 0; c < 3; ++c) {
@@ -81,15 +91,15 @@ struct ColumnTotalsFunctor {
                    mean = 0.5 * (low + high);
       add_energy(low, high, energy, squared_speed);
       own[total_momentum_x + c] = mean;
-      const double diagonal = staggered_derivative(g, u, c, c, cell[c]);
+      const double diagonal = staggered_derivative(g, widths, u, c, c, cell[c]);
       divergence += diagonal;
       squared_strain += diagonal * diagonal;
       // Mean of the squares at the four edges parallel to axis c.
       const int a = (c + 1) % 3, b = (c + 2) % 3;
       for (int edge = 0; edge < 4; ++edge) {
         const double* at = u + (edge % 2) * edge_step(g, a) + (edge / 2) * edge_step(g, b);
-        const double ba = staggered_derivative(g, at, b, a, cell[a] + edge % 2),
-                     ab = staggered_derivative(g, at, a, b, cell[b] + edge / 2);
+        const double ba = staggered_derivative(g, widths, at, b, a, cell[a] + edge % 2),
+                     ab = staggered_derivative(g, widths, at, a, b, cell[b] + edge / 2);
         squared_vorticity += 0.25 * (ba - ab) * (ba - ab);
         squared_strain += 0.125 * (ba + ab) * (ba + ab);
       }

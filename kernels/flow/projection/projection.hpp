@@ -154,8 +154,10 @@ struct CorrectionFunctor {
       setup.velocity(place) = value;
       const double speed = Kokkos::fabs(value);
       // A factor of zero keeps a NaN.
-      rate += (g.n[axis] > 1 ? g.inverse_least_width(axis, index[axis]) : 0.0) *
-              (beyond > speed ? beyond : speed);
+      if (g.is_stretched(axis))
+        rate += g.inverse_least_width(axis, index[axis]) * (beyond > speed ? beyond : speed);
+      else
+        rate += (g.n[axis] > 1 ? g.inverse_h[axis] : 0.0) * (beyond > speed ? beyond : speed);
     }
     return rate;
   }

@@ -139,35 +139,45 @@ struct EddyStressFunctor {
 
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
     if (control().trial.stop != stepping::Stop::running) return;
+    if (grid.is_stretched())
+      accelerate(grid, {i, j, k});
+    else
+      accelerate(UniformWidths{grid}, {i, j, k});
+  }
+
+ private:
+  template <class Widths>
+  KOKKOS_FUNCTION void accelerate(const Widths& widths, const int (&cell)[3]) const {
     const MacGrid& g = grid;
-    const int cell[3] = {i, j, k};
-    const std::int64_t place = g.offset(i, j, k);
+    const std::int64_t place = g.offset(cell[0], cell[1], cell[2]);
     const double* u = velocity.data() + place;
     for (int c = 0; c < 3; ++c) {
       double sum = 0.0;
       for (int d = 0; d < 3; ++d)
         if (g.n[d] > 1)
-          sum += g.inverse_extent(c, d, cell[d]) * (stress(cell, u, c, d, 1) - stress(cell, u, c, d, 0));
+          sum += widths.inverse_extent(c, d, cell[d]) *
+                 (stress(widths, cell, u, c, d, 1) - stress(widths, cell, u, c, d, 0));
       acceleration(static_cast<std::size_t>(c * g.component + place)) = sum;
     }
   }
 
- private:
   /// Stress 2 nu_t S_cd, m^2/s^2, on the low (0) or high (1) face along d of the control volume of component
   /// c.
-  KOKKOS_FUNCTION double stress(const int cell[3], const double* u, int c, int d, int high) const {
+  template <class Widths>
+  KOKKOS_FUNCTION double stress(const Widths& widths, const int cell[3], const double* u, int c, int d,
+                                int high) const {
     const MacGrid& g = grid;
     int at[3] = {cell[0], cell[1], cell[2]};
     if (c == d) {
       // The faces lie at the centres of the cells on both sides of the velocity.
       const int shift = high - 1;
       at[c] += shift;
-      return 2.0 * at_cell(at) * staggered_derivative(g, u + shift * g.stride[c], c, c, at[c]);
+      return 2.0 * at_cell(at) * staggered_derivative(g, widths, u + shift * g.stride[c], c, c, at[c]);
     }
     at[d] += high;
     const double* edge = u + high * g.stride[d];
-    const double strain =
-        staggered_derivative(g, edge, c, d, at[d]) + staggered_derivative(g, edge, d, c, at[c]);
+    const double strain = staggered_derivative(g, widths, edge, c, d, at[d]) +
+                          staggered_derivative(g, widths, edge, d, c, at[c]);
     if (strain == 0.0) return 0.0;
     double sum = 0.0;
     for (int neighbour = 0; neighbour < 4; ++neighbour) {

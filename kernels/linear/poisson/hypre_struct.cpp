@@ -242,8 +242,8 @@ void HypreStructSolver::Objects::make_solver(bool stretched) {
   // Weighted Jacobi: conjugate gradients need a symmetric preconditioner, and periodic axes with an odd
   // number of cells have no red-black order.
   check(HYPRE_StructPFMGSetRelaxType(pfmg, 1));
-  // The Galerkin operators of coarse grids with variable coefficients have positive entries beside the
-  // diagonal. Conjugate gradients broke down with them on periodic axes of 6 and 31 cells.
+  // Operators of seven points on coarse grids keep the signs of the entries. With Galerkin's, conjugate
+  // gradients broke down on periodic axes of 6 and 31 stretched cells.
   if (stretched) check(HYPRE_StructPFMGSetRAPType(pfmg, 1));
   check(HYPRE_StructPFMGSetNumPreRelax(pfmg, 1));
   check(HYPRE_StructPFMGSetNumPostRelax(pfmg, 1));

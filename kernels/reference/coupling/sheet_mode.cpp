@@ -12,7 +12,7 @@ SheetMode coupled_step(const SheetMode& state, const SheetModeParameters& p, boo
   double beside = state.air, impulse = 0.0;
   for (int substep = 0; substep < p.substeps; ++substep) {
     next.velocity -= tau * p.stiffness / p.mass * next.displacement;
-    beside += tau * (state.acceleration + state.defect);
+    beside += tau * (state.acceleration + state.trend + state.defect);
     const double relative = next.velocity - beside;
     const double normal_impulse = std::isinf(p.alpha)
                                       ? relative / inverse_mass
@@ -25,29 +25,34 @@ SheetMode coupled_step(const SheetMode& state, const SheetModeParameters& p, boo
   next.air = state.air + p.response * impulse;
   const double without_sheet = (p.response - p.spread) * impulse / p.dt,
                weight = is_first && p.filter > 0.0 ? 1.0 : p.filter;
-  next.acceleration = (1.0 - weight) * state.acceleration + weight * without_sheet;
+  const double foretold = state.acceleration + state.trend, missed = without_sheet - foretold;
+  next.acceleration = foretold + weight * missed;
+  next.trend = is_first ? 0.0 : 0.5 * state.trend + p.trend * missed;
   next.defect = 0.0;
-  if (p.defect_filter > 0.0)
+  if (p.leak_filter > 0.0)
     next.defect =
-        state.defect + p.defect_filter * ((p.spread - p.inverse_air_mass) * impulse / p.dt - state.defect);
+        state.defect +
+        p.leak_filter * (p.smoothing * (p.spread - p.inverse_air_mass) * impulse / p.dt - state.defect);
   return next;
 }
 
 SheetModeMatrix amplification(const SheetModeParameters& p) {
   SheetModeMatrix matrix{};
-  for (std::size_t column = 0; column < 5; ++column) {
+  for (std::size_t column = 0; column < 6; ++column) {
     const auto unit = [column](std::size_t k) { return k == column ? 1.0 : 0.0; };
     const SheetMode image = coupled_step({.displacement = p.dt * unit(0),
                                           .velocity = unit(1),
                                           .air = unit(2),
                                           .acceleration = unit(3) / p.dt,
-                                          .defect = unit(4) / p.dt},
+                                          .trend = unit(4) / p.dt,
+                                          .defect = unit(5) / p.dt},
                                          p);
     matrix[0][column] = image.displacement / p.dt;
     matrix[1][column] = image.velocity;
     matrix[2][column] = image.air;
     matrix[3][column] = image.acceleration * p.dt;
-    matrix[4][column] = image.defect * p.dt;
+    matrix[4][column] = image.trend * p.dt;
+    matrix[5][column] = image.defect * p.dt;
   }
   return matrix;
 }
@@ -66,9 +71,9 @@ double spectral_radius(SheetModeMatrix matrix) {
       for (double& entry : row) entry /= largest;
     if (k == squarings) break;
     SheetModeMatrix square{};
-    for (std::size_t i = 0; i < 5; ++i)
-      for (std::size_t j = 0; j < 5; ++j)
-        for (std::size_t l = 0; l < 5; ++l) square[i][j] += matrix[i][l] * matrix[l][j];
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t j = 0; j < 6; ++j)
+        for (std::size_t l = 0; l < 6; ++l) square[i][j] += matrix[i][l] * matrix[l][j];
     matrix = square;
     logarithm *= 2.0;
   }

@@ -33,7 +33,33 @@ Extended unit_normal(const Extended& u, const Extended& v) {
   return n;
 }
 
+Real area_of(const std::vector<Vector>& x, const std::array<int, 3>& triangle) {
+  const auto side = [&](std::size_t k) {
+    return norm(extended_difference(x[static_cast<std::size_t>(triangle[(k + 1) % 3])],
+                                    x[static_cast<std::size_t>(triangle[k])]));
+  };
+  return heron({side(0), side(1), side(2)});
+}
+
 }  // namespace
+
+std::vector<double> smoothed_along(const Mesh& mesh, const std::vector<Vector>& x, std::vector<double> values,
+                                   int times) {
+  for (int k = 0; k < times; ++k) {
+    std::vector<Real> sums(x.size(), 0.0L), weights(x.size(), 0.0L);
+    for (const auto& triangle : mesh.triangles) {
+      const Real area = area_of(x, triangle);
+      for (const int to : triangle)
+        for (const int from : triangle) {
+          weights[static_cast<std::size_t>(to)] += area;
+          sums[static_cast<std::size_t>(to)] += area * values[static_cast<std::size_t>(from)];
+        }
+    }
+    for (std::size_t i = 0; i < x.size(); ++i)
+      values[i] = weights[i] > 0.0L ? static_cast<double>(sums[i] / weights[i]) : 0.0;
+  }
+  return values;
+}
 
 SurfaceGeometry surface_geometry(const Mesh& mesh, const std::vector<Vector>& x) {
   SurfaceGeometry result;
@@ -42,9 +68,8 @@ SurfaceGeometry surface_geometry(const Mesh& mesh, const std::vector<Vector>& x)
   for (const auto& triangle : mesh.triangles) {
     const Vector &a = x[static_cast<std::size_t>(triangle[0])], &b = x[static_cast<std::size_t>(triangle[1])],
                  &c = x[static_cast<std::size_t>(triangle[2])];
-    const Extended ab = extended_difference(b, a), ac = extended_difference(c, a),
-                   bc = extended_difference(c, b);
-    const Real size = heron({norm(ab), norm(ac), norm(bc)});
+    const Extended ab = extended_difference(b, a), ac = extended_difference(c, a);
+    const Real size = area_of(x, triangle);
     const Extended normal = unit_normal(ab, ac);
     for (const int corner : triangle) {
       const auto i = static_cast<std::size_t>(corner);

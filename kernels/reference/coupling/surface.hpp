@@ -16,4 +16,10 @@ struct SurfaceGeometry {
 /// and normals of vertices as means weighted by area. Zero where there is no area.
 [[nodiscard]] SurfaceGeometry surface_geometry(const Mesh& mesh, const std::vector<Vector>& x);
 
+/// Values at the vertices of a surface at positions x, smoothed so many times along it: by the means of the
+/// corners of each triangle, then of the triangles around each vertex, weighted by their areas. Zero where
+/// there is no area.
+[[nodiscard]] std::vector<double> smoothed_along(const Mesh& mesh, const std::vector<Vector>& x,
+                                                 std::vector<double> values, int times);
+
 }  // namespace drogue::reference

@@ -152,6 +152,20 @@ inline flow::Parameters air_parameters() {
   return parameters;
 }
 
+/// Corrections of the exchange by delta functions, where no key replaces them.
+enum class Corrections {
+  all,   ///< of leak, free edges and lag
+  none,  ///< an acceleration of weight 0.5 in each step alone
+};
+
+/// Exchange of sheets with the fluid. What is not given follows from `exchange_parameters`.
+struct Exchange {
+  coupling::CouplingMethod method = coupling::CouplingMethod::spread;
+  Corrections corrections = Corrections::all;
+  /// As in `coupling::SheetParameters`.
+  std::optional<double> filter, leak_filter, edge_inset;
+};
+
 struct FlowScene {
   std::filesystem::path file;
   std::string name;  ///< the file's name without folder and extension
@@ -173,13 +187,13 @@ struct FlowScene {
   std::vector<Body> bodies;
   std::vector<Canopy> canopies;
   std::vector<Flag> flags;
-  coupling::SheetParameters coupling;  ///< its laws are those of the bodies and canopies
-  std::array<double, 3> gravity{};     ///< of canopies, payloads and flags, m/s^2
-  bool allow_unstable = false;         ///< explicit coupling runs with cloth lighter than its added mass
-  bool contact = false;                ///< of canopies and lines with each other and themselves
-  double thickness = 0.01;             ///< m, distance of layers in contact
-  int contact_block = 0;               ///< threads of a team that resolves contact; 0: its default
-  double end_time = 0.0;               ///< s
+  Exchange coupling;
+  std::array<double, 3> gravity{};  ///< of canopies, payloads and flags, m/s^2
+  bool allow_unstable = false;      ///< explicit coupling runs with cloth lighter than its added mass
+  bool contact = false;             ///< of canopies and lines with each other and themselves
+  double thickness = 0.01;          ///< m, distance of layers in contact
+  int contact_block = 0;            ///< threads of a team that resolves contact; 0: its default
+  double end_time = 0.0;            ///< s
   framework::OutputRequest output;
   Verify verify;
   std::vector<std::string> notices;  ///< `framework::Scene::notices`

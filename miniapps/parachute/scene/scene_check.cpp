@@ -8,6 +8,7 @@
 
 #include "common/program/mpi_guard.hpp"
 #include "kernels/flow/diffusive_step.hpp"
+#include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -222,18 +223,6 @@ void note_growing_energy(FlowScene& scene) {
         "growing");
 }
 
-/// Notes bodies whose first forces the defect would hold: what a vertex expects and the grid does not see
-/// stays, and steps of implicit diffusion begin short, where the forces of a start are largest.
-void note_lasting_forces(FlowScene& scene) {
-  if (scene.bodies.empty() || scene.coupling.defect_filter == 0.0 ||
-      scene.parameters.diffusion != flow::Diffusion::crank_nicolson)
-    return;
-  scene.notices.emplace_back(
-      "coupling.defect_filter: with flow.diffusion = \"crank-nicolson\", forces of a body that meets the "
-      "fluid at once do not decay, and its drag may be 40 % too large; 0 avoids that, and so does a motion "
-      "that begins from rest");
-}
-
 double least_width(const flow::Parameters& p) {
   double least = infinity;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -278,7 +267,8 @@ double mount_frequency(const flow::Parameters& p, const Mount& mount) {
 double mount_step(const FlowScene& scene, const Body& body, double error) {
   const double others =
       std::max(1.0, scene.parameters.cells[static_cast<std::size_t>(body.axis)] / 2.1 - 1.0);
-  return std::sqrt(error * scene.coupling.filter / others) / mount_frequency(scene.parameters, *body.mount);
+  return std::sqrt(error * scene.coupling.filter.value_or(standard_filter) / others) /
+         mount_frequency(scene.parameters, *body.mount);
 }
 
 /// Bounds dt by the oscillations of plates on springs, unless it is given: a frequency then has an error of
@@ -411,7 +401,6 @@ void complete_and_check(const Place& root, FlowScene& scene) {
     complete_sides(root, scene);
     complete_scheme(root, scene);
     note_growing_energy(scene);
-    note_lasting_forces(scene);
     complete_velocities(root, scene);
     complete_time_step(root, scene);
     p.horizon = scene.end_time;
@@ -434,7 +423,7 @@ void complete_and_check(const Place& root, FlowScene& scene) {
     if (!scene.flags.empty()) sheets = make_all_sheets({}, {}, p.density, p.viscosity, scene.flags);
     check_images(root, scene, sheets);
     note_narrow_channels(root, scene, sheets);
-    note_unfit_canopies(root, scene);
+    note_unfit_canopies(root, scene, sheets);
   } else {
     check_steps(root, scene);
   }

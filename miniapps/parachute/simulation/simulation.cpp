@@ -10,6 +10,7 @@
 #include "common/run/fields/rectilinear_mesh.hpp"
 #include "common/scene/node.hpp"
 #include "miniapps/parachute/bodies/closed_channel.hpp"
+#include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -70,14 +71,13 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
   coupling::Parameters p;
   p.flow = scene.parameters;
   p.fabric = sheets.fabric;
-  p.sheet = scene.coupling;
+  p.sheet = exchange_parameters(scene, sheets);
   p.sheet.closing = closing_sheets(scene);
   if (!scene.has_free_sheets()) p.substeps = 1;
   p.fabric.gravity = scene.gravity;
   p.fabric.contact.self = scene.contact;
   p.fabric.contact.thickness = scene.thickness;
   p.fabric.contact.block = scene.contact_block;
-  p.sheet.law_of_vertex = sheets.laws;
   p.cuts = sheets.cuts;
   p.line_strength = sheets.line_strength;
   if (scene.frame == Frame::follow) {

@@ -11,7 +11,7 @@ FAMILY = SchemeFamily(
     scheme_names={
         "cbs43": "B-splines 4-3", "cbs43 inset 0.55": "B-splines 4-3, inset 0.55",
         "cbs43 defect 0.1": "B-splines 4-3, defect 0.1", "cbs43 inset 0.55 defect 0.1": "B-splines 4-3, inset 0.55, defect 0.1",
-        "cbs32": "B-splines 3-2", "ib4": "four-point function",
+        "cbs43 corrected": "B-splines 4-3, corrected", "cbs32": "B-splines 3-2", "ib4": "four-point function",
     },
     settings=("time", "edge"),
     default_settings=("ab2 0.25", "0.7"),

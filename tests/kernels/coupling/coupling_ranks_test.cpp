@@ -140,7 +140,7 @@ void set_stream(Case& c) {
 std::vector<Case> cases() {
   std::vector<Case> all;
   all.push_back(sheet_in("periodic", {8, 9, 10}));
-  all.back().p.sheet.defect_filter = 0.1;
+  all.back().p.sheet.leak_filter = 0.5;
   all.back().p.sheet.edge_inset = 0.55;
   Case& channel = all.emplace_back(sheet_in("channel", {12, 9, 8}));
   set_stream(channel);

@@ -113,14 +113,13 @@ TEST(CoupledSolver, ContinuesBitForBit) {
 
 TEST(CoupledSolver, ContinuesBitForBitWithTheFilteredDefect) {
   CoupledCase c = flying_strip();
-  c.p.sheet.defect_filter = 0.1;
+  c.p.sheet.leak_filter = 0.5;
   CoupledRun whole(c), first(c);
   ASSERT_TRUE(whole.advance(40));
   ASSERT_TRUE(first.advance(21));
   State middle = state_of(*first.solver);
   double largest = 0.0;
-  for (std::size_t k = 0; k < middle.arrays["defect"].size(); k += 3)
-    largest = std::max(largest, std::abs(middle.arrays["defect"][k]));
+  for (const double each : middle.arrays["defect"]) largest = std::max(largest, std::abs(each));
   EXPECT_GT(largest, 0.1);
   CoupledRun second(c), without(c);
   restore(middle, *second.solver);
@@ -471,7 +470,7 @@ TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
   CoupledCase c = flying_strip();
   c.p.sheet.law = {1e-3, 0.0, false};
   expect_failure(c, FailureReason::left_domain);
-  c.p.sheet.defect_filter = 0.1;
+  c.p.sheet.leak_filter = 0.5;
   expect_failure(c, FailureReason::left_domain);
   // A new start forgets it.
   CoupledRun run(c);
@@ -485,7 +484,7 @@ TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
 
 TEST(CoupledSolver, FailedStepsReturnToEveryArrayOfTheState) {
   std::vector<CoupledCase> cases(4, flying_strip());
-  cases[1].p.sheet.defect_filter = 0.1;
+  cases[1].p.sheet.leak_filter = 0.5;
   cases[2].p.sheet.method = CouplingMethod::explicit_;
   cases[2].set_mass(5.0);
   cases[3].p.sheet.method = CouplingMethod::sharp;
@@ -620,8 +619,10 @@ TEST(CoupledSolver, RejectsInvalidParameters) {
   rejects([](Parameters& p) { p.sheet.law_of_vertex.resize(p.fabric.mass.size(), {1.0, -1.0, false}); });
   rejects([](Parameters& p) { p.sheet.filter = 1.5; });
   rejects([](Parameters& p) { p.longest_batch = 0.0; });
-  rejects([](Parameters& p) { p.sheet.defect_filter = -0.5; });
-  rejects([](Parameters& p) { p.sheet.defect_filter = 0.3; });
+  rejects([](Parameters& p) { p.sheet.leak_filter = -0.5; });
+  rejects([](Parameters& p) { p.sheet.leak_filter = 1.1; });
+  rejects([](Parameters& p) { p.sheet.filter_of_vertex.resize(3); });
+  rejects([](Parameters& p) { p.sheet.filter_of_vertex.resize(p.fabric.mass.size(), {.weight = -0.1}); });
   rejects([](Parameters& p) { p.sheet.edge_inset = -0.1; });
   rejects([](Parameters& p) { p.sheet.edge_inset = 1.1; });
   for (const double edge_inset : {0.0, 0.55}) {

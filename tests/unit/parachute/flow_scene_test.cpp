@@ -10,6 +10,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/scene/library.hpp"
+#include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
@@ -195,14 +196,48 @@ TEST(FlowScene, SheetsInImplicitDiffusionBoundTheTimeStep) {
   EXPECT_TRUE(notices("run.dt=0.0006").empty());
 }
 
-TEST(FlowScene, NotesForcesOfAStartThatTheDefectHolds) {
-  const std::string body = "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1}]",
-                    implicit = "flow.diffusion=crank-nicolson", defect = "coupling.defect_filter=0.1";
-  const auto notes = [](const std::vector<std::string>& sets) { return read_text(least, sets).notices; };
-  ASSERT_EQ(notes({body, implicit, defect}).size(), 1U);
-  EXPECT_TRUE(contains(notes({body, implicit, defect})[0], "coupling.defect_filter: with"));
-  EXPECT_TRUE(notes({body, implicit}).empty());
-  EXPECT_TRUE(notes({body, defect}).empty());
+/// Exchange with the fluid of a shipped scene.
+coupling::SheetParameters exchange(const std::string& name, const std::vector<std::string>& sets = {}) {
+  const FlowScene scene = read_flow_scene(source / "miniapps/parachute/scenes" / (name + ".toml"), sets);
+  return exchange_parameters(scene, make_all_sheets(scene.bodies, scene.canopies, 1.0, 1.0, scene.flags));
+}
+
+TEST(FlowScene, CorrectsTheExchangeUnlessItIsPlain) {
+  const coupling::SheetParameters all = exchange("c9-flat");
+  EXPECT_EQ(all.leak_filter, 0.5);
+  EXPECT_GT(all.edge_inset, 0.3);
+  EXPECT_EQ(all.filter_of_vertex.size(), all.law_of_vertex.size());
+  EXPECT_TRUE(all.filter_of_vertex.front().by_law);
+  for (const char* name : {"flag", "disk-normal", "membrane-drum-in-air"})
+    EXPECT_FALSE(exchange(name).filter_of_vertex.front().by_law) << name;
+  EXPECT_EQ(exchange("flag").leak_filter, 0.0);
+  EXPECT_EQ(exchange("cup").edge_inset, 0.0) << "it has a retraction";
+  EXPECT_GT(exchange("cup-full").edge_inset, 0.3);
+  const std::string plain = "coupling.corrections=plain";
+  for (const coupling::SheetParameters& p : {exchange("c9-flat", {plain}), exchange("c9-heavy")}) {
+    EXPECT_EQ(p.leak_filter, 0.0);
+    EXPECT_EQ(p.edge_inset, 0.0);
+    EXPECT_TRUE(p.filter_of_vertex.empty());
+    EXPECT_EQ(p.filter, 0.5);
+  }
+  // Keys of their own replace parts of either.
+  const coupling::SheetParameters some =
+      exchange("c9-flat", {"coupling.filter=0.3", "coupling.edge_inset=0"});
+  EXPECT_TRUE(some.filter_of_vertex.empty());
+  EXPECT_EQ(some.filter, 0.3);
+  EXPECT_EQ(some.edge_inset, 0.0);
+  EXPECT_EQ(some.leak_filter, 0.5);
+  EXPECT_EQ(exchange("c9-flat", {plain, "coupling.leak_filter=0.4"}).leak_filter, 0.4);
+}
+
+TEST(FlowScene, CourantNumberIsThatOfTheStreamOrTheRun) {
+  const auto number = [](const std::vector<std::string>& sets) {
+    return courant_number(read_flow_scene(source / "miniapps/parachute/scenes/c9-flat.toml", sets));
+  };
+  // 10 m/s and cells of 0.4 m.
+  EXPECT_DOUBLE_EQ(number({"run.max_dt=0.001"}), 1.8 * 10.0 * 0.001 / 0.4);
+  EXPECT_DOUBLE_EQ(number({"run.max_dt=0.1"}), 0.25);
+  EXPECT_DOUBLE_EQ(number({"fluid.velocity=[0,0,0]", "run.cfl=0.4"}), 0.4);
 }
 
 TEST(FlowScene, NotesTheSchemeWhoseEnergyGrows) {

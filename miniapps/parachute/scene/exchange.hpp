@@ -1,0 +1,19 @@
+#pragma once
+
+#include "kernels/coupling/sheet/parameters.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
+
+namespace drogue::parachute_app {
+
+/// Weight of the present step in the running mean of the acceleration of the fluid, unless the law of a
+/// canopy allows another one.
+inline constexpr double standard_filter = coupling::SheetParameters().filter;
+
+/// Courant number of the longest steps in the stream of a scene, at most that of the run. Does not throw.
+[[nodiscard]] double courant_number(const FlowScene& scene);
+
+/// Parameters of the exchange of sheets with the fluid: those of the scene, and of its corrections where it
+/// has none. Throws only std::bad_alloc.
+[[nodiscard]] coupling::SheetParameters exchange_parameters(const FlowScene& scene, const Sheets& sheets);
+
+}  // namespace drogue::parachute_app
