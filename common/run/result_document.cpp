@@ -134,7 +134,7 @@ std::string Check::measured() const {
   const double ratio = std::max(std::abs(lowest), std::abs(highest)) / (highest - lowest);
   const int digits = std::isfinite(ratio) ? std::clamp(3 + static_cast<int>(std::log10(ratio)), 5, 15) : 15;
   char text[128];
-  std::snprintf(text, sizeof text, "%.*g %s [%.*g, %.*g]", digits, quantity, passed ? "in" : "not in", digits,
+  std::snprintf(text, sizeof text, "%.*g%s in [%.*g, %.*g]", digits, quantity, passed ? "" : ", not", digits,
                 lowest, digits, highest);
   return text;
 }

@@ -30,7 +30,7 @@ struct Check {
   std::optional<Measurement> measurement = {};
   std::optional<std::int64_t> rows = {};  ///< of history.csv from which it is computed, if from some
 
-  /// Measurement as text: "3327.1 in [2670, 3560]", "1551.2 not in [2670, 3560]" or "not measured", if it is
+  /// Measurement as text: "3327.1 in [2670, 3560]", "1551.2, not in [2670, 3560]" or "not measured", if it is
   /// not a number; empty without one.
   [[nodiscard]] std::string measured() const;
 };

@@ -11,6 +11,7 @@
 #include "kernels/fabric/elastic/stress_evaluator.hpp"
 #include "kernels/fabric/loads/dirichlet.hpp"
 #include "kernels/fabric/loads/make_loads.hpp"
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/stepping/step_state.hpp"
 #include "kernels/fabric/totals.hpp"
 #include "kernels/fabric/vertex_force.hpp"
@@ -65,7 +66,7 @@ struct FabricForces {
 
   /// Takes over E A of the lines of `parameters`, N. Blocks.
   void update_line_stiffness() {
-    // The slots stay, so that captured graphs remain valid.
+    // The slots stay, so that graphs of the launcher remain valid.
     const SpringAdjacency springs = spring_adjacency(parameters.mesh, parameters.material);
     device::copy(space, fabric.springs.value,
                  table_view(space, "drogue::fabric::slot_values", springs.value));

@@ -65,8 +65,8 @@ class FabricSolver : public Solver {
   /// contact (std::logic_error). Each launch of that graph takes `steps` steps; the caller bounds the
   /// launches in flight. From the first capture on, the solver takes no checkpoints of its own, and
   /// `time_state` is valid after `synchronize`; `upload` does not change that, and the graph remains valid. A
-  /// captured graph is invalid after `set_time_state` and `watch_pulls`. After `set_time_state` the solver
-  /// takes checkpoints again.
+  /// captured graph is invalid after `set_time_state`, `set_line_stiffness` and `watch_pulls`, after which
+  /// the solver takes checkpoints again.
   bool enqueue_steps(std::int64_t steps) override;
 
   /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure. Throws
@@ -149,6 +149,7 @@ class FabricSolver : public Solver {
     changed.mesh.line_stiffness.assign(of_lines.begin(), of_lines.end());
     check_parameters(changed);
     synchronize();
+    if (_loop.has_captured_steps()) forget_captures();
     _parameters = changed;
     _forces.update_line_stiffness();
     if (_contact) _contact->set_line_stiffness(of_lines);

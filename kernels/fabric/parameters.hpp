@@ -5,51 +5,11 @@
 #include <vector>
 
 #include "kernels/device/expression_program.hpp"
-#include "kernels/mesh/mesh.hpp"
-#include "kernels/stepping/driver.hpp"
+#include "kernels/fabric/body.hpp"
+#include "kernels/fabric/integrator.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::fabric {
-
-/// Constitutive models of cloth.
-enum class Model {
-  linear_vector,  ///< Model I: springs of vectors; not invariant under rotation, for linear analysis only
-  edge,           ///< Model II: springs along the edges
-  quadratic,      ///< Delingette 2008: tensile and angular springs; energy quadratic in the lengths
-  biquadratic,    ///< Delingette 2008: energy quadratic in squared lengths; equals St Venant-Kirchhoff
-};
-
-/// True if triangles have an energy as a whole, false if only their edges have one. Does not throw.
-[[nodiscard]] constexpr bool has_triangles(Model model) {
-  return model == Model::quadratic || model == Model::biquadratic;
-}
-
-/// Time integrators.
-enum class Integrator {
-  rk4,               ///< classical Runge-Kutta method
-  verlet,            ///< velocity Verlet
-  symplectic_euler,  ///< v += dt a(x), then x += dt v; velocities lag by half a step behind those of Verlet
-};
-
-/// Driver of Runge-Kutta steps; other steps are `plain`, or `persistent` for cloth that a `VertexForce`
-/// relaxes. The persistent driver does not support dashpots, bending, prescribed motions and contact in every
-/// step.
-using stepping::Driver;
-
-/// Material of cloth and strings. `membrane_modulus` is Young's modulus times thickness.
-struct Material {
-  Model model = Model::biquadratic;
-  double membrane_modulus = 1000.0;  ///< N/m; quadratic and biquadratic
-  double poisson = 0.3;              ///< -1 .. 1/2, quadratic and biquadratic
-  double stiffness = 1000.0;         ///< N/m per edge; linear_vector and edge
-  double axial_stiffness = 0.0;      ///< E A of strings, N, for lines without their own stiffness
-  double bending_stiffness = 0.0;    ///< N m, across inner edges; requires cloth that is flat at rest
-  /// No compressive stress: the relaxed energy of triangles, and lines and edges without compression. Not for
-  /// linear_vector.
-  bool tension_only = false;
-};
-
-using mesh::Mesh;
-using mesh::Vector;
 
 /// Time-dependent force: strength times direction, N. The strength is an expression of the position at rest,
 /// m, and time, s.
@@ -70,24 +30,6 @@ struct Motion {
   int axis = 0;  ///< 0 x, 1 y, 2 z
   std::vector<int> vertices;
   device::ExpressionProgram displacement;  ///< m, of the position at rest and time
-};
-
-/// Shapes of bodies.
-enum class BodyKind {
-  disk,       ///< plate without thickness about `centre`, perpendicular to `normal`
-  sphere,     ///< about `centre`
-  plane,      ///< half-space behind the plane through `centre` with the outward `normal`
-  level_set,  ///< region where an expression of x, y, z is negative
-};
-
-/// Rigid body at rest, which cloth cannot enter.
-struct Body {
-  BodyKind kind = BodyKind::sphere;
-  Vector centre{};                      ///< m
-  Vector normal{0.0, 0.0, 1.0};         ///< of unit length
-  double radius = 0.0;                  ///< m
-  device::ExpressionProgram level_set;  ///< m
-  double friction = 0.0;                ///< Coulomb coefficient between cloth and body
 };
 
 /// Contact of cloth with bodies and with itself.

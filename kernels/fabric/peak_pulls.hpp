@@ -133,10 +133,10 @@ class PeakPulls {
     return result;
   }
 
-  /// Restores the peaks, N and s. Blocks. Throws std::invalid_argument for another number of them.
-  void set_peaks(const ExecutionSpace& space, std::span<const PeakPull> peaks) const {
-    if (peaks.size() != _pulls) throw std::invalid_argument("pulls: there must be one peak per pull");
-    write(space, peaks, _views.peak);
+  /// Sets the peaks to zero. Blocks. Throws only after a failed kernel.
+  void reset(const ExecutionSpace& space) const {
+    const std::vector<PeakPull> none(_pulls);
+    write(space, std::span<const PeakPull>(none), _views.peak);
   }
 
  private:

@@ -5,7 +5,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/fabric/fabric_views.hpp"
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::fabric {
 

@@ -26,7 +26,7 @@ inline int march_planes(int tiles, int nz, int longest, int enough_teams = 1024)
 /// Planes of a march of the momentum stage. Long marches evaluate fewer fluxes twice; of short ones more
 /// teams are under way, on a small grid and at the end. Central fluxes cost less than that. Does not throw.
 inline int momentum_planes(Advection scheme, int tiles, int nz) {
-  return march_planes(tiles, nz, scheme == Advection::central ? 2 : 8, 4096);
+  return march_planes(tiles, nz, is_upwind(scheme) ? 8 : 2, 4096);
 }
 
 }  // namespace drogue::flow

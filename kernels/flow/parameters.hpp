@@ -17,6 +17,19 @@ enum class Advection {
   weno_z,   ///< fifth-order upwind-biased, weights of Borges, Carmona, Costa and Don 2008
 };
 
+/// Whether the fluxes of a scheme are biased to the side that fluid comes from, so that on outflows they are
+/// of first order and upwind.
+[[nodiscard]] constexpr bool is_upwind(Advection scheme) {
+  switch (scheme) {
+    case Advection::central:
+      return false;
+    case Advection::weno_js:
+    case Advection::weno_z:
+      return true;
+  }
+  return true;
+}
+
 /// Explicit time integration of advection, and of diffusion if that is explicit.
 enum class TimeScheme {
   ab2,  ///< Adams-Bashforth of second order with variable dt; one projection per step
@@ -90,8 +103,11 @@ struct Parameters {
   std::array<int, 3> cells = {64, 64, 64};      ///< number of cells per axis; 1: no variation along this axis
   std::array<double, 3> low = {0.0, 0.0, 0.0};  ///< lower corner of the domain, m
   std::array<double, 3> high = {1.0, 1.0, 1.0};  ///< upper corner of the domain, m
-  double density = 1.0;                          ///< kg/m^3
-  double viscosity = 0.0;                        ///< dynamic viscosity, Pa s
+  /// Coordinates of the faces along each axis, m, ascending from `low` to `high`, one more than cells. Empty:
+  /// cells of one width.
+  std::array<std::vector<double>, 3> faces;
+  double density = 1.0;    ///< kg/m^3
+  double viscosity = 0.0;  ///< dynamic viscosity, Pa s
   /// Sides x low, x high, y low, y high, z low, z high.
   std::array<Boundary, 6> boundary;
   std::array<double, 3> body_force = {0.0, 0.0, 0.0};     ///< per volume, N/m^3

@@ -1,5 +1,6 @@
 #include "kernels/flow/solver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -23,6 +24,17 @@ void require(bool holds, const std::string& condition) {
 }
 
 bool is_prescribed(BoundaryKind kind) { return kind == BoundaryKind::wall || kind == BoundaryKind::inflow; }
+
+void check_faces(const Parameters& p, std::size_t axis) {
+  const std::vector<double>& faces = p.faces[axis];
+  if (faces.empty()) return;
+  require(faces.size() == static_cast<std::size_t>(p.cells[axis]) + 1 && p.cells[axis] > 1,
+          "an axis with faces has one more of them than cells, and more than one cell");
+  require(faces.front() == p.low[axis] && faces.back() == p.high[axis],
+          "the first and last face of an axis are the ends of the domain");
+  require(std::ranges::adjacent_find(faces, [](double a, double b) { return !(a < b); }) == faces.end(),
+          "the faces of an axis must ascend");
+}
 
 /// Checks that the prescribed inflow can leave. Expressions are not evaluated.
 void check_net_inflow(const Parameters& p) {
@@ -80,6 +92,7 @@ void check_parameters(const Parameters& p) {
     require(n == 1 || (n >= 4 && n <= most_cells), "an axis must have 1 cell, or 4 to 16384");
     require(std::isfinite(p.low[axis]) && std::isfinite(p.high[axis]) && p.low[axis] < p.high[axis],
             "the domain must not be empty");
+    check_faces(p, axis);
     const BoundaryKind low = p.boundary[2 * axis].kind, high = p.boundary[2 * axis + 1].kind;
     require((low == BoundaryKind::periodic) == (high == BoundaryKind::periodic),
             "both sides of an axis must be periodic, or none");
@@ -105,6 +118,9 @@ void check_parameters(const Parameters& p) {
           "cfl must be at most 1.4 with the time scheme RK3, 0.7 with AB2");
   require(p.diffusion == Diffusion::explicit_ || p.time_scheme == TimeScheme::ab2,
           "Crank-Nicolson diffusion needs the time scheme AB2");
+  require(p.pressure_solver != PressureSolver::fft ||
+              std::ranges::all_of(p.faces, [](const std::vector<double>& faces) { return faces.empty(); }),
+          "fast transforms need axes without faces, whose cells have one width");
 #if !defined(DROGUE_HAVE_HYPRE)
   require(p.pressure_solver != PressureSolver::hypre_pfmg, "this build lacks hypre");
 #endif

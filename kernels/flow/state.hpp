@@ -29,8 +29,6 @@ struct StepFailure : stepping::StepFailure<FailureReason> {
 
 /// Progress of a run. A restart that restores it and all arrays of `Solver::state` continues bit for bit.
 struct Progress : stepping::AdaptiveTime {
-  double last_dt = 0.0;               ///< s, of the last step; 0: the next step has no predecessor
-  double dt_min = 0.0, dt_max = 0.0;  ///< s, over all steps
   /// Bits of the maximum over the cells of |u|/hx + |v|/hy + |w|/hz, 1/s, without axes of one cell, plus the
   /// rate of the largest eddy viscosity; more if sides accelerate.
   std::uint64_t rate_bits = 0;

@@ -6,6 +6,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/flow/advection/momentum.hpp"
+#include "kernels/flow/axis_tables.hpp"
 #include "kernels/flow/boundary/faces.hpp"
 #include "kernels/flow/boundary/ghosts.hpp"
 #include "kernels/flow/boundary/side_motion.hpp"
@@ -154,7 +155,10 @@ struct Step {
       if (i == 0 && parts.size() > 1) enqueue_side_ghosts(space, setup.stage);
       if (i == 1 || parts.size() == 1) finish_ghosts(space, setup.stage);
       setup.grid = parts[i];
-      dispatch_momentum(space, setup, parameters.advection);
+      if (grid.is_stretched())
+        dispatch_stretched_momentum(space, setup, parameters.advection);
+      else
+        dispatch_momentum(space, setup, parameters.advection);
     }
   }
 
@@ -239,6 +243,7 @@ struct Step {
 
   Parameters parameters;
   linear::PencilRanks ranks;
+  AxisTables<ExecutionSpace> axis_tables;
   MacGrid grid;
   Halo<ExecutionSpace> halo;
   BoundaryTables<ExecutionSpace> boundary;
@@ -269,7 +274,8 @@ template <class ExecutionSpace>
 Step<ExecutionSpace>::Step(const ExecutionSpace& space, const Parameters& p, const linear::RankGroup& group)
     : parameters(p),
       ranks((check_parameters(p), ranks_of(p, group.size(), group.rank()))),
-      grid(make_grid(p, ranks)),
+      axis_tables(space, p),
+      grid(axis_tables.attach(make_grid(p, ranks))),
       halo(group, ranks, p, grid),
       boundary(space, grid, sides_of(p, ranks)),
       checks_inflow(pressure_problem(p).is_singular() && inflow_changes(p.boundary)),

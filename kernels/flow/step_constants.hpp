@@ -10,7 +10,8 @@
 
 namespace drogue::flow {
 
-/// Constants that determine dt, from the parameters and the grid or a part of it. Does not throw.
+/// Constants that determine dt, from the parameters and the grid or a part of it. The least widths of the
+/// cells limit dt, and the largest ones are damped least. Does not throw.
 inline StepConstants step_constants(const Parameters& parameters, const MacGrid& grid) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   double squares = 0.0, least_square = infinite;
@@ -18,7 +19,10 @@ inline StepConstants step_constants(const Parameters& parameters, const MacGrid&
     if (grid.n[axis] == 1) continue;
     const double square = grid.inverse_h[axis] * grid.inverse_h[axis];
     squares += square;
-    least_square = std::min(least_square, square);
+    double widest = grid.h[axis];
+    for (int i = 0; is_stretched(parameters, axis) && i < parameters.cells[axis]; ++i)
+      widest = std::max(widest, cell_width(parameters, axis, i));
+    least_square = std::min(least_square, is_stretched(parameters, axis) ? 1.0 / (widest * widest) : square);
   }
   const double nu = parameters.viscosity / parameters.density;
   const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;

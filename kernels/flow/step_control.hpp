@@ -62,9 +62,6 @@ struct FinishStepFunctor {
         trial.stop = Stop::failed;
         now.last_dt = 0.0;  // the rates of the failed step must not enter another one
       } else {
-        now.last_dt = trial.dt;
-        now.dt_min = now.step == 0 || trial.dt < now.dt_min ? trial.dt : now.dt_min;
-        now.dt_max = trial.dt > now.dt_max ? trial.dt : now.dt_max;
         now.longest_dt = longest_next_dt(c, constants);
         now.velocity_rate_bits = c.next_rate_bits;
         const double stable = stable_dt_of_result(c, constants);

@@ -25,7 +25,6 @@ struct Progress : stepping::AdaptiveTime {
   std::uint64_t speed[3] = {};     ///< bit patterns of max |u-c|, |u|, |u+c| of U^n, m/s
   std::int64_t redone = 0;         ///< rejected step trials
   std::int64_t limited_faces = 0;  ///< summed over all stages of the accepted steps
-  double last_dt = 0.0, dt_min = 0.0, dt_max = 0.0;
 };
 
 /// State of the step control that a restart file stores beside the fields.

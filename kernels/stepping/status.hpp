@@ -14,10 +14,12 @@ inline constexpr std::int64_t checkpoint_interval = 256;
 /// Reason why an advance ended.
 enum class Stop : int { running, target, pause, max_steps, failed, interrupted };
 
-/// Time and step number of a run with variable dt.
+/// Time, step number and steps of a run with variable dt.
 struct AdaptiveTime {
   double time = 0.0;  ///< s
   std::int64_t step = 0;
+  double last_dt = 0.0;               ///< s, of the last step; 0: the next step has no predecessor
+  double dt_min = 0.0, dt_max = 0.0;  ///< s, over all steps
 };
 
 /// Time and step number of a run with piecewise constant dt. A restart that restores all members reproduces

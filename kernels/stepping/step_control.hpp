@@ -35,6 +35,9 @@ KOKKOS_INLINE_FUNCTION bool set_dt(const AdaptiveTime& now, StepTrial& next, dou
 
 /// Adds an accepted trial to the time and the number of steps.
 KOKKOS_INLINE_FUNCTION void advance_time(AdaptiveTime& now, const StepTrial& trial) {
+  now.last_dt = trial.dt;
+  now.dt_min = now.step == 0 || trial.dt < now.dt_min ? trial.dt : now.dt_min;
+  now.dt_max = trial.dt > now.dt_max ? trial.dt : now.dt_max;
   now.time = trial.reaches_target ? trial.target : now.time + trial.dt;
   ++now.step;
 }

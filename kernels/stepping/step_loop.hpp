@@ -199,9 +199,7 @@ class StepLoop {
           break;
         }
         const double rate = per_second(now.step - first_step, clock - begin);
-        if (!on_host)
-          window = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_in_flight * rate), 8,
-                                            max_launches_in_flight);
+        if (!on_host) window = launches_in_flight(rate);
         steps_per_launch =
             std::max<std::int64_t>(static_cast<std::int64_t>(0.5 * seconds_in_flight * rate), 64);
       }
@@ -263,11 +261,8 @@ class StepLoop {
       const Status now = status();
       if (now.failed != 0) return false;
       // Each batch publishes one launch. Steps of a captured graph do not count.
-      const double batches =
-          seconds_in_flight * per_second(now.launches - first_launch, SteadyTime::now() - begin);
-      const auto window =
-          static_cast<std::int64_t>(std::clamp(batches, 8.0, static_cast<double>(max_launches_in_flight)));
-      if (_launches - now.launches >= window) {
+      const double rate = per_second(now.launches - first_launch, SteadyTime::now() - begin);
+      if (_launches - now.launches >= launches_in_flight(rate)) {
         std::this_thread::yield();
         continue;
       }
@@ -290,6 +285,12 @@ class StepLoop {
   static double seconds(SteadyTime::duration span) { return std::chrono::duration<double>(span).count(); }
   static double per_second(std::int64_t count, SteadyTime::duration span) {
     return span.count() > 0 ? static_cast<double>(count) / seconds(span) : 0.0;
+  }
+
+  /// Bound on the launches in flight where a device completes `rate` of them per second.
+  static std::int64_t launches_in_flight(double rate) {
+    return static_cast<std::int64_t>(
+        std::clamp(seconds_in_flight * rate, 8.0, static_cast<double>(max_launches_in_flight)));
   }
 
   /// Estimated number of steps, at least one, to the end of the request. Launches beyond it would find no

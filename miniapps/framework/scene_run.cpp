@@ -98,8 +98,10 @@ class SceneRun {
       session.emplace(backend, _options.kokkos);
     });
     session->describe(_result);
+    _result.warnings = scene->notices();
+    const auto noticed = static_cast<std::ptrdiff_t>(_result.warnings.size());
     if (!_options.quiet) {
-      for (const std::string& notice : scene->notices()) print_notice(_app.program(), notice);
+      for (const std::string& notice : _result.warnings) print_notice(_app.program(), notice);
       session->print_shared_cores(_app.program());
     }
     _result.precision = scene->precision();
@@ -126,7 +128,8 @@ class SceneRun {
       if (_result.exit_code == ExitCode::interrupted) _result.checks.clear();  // it lacks others
     }
     if (!_options.quiet)
-      for (const std::string& warning : _result.warnings) print_notice(_app.program(), warning);
+      std::for_each(_result.warnings.begin() + noticed, _result.warnings.end(),
+                    [&](const std::string& warning) { print_notice(_app.program(), warning); });
     if (_result.exit_code == ExitCode::interrupted) write_restart_file(*simulation, files);
     _communicator.run_on_root([&] {
       if (const std::string failed = _result.failed_check(); !failed.empty())
@@ -226,6 +229,8 @@ class SceneRun {
       std::printf("  %-*s %.4g  (tolerance %.4g)  %s%s\n", static_cast<int>(width), check.name.c_str(),
                   check.value, check.tolerance, check.passed ? "passed" : "FAILED",
                   check.measurement ? (": " + check.measured()).c_str() : "");
+    if (_result.checks.empty() && _result.exit_code == ExitCode::ok)
+      std::printf("  nothing verified: the scene has no checks in [verify]\n");
     std::printf("files in %s\n", _out.string().c_str());
   }
 

@@ -9,6 +9,7 @@
 #include "kernels/mesh/quality.hpp"
 #include "miniapps/framework/metrics.hpp"
 #include "miniapps/framework/typed_scene.hpp"
+#include "miniapps/parachute/scene/run_size.hpp"
 #include "miniapps/parachute/scene/scene_keys.hpp"
 #include "miniapps/parachute/simulation/cloth_simulation.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
@@ -42,7 +43,7 @@ class ParachuteScene final : public framework::TypedScene<FlowScene, Simulation>
   }
 
   [[nodiscard]] std::string check_report() const override {
-    std::string text;
+    std::string text = content().has_fluid() ? run_size_report(content()) : std::string();
     for (std::size_t i = 0; i < content().bodies.size(); ++i)
       if (const Body& body = content().bodies[i]; body.kind == BodyKind::file)
         text += "body[" + std::to_string(i) + "] " + quality_report(body.surface);

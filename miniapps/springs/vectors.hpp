@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::springs_app {
 

@@ -23,7 +23,7 @@ FILES = r"fstream$|filesystem$|hdf5"
 MPI = r"mpi\.h"
 
 # Names of options, without a line of arithmetic: the oracle and what it checks mean the same scheme by them.
-SHARED = re.compile(r"kernels/[a-z]+/parameters\.hpp$")
+SHARED = re.compile(r"kernels/([a-z]+/parameters|fabric/(material|body))\.hpp$")
 
 # The first layer whose place fits decides.
 LAYERS = (

@@ -1,14 +1,30 @@
 """Documents agree with the code: every file that they name exists, and every function stands in its header."""
 
 import os
+import pathlib
 import re
+import tempfile
 import unittest
 
 import layers
 
 SOURCE = layers.repository(os.environ)
 FILE = r"`((?:common|examples|kernels|miniapps|perf|scripts|tests)/[\w/.]+\.(?:[ch]pp|py))`"
+LINK = re.compile(r"\]\(([^)#:\s]*)(?:#([^)\s]*))?\)")
 NAMED = re.compile(FILE + r": (`[\w:]+`(?:, `[\w:]+`)*)")
+
+
+def without_code(page):
+    return re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+
+
+def anchors(page):
+    """Anchors of the headings of a page as GitHub makes them: of equal ones, the second ends in -1."""
+    found = []
+    for heading in re.findall(r"^#+ (.*)", without_code(page), re.MULTILINE):
+        anchor = re.sub(r"[^\w\- ]", "", re.sub(r"\]\([^)]*\)", "", heading).strip().lower()).replace(" ", "-")
+        found.append(f"{anchor}-{found.count(anchor)}" if anchor in found else anchor)
+    return found
 
 
 class Documents(unittest.TestCase):
@@ -20,6 +36,24 @@ class Documents(unittest.TestCase):
         for document, text in self.documents():
             for name in re.findall(FILE, text):
                 self.assertTrue((SOURCE / name).is_file(), f"{document} names {name}")
+
+    def test_links_have_targets_and_anchors(self):
+        count = 0
+        for page in (SOURCE / "README.md", *(page for folder in ("docs", "examples", "miniapps", "scripts", "tests")
+                                             for page in sorted((SOURCE / folder).rglob("*.md")))):
+            for name, anchor in LINK.findall(without_code(page)):
+                count += 1
+                target = page.parent / name if name else page
+                self.assertTrue(target.exists(), f"{page.name}: {name}")
+                if anchor:
+                    self.assertIn(anchor, anchors(target), f"{page.name}: {name}")
+        self.assertGreater(count, 700)
+
+    def test_anchors_are_those_of_github(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = pathlib.Path(folder) / "page.md"
+            page.write_text("# Runs that go on\n```\n# no heading\n```\n## `A::b`, [link](x.md): 2.5\n## Runs that go on\n")
+            self.assertEqual(["runs-that-go-on", "ab-link-25", "runs-that-go-on-1"], anchors(page))
 
     def test_functions_stand_in_their_headers(self):
         count = 0

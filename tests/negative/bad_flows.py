@@ -86,7 +86,7 @@ BAD_LINES = [
     (30, "times = [0.5, 2]", 30, ["output.times", "2.0", "run.end_time"]),
     # missing keys
     (24, "", 23, ['missing key "run.end_time"']),
-    (8, "", 7, ['missing key "grid.cells"']),
+    (8, "", 7, ["[grid] needs exactly one of cells, core, faces"]),
     (10, 'boundary = { x = ["inflow", "outflow"], z = "periodic" }', 10, ['missing key "grid.boundary.y"']),
     (33, "exact = { x = 1, y = 0 }", 33, ['missing key "verify.exact.z"']),
     # sides

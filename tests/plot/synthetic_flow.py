@@ -26,7 +26,13 @@ def centres(cells, lengths):
     return np.meshgrid(*axes, indexing="ij")
 
 
-def write_flow(folder, cells, lengths, fields_at, times=(0.0,), is_open=False):
+def growing_faces(count, length, growth):
+    """Faces of cells each `growth` times as wide as the one before."""
+    widths = growth ** np.arange(count)
+    return np.concatenate(([0.0], np.cumsum(widths) * length / widths.sum()))
+
+
+def write_flow(folder, cells, lengths, fields_at, times=(0.0,), is_open=False, growth=1.0):
     """Writes a run directory; fields_at(time, x, y, z) gives the fields by name. Returns its path."""
     folder.mkdir(parents=True, exist_ok=True)
     domain = ", ".join(f"[0.0, {length}]" for length in lengths)
@@ -38,12 +44,15 @@ def write_flow(folder, cells, lengths, fields_at, times=(0.0,), is_open=False):
     )
     (folder / "history.csv").write_text("\n".join([header, *rows]) + "\n")
     with h5py.File(folder / "fields.h5", "w") as h5:
-        for axis, count, length in zip("xyz", cells, lengths):
-            h5[f"mesh/{axis}"] = np.linspace(0, length, count + 1)
+        faces = [np.linspace(0, length, count + 1) if growth == 1 else growing_faces(count, length, growth)
+                 for count, length in zip(cells, lengths)]
+        places = centres(cells, lengths) if growth == 1 else np.meshgrid(*((f[1:] + f[:-1]) / 2 for f in faces), indexing="ij")
+        for axis, values in zip("xyz", faces):
+            h5[f"mesh/{axis}"] = values
         for k, time in enumerate(times):
             group = h5.create_group(f"steps/{k:06d}")
             group.attrs["time"] = time
-            for name, values in fields_at(time, *centres(cells, lengths)).items():
+            for name, values in fields_at(time, *places).items():
                 group[name] = values
                 group[name].attrs["units"] = UNITS[name]
     return folder

@@ -61,6 +61,22 @@ class FlowPictures(PictureTest):
         with Image.open(run / "fields.gif") as movie:
             self.assertEqual(2, movie.n_frames)
 
+    def test_cells_of_a_stretched_grid_have_their_widths(self):
+        run = read_run(write_flow(self.folder / "run", (10, 8, 1), (3.0, 2.0, 1.0), shear, growth=1.2, is_open=True))
+        plane, pressure = plane_of(run), run.snapshots[0].fields["pressure"].values
+        pixels, faces = plane.pixels(pressure), [run.mesh[axis].values for axis in "xy"]
+        self.assertEqual([round(np.ptp(f) / np.diff(f).min()) for f in (faces[1], faces[0])], list(pixels.shape))
+        for cell in ((2, 3), (5, 4), (9, 7)):
+            place = [(f[k] + f[k + 1]) / 2 for f, k in zip(faces, cell)]
+            at = tuple(int(x / f[-1] * n) for f, x, n in zip(faces[::-1], place[::-1], pixels.shape))
+            self.assertEqual(pressure[(*cell, 0)], pixels[at])
+        # Values that are linear in space stay so at equidistant places.
+        x, y, values = plane.equidistant(pressure)
+        np.testing.assert_allclose(np.diff(x), np.diff(x)[0])
+        np.testing.assert_allclose(values, 100 * x + 10 * y[:, None] + 0.5)
+        self.assertEqual(0, cli.main([str(run.path), "--quiet", "--movie", "none"]))
+        self.assertEqual({"fields.png", "history.png"}, self.pictures(run.path))
+
     def add_sheet(self, path, name, *places):
         """Adds a triangle of a body or flag: at rest, or at one place along x per snapshot."""
         corners = np.array([[0.2, 0.1, 0.0], [0.6, 0.1, 0.0], [0.2, 0.1, 2.0]])

@@ -65,7 +65,8 @@ class FlowProfiles(PictureTest):
             return 1 - 2 * x + 3 * x**2 - 4 * x**3
 
         at = np.array([0.0, 0.1, 0.25, 0.3, 0.77, 1.0])
-        np.testing.assert_allclose(SampledLine(places, cubic(places))(at), cubic(at), atol=1e-13)
+        for where in (places, places**2):
+            np.testing.assert_allclose(SampledLine(where, cubic(where))(at), cubic(at), atol=1e-13)
 
     def test_finds_extremes_between_cells(self):
         places = (np.arange(20) + 0.5) / 20
@@ -80,6 +81,17 @@ class FlowProfiles(PictureTest):
             with self.subTest(through=through):
                 line = sample(run, run.snapshots[0], 0, 1, through)
                 np.testing.assert_allclose(line([0.2, 0.7]), np.array([0.2, 0.7]) + 10 * x + 100 * z)
+
+    def test_line_passes_through_point_of_a_stretched_grid(self):
+        """Linear velocities are met exactly, also between the outermost cells across a periodic side."""
+        for is_open, through, expected in ((True, (1.03, 0.0, 0.4), 1.03), (True, (0.0, 0.0, 0.4), None), (False, (0.0, 0.0, 0.4), None)):
+            run = read_run(self.run_of(linear, "", cells=(16, 8, 4), is_open=is_open, growth=1.1))
+            faces = run.mesh["x"].values
+            first, last = faces[1] / 2, (faces[-1] + faces[-2]) / 2
+            before = first + 2.0 - last  # distance of both over the side
+            x = expected or (first if is_open else (first * (before - first) + last * first) / before)
+            line = sample(run, run.snapshots[0], 0, 1, through)
+            np.testing.assert_allclose(line([0.2, 0.7]), np.array([0.2, 0.7]) + 10 * x + 100 * 0.4)
 
     def test_line_at_periodic_side_uses_both_sides(self):
         run = read_run(self.run_of(linear, ""))

@@ -63,9 +63,12 @@ class Result(gas_program.GasTest):
         scene = self.folder / "sod.toml"
         text = (gas_program.SOURCE / "miniapps/gas/scenes/sod.toml").read_text(encoding="utf-8")
         scene.write_text(text[:text.index("[verify]")], encoding="utf-8")
-        self.expect(0, scene, "--backend", "serial")
+        without = self.expect(0, scene, "--backend", "serial")
         reported = self.result("out/sod")
         self.assertEqual(([], {}), (reported["checks"], reported["errors"]))
+        self.assertEqual(1, without.stdout.count("nothing verified"))
+        self.assertNotIn("nothing verified", self.expect(0, "sod", "--backend", "serial", "--out", "verified", sets=COARSE).stdout)
+        self.assertEqual("", self.expect(0, scene, "--backend", "serial", "--overwrite", "--quiet").stdout)
 
     def test_failures_state_code_and_status(self):
         self.ended(3, "invalid", sets=["mesh.cells=7"])

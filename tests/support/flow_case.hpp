@@ -36,9 +36,7 @@ StaggeredField sampled_field(const FlowDomain& domain, const Function& function)
   StaggeredField field = domain.zero_field();
   domain.for_each_face([&](std::size_t c, const reference::GridIndex& face) {
     reference::Point point{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      point[axis] =
-          domain.parameters().low[axis] + (face[axis] + (axis == c ? 0.0 : 0.5)) * domain.spacing(axis);
+    for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = domain.coordinate(c, axis, face[axis]);
     field[c][domain.at(c, face)] = function(c, point);
   });
   return field;

@@ -105,8 +105,10 @@ class GasTest(FolderTest):
         self.assertGreaterEqual(len(scenes), 7)
         for scene in scenes:
             with self.subTest(scene):
-                self.expect(0, scene, "--backend", backend)
+                process = self.start(scene, "--backend", backend)
+                self.assertEqual(0, process.returncode, process.stderr)
                 reported = self.result(f"out/{scene}")
+                self.assertEqual([f"{self.program.name}: {warning}" for warning in reported.get("warnings", [])], process.stderr.splitlines())
                 self.assertEqual(("ok", backend, scene), (reported["status"], reported["backend"], reported["scene"]))
                 self.assertGreaterEqual(len(reported["checks"]), checks)
                 also(reported)

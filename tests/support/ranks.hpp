@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "kernels/flow/solver.hpp"
 #include "kernels/linear/parallel/cell_box.hpp"
 #include "kernels/linear/parallel/rank_group.hpp"
 
@@ -47,20 +46,6 @@ inline std::vector<double> joined(const linear::RankGroup& group, const std::vec
   for_each_entry(whole, part, [&](std::size_t to, std::size_t from) { values[to] = own[from]; });
   group.sum(values);
   return values;
-}
-
-/// Part of a whole array of the state of a flow.
-inline std::vector<double> cut(const std::vector<double>& values, const stepping::StateArray& array) {
-  return cut(values, flow::x_first(array.whole), {flow::x_first(array.begin), flow::x_first(array.extent)});
-}
-
-/// Whole array of the state of a flow, on all ranks.
-inline std::vector<double> joined(const linear::RankGroup& group, flow::Solver& solver,
-                                  const stepping::StateArray& array) {
-  std::vector<double> own(array.size());
-  solver.download(array.name, own);
-  return joined(group, own, flow::x_first(array.whole),
-                {flow::x_first(array.begin), flow::x_first(array.extent)});
 }
 
 }  // namespace drogue::testing

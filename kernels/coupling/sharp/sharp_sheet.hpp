@@ -274,16 +274,16 @@ class SharpSheet final : public Sheet<ExecutionSpace> {
     std::size_t faces = 0;
     for (const auto& component : _before.component) faces += component.size();
     // All components are one list.
-    const StateView<ExecutionSpace> list("drogue::coupling::face_acceleration", faces, 1);
-    double* first = list.data();
+    _face_list = Kokkos::View<double* [1], Memory>("drogue::coupling::face_acceleration", faces);
+    double* first = _face_list.data();
     for (int d = 0; d < 3; ++d) {
       const auto& like = _before.component[d];
       _face_acceleration.component[d] = Kokkos::View<double***, Kokkos::LayoutLeft, Memory>(
           first, like.extent(0), like.extent(1), like.extent(2));
       first += like.size();
     }
-    // Not changed by failed steps. The list owns the faces.
-    _state.add("face_acceleration", "m/s^2", list, {.saved = false});
+    // Not changed by failed steps.
+    _state.add("face_acceleration", "m/s^2", _face_list, static_cast<int>(faces), {.saved = false});
   }
 
   void freeze(const ExecutionSpace& space, const Cloth& cloth, double dt) const override {
@@ -388,7 +388,8 @@ class SharpSheet final : public Sheet<ExecutionSpace> {
   Kokkos::View<double* [9], Memory> _corner_force;
   OwnFaces<int> _count;
   OwnFaces<double> _before, _foretold;
-  OwnFaces<double> _face_acceleration;  ///< of the air without the sheet, filtered, m/s^2
+  Kokkos::View<double* [1], Memory> _face_list;
+  OwnFaces<double> _face_acceleration;  ///< in one list, of the air without the sheet, filtered, m/s^2
 };
 
 DROGUE_EXTERN_INSTANCES(class SharpSheet)

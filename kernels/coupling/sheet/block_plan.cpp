@@ -45,13 +45,12 @@ fabric::TimeState BlockPlan::cloth_time() const {
 
 std::int64_t BlockPlan::begin_batch(std::int64_t step, std::int64_t left) {
   _batch_step = step, _batch_cloth_step = _block.cloth_step;
-  return std::min({_block.end - step, left, _longest});
+  return std::min({_block.end - step, left, _batch.steps()});
 }
 
 void BlockPlan::end_batch(std::int64_t steps, std::int64_t cloth_step, double seconds) {
   _block.cloth_step = cloth_step;
-  if (seconds > _longest_batch) _longest = std::max<std::int64_t>(1, _longest / 2);
-  if (seconds < 0.25 * _longest_batch && steps == _longest) _longest = std::min(2 * _longest, block_steps);
+  _batch.adapt(steps, seconds);
 }
 
 void BlockPlan::return_to(const flow::Progress& now) {

@@ -6,6 +6,7 @@
 #include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/fabric/results.hpp"
 #include "kernels/flow/state.hpp"
+#include "kernels/stepping/batch_length.hpp"
 
 namespace drogue::coupling {
 
@@ -18,7 +19,7 @@ class BlockPlan {
   static constexpr double largest_growth = 2.0;
 
   explicit BlockPlan(const Parameters& p)
-      : _fixed_dt(p.flow.fixed_dt), _longest_batch(p.longest_batch), _initial_cloth_dt(p.fabric.dt) {}
+      : _fixed_dt(p.flow.fixed_dt), _initial_cloth_dt(p.fabric.dt), _batch(p.longest_batch, block_steps) {}
 
   [[nodiscard]] const BlockProgress& block() const { return _block; }
   void set(const BlockProgress& block) { _block = block; }
@@ -57,11 +58,11 @@ class BlockPlan {
   void return_to(const flow::Progress& now);
 
  private:
-  double _fixed_dt, _longest_batch, _initial_cloth_dt;  ///< s
+  double _fixed_dt, _initial_cloth_dt;  ///< s
   BlockProgress _block;
   /// Steps of the flow and of the cloth at which the batch began.
   std::int64_t _batch_step = 0, _batch_cloth_step = 0;
-  std::int64_t _longest = 1;  ///< largest number of steps of the flow until the next poll
+  stepping::BatchLength _batch;  ///< in steps of the flow
 };
 
 }  // namespace drogue::coupling

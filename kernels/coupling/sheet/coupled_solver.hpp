@@ -65,14 +65,15 @@ class CoupledSolver : public Solver {
         _parameters(with_coupling_settings(parameters)),
         _group(group),
         _flow(instance, _parameters.flow, group),
-        _sheet(make_sheet<ExecutionSpace>(_parameters.sheet.method, _space, flow::coupling_grid(_flow.grid()),
-                                          _parameters.fabric, _parameters.sheet, _parameters.flow.density,
-                                          group, flow::face_window(_flow.grid()))),
+        _box(flow::force_box(_parameters.flow)),
+        _sheet(make_sheet<ExecutionSpace>(
+            _parameters.sheet.method, _space, flow::coupling_grid(_flow.grid(), _box), _parameters.fabric,
+            _parameters.sheet, _parameters.flow.density, group, flow::face_window(_flow.grid(), _box))),
         _fabric(instance, _parameters.fabric, _sheet->relaxation()),
         _step(_space, _parameters, _flow, *_sheet, _fabric),
         _plan(_parameters),
-        _total_force(flow::coupling_grid(_flow.grid())),
-        _frame(_parameters.follow, _parameters.fabric),
+        _total_force(flow::coupling_grid(_flow.grid(), _box)),
+        _frame(_space, _parameters.follow, _parameters.fabric),
         _cuts(_parameters.cuts, _parameters.fabric) {
     _step.set_line_stiffness(_cuts.stiffness());
     if (_frame.follows()) _flow.check_frame(_parameters.follow.axes);
@@ -88,16 +89,16 @@ class CoupledSolver : public Solver {
     const FailureReason reason = _step.reason();
     return {reason, reason == FailureReason::line ? _step.failed_line() : -1, _cloth_failure};
   }
-  [[nodiscard]] std::vector<stepping::StateArray> state() const final { return _step.state().arrays(); }
+  [[nodiscard]] std::vector<stepping::StateArray> state() const final { return state_list().arrays(); }
   void upload(std::string_view name, std::span<const double> values) final {
-    _step.state().upload(_space, name, values);
+    state_list().upload(_space, name, values);
   }
   void download(std::string_view name, std::span<double> values) final {
-    _step.state().download(_space, name, values);
+    state_list().download(_space, name, values);
   }
   [[nodiscard]] std::array<double, 3> total_force_on_air() final {
     std::array<double, 3> force =
-        _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
+        _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _box, _flow.force()));
     _group.sum(force);
     return force;
   }
@@ -113,7 +114,6 @@ class CoupledSolver : public Solver {
     _pulls = fabric::PeakPulls<ExecutionSpace>(_space, _parameters.fabric.mesh, _cuts.stiffness(), pulls);
   }
   [[nodiscard]] std::vector<fabric::PeakPull> peak_pulls() final { return _pulls.peaks(_space); }
-  void set_peak_pulls(std::span<const fabric::PeakPull> peaks) final { _pulls.set_peaks(_space, peaks); }
 
  private:
   static Parameters with_coupling_settings(Parameters p) {
@@ -132,6 +132,13 @@ class CoupledSolver : public Solver {
     p.flow.external_force = true;
     if (p.flow.horizon > 0.0 && p.flow.motion.empty()) p.flow.motion = vertex_motion(p);
     return p;
+  }
+  /// That of the step, and the peaks, which failed steps do not change.
+  [[nodiscard]] stepping::StateList<ExecutionSpace> state_list() const {
+    stepping::StateList<ExecutionSpace> list = _step.state();
+    list.add("peak_pull", "N", _pulls.present(), &fabric::PeakPull::force, {.saved = false});
+    list.add("peak_pull_time", "s", _pulls.present(), &fabric::PeakPull::time, {.saved = false});
+    return list;
   }
   void set_frame(const FrameMotion& frame);
   /// Gives the lines their stiffness after the cuts so far. Blocks.
@@ -163,6 +170,7 @@ class CoupledSolver : public Solver {
   Parameters _parameters;
   linear::RankGroup _group;
   Flow _flow;
+  flow::Core _box;  ///< of the grid, that sheets lie in
   std::unique_ptr<Sheet<ExecutionSpace>> _sheet;
   Fabric _fabric;
   CoupledStep<ExecutionSpace> _step;
@@ -183,7 +191,7 @@ void CoupledSolver<ExecutionSpace>::start() {
   _cloth_failure.reset();
   _step.start();
   if (_cuts.restart_at(0.0)) set_lines();
-  _pulls.set_peaks(_space, std::vector<fabric::PeakPull>(_pulls.size()));
+  _pulls.reset(_space);
   record_pulls();
 }
 

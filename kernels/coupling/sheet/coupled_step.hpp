@@ -10,10 +10,10 @@
 #include "kernels/coupling/sheet/immersed_sheet.hpp"
 #include "kernels/coupling/sheet/line_strength.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
-#include "kernels/coupling/sheet/state_list.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
+#include "kernels/stepping/state_list.hpp"
 
 namespace drogue::fabric {
 DROGUE_EXTERN_INSTANCES(class FabricSolver, coupling::AirRelaxation)
@@ -31,7 +31,7 @@ template <class ExecutionSpace>
 struct SaveStateFunctor {
   flow::ControlView<ExecutionSpace> control;
   SavedStep<ExecutionSpace> saved_step;
-  CopyRowsFunctor<ExecutionSpace> save;
+  stepping::CopyStateFunctor<ExecutionSpace> save;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     if (control().trial.stop != flow::Stop::running && control().now.step == saved_step()) return;
@@ -84,6 +84,7 @@ class CoupledStep {
  public:
   using Flow = flow::FlowSolver<ExecutionSpace>;
   using Fabric = fabric::FabricSolver<ExecutionSpace, AirRelaxation<ExecutionSpace>>;
+  using StateList = stepping::StateList<ExecutionSpace>;
 
   /// Refers to its parts, which must outlive it. Blocks. Throws as the constructor of `LineStrength`.
   CoupledStep(const ExecutionSpace& space, const Parameters& parameters, Flow& flow,
@@ -92,12 +93,14 @@ class CoupledStep {
         _flow(flow),
         _sheet(sheet),
         _fabric(fabric),
+        _box(flow::force_box(parameters.flow)),
         _state(sheet.state()),
         _saved_step("drogue::coupling::saved_step"),
         _reason("drogue::coupling::failure_reason"),
         _strength(space, parameters) {
-    _state.add("sheet_position", "m", fabric.state().positions);
-    _state.add("sheet_velocity", "m/s", fabric.state().velocities);
+    _state.add("sheet_position", "m", fabric.state().positions, fabric.vertices());
+    _state.add("sheet_velocity", "m/s", fabric.state().velocities, fabric.vertices());
+    _saved = typename StateList::Packed("drogue::coupling::saved_state", _state.size());
   }
 
   /// Enqueues a step of dt, s, of the flow with so many steps of the cloth; numbers are those of the
@@ -123,7 +126,7 @@ class CoupledStep {
   }
 
   /// Arrays of the state. Does not throw.
-  [[nodiscard]] const StateList<ExecutionSpace>& state() const { return _state; }
+  [[nodiscard]] const StateList& state() const { return _state; }
   /// For the time of pulls. Does not throw.
   [[nodiscard]] const SavedStep<ExecutionSpace>& saved_step() const { return _saved_step; }
 
@@ -146,7 +149,7 @@ class CoupledStep {
     Kokkos::deep_copy(_space, _sheet.transfer().counts, TransferCounts{});
     const auto f = faces(_flow.force());
     _sheet.clear_forces(_space, f);  // before the places of the discarded step are lost
-    _state.roll_back(_space);
+    device::launch_each(_space, "drogue::coupling::roll_back", _state.most_rows(), copy_state(false));
     renew();
     _sheet.spread_again(_space, f);
     _space.fence("drogue::coupling::roll_back");
@@ -176,7 +179,7 @@ class CoupledStep {
 
  private:
   [[nodiscard]] auto faces(const flow::List<ExecutionSpace>& values) const {
-    return flow::face_views<ExecutionSpace>(_flow.grid(), values);
+    return flow::face_views<ExecutionSpace>(_flow.grid(), _box, values);
   }
   template <class View>
   [[nodiscard]] typename View::non_const_value_type read(const View& view) const {
@@ -191,9 +194,12 @@ class CoupledStep {
     Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
     set_reason(FailureReason::flow);
   }
+  [[nodiscard]] stepping::CopyStateFunctor<ExecutionSpace> copy_state(bool packs) const {
+    return {_state, _saved, packs};
+  }
   void save() const {
-    device::launch_each(_space, "drogue::coupling::save_state", _fabric.vertices(),
-                        SaveStateFunctor<ExecutionSpace>{_flow.control(), _saved_step, _state.save()});
+    device::launch_each(_space, "drogue::coupling::save_state", _state.most_rows(),
+                        SaveStateFunctor<ExecutionSpace>{_flow.control(), _saved_step, copy_state(true)});
   }
   void check() const {
     _strength.check(_space, _fabric.state().positions);
@@ -211,7 +217,9 @@ class CoupledStep {
   Flow& _flow;
   const Sheet<ExecutionSpace>& _sheet;
   Fabric& _fabric;
-  StateList<ExecutionSpace> _state;
+  flow::Core _box;  ///< of the grid, that sheets lie in
+  StateList _state;
+  typename StateList::Packed _saved;
   SavedStep<ExecutionSpace> _saved_step;
   typename CheckClothFunctor<ExecutionSpace>::ReasonView _reason;
   LineStrength<ExecutionSpace> _strength;

@@ -32,8 +32,9 @@ struct FilteredAcceleration {
   fabric::ListView<ExecutionSpace, AirFilter> filter;  ///< of each vertex
   Vectors mean;                                        ///< of the air without the force of the sheet
   Vectors trend;                                       ///< of the mean, per step; empty if no vertex has one
-  StateView<ExecutionSpace> defect;  ///< along the normal; `SheetParameters::leak_filter`, empty without it
-  Vectors sum;                       ///< of all: `LocalAir::acceleration`; `mean` without the others
+  SurfaceNumbers<ExecutionSpace>
+      defect;   ///< along the normal; `SheetParameters::leak_filter`, empty without it
+  Vectors sum;  ///< of all: `LocalAir::acceleration`; `mean` without the others
 
   /// Takes the acceleration of a step into the mean and the trend of vertex i. `by_law`: weights of its law.
   KOKKOS_FUNCTION void take(int i, const spatial::Point& present, const FilterWeights& by_law,
@@ -70,6 +71,17 @@ struct BeginSheetStepFunctor {
     spatial::store_vector(air.velocity, i, spatial::load_vector(air.before, i));
     air.impulse(i) = 0.0;
     if (air.is_no_slip(i)) spatial::store_vector(air.no_slip_impulse, i, spatial::Point{0.0, 0.0, 0.0});
+  }
+};
+
+/// Copies the position of vertex i.
+template <class ExecutionSpace>
+struct CopyPositionFunctor {
+  fabric::PointsView<ExecutionSpace> from;
+  typename LocalAir<ExecutionSpace>::Vectors to;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    spatial::store_vector(to, i, spatial::load_vector(from, i));
   }
 };
 
@@ -137,8 +149,9 @@ struct EndSheetStepFunctor {
   FilteredAcceleration<ExecutionSpace> filtered;
   typename LocalAir<ExecutionSpace>::Vectors after;  ///< velocity at the end of the step, m/s
   typename LocalAir<ExecutionSpace>::Vectors
-      interpolated_force;            ///< interpolated force of the sheet per volume, N/m^3
-  StateView<ExecutionSpace> defect;  ///< of this step along the normal, m/s^2; empty if it is not filtered
+      interpolated_force;  ///< interpolated force of the sheet per volume, N/m^3
+  SurfaceNumbers<ExecutionSpace>
+      defect;  ///< of this step along the normal, m/s^2; empty if it is not filtered
   ClosingSheetViews<ExecutionSpace> closing;
   double inverse_dt, inverse_density;
   bool is_first;
@@ -171,7 +184,7 @@ template <class ExecutionSpace>
 struct SmoothDefectFunctor {
   fabric::SurfaceViews<ExecutionSpace> surface;
   fabric::ListView<ExecutionSpace, double> triangle_area;
-  StateView<ExecutionSpace> from, to;
+  SurfaceNumbers<ExecutionSpace> from, to;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     to(i, 0) = surface_mean(surface, triangle_area, from, i);
@@ -222,15 +235,15 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
         _filter(Base::of_vertices(space, "filter", parameters.filter_of_vertex, {parameters.filter, false})) {
     if (has_trend(parameters)) {
       _trend = Base::vectors("acceleration_trend");
-      _state.add("acceleration_trend", "m/s^2", _trend);
+      _state.add("acceleration_trend", "m/s^2", _trend, _surface.vertices());
     }
     if (!(parameters.leak_filter > 0.0)) return;
     _sweeps = smoothing_sweeps(cloth.mesh, grid);
     _triangle_area = fabric::ListView<ExecutionSpace, double>("drogue::coupling::triangle_area",
                                                               static_cast<std::size_t>(_surface.triangles()));
-    for (StateView<ExecutionSpace>* values : {&_defect, &_present_defect, &_smoothed_defect})
-      *values = StateView<ExecutionSpace>("drogue::coupling::defect", Base::rows(), 1);
-    _state.add("defect", "m/s^2", _defect);
+    for (SurfaceNumbers<ExecutionSpace>* values : {&_defect, &_present_defect, &_smoothed_defect})
+      *values = SurfaceNumbers<ExecutionSpace>("drogue::coupling::defect", Base::rows());
+    _state.add("defect", "m/s^2", _defect, _surface.vertices());
   }
 
   void freeze(const ExecutionSpace& space, const Cloth& cloth, double dt) const override {
@@ -299,7 +312,7 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
   [[nodiscard]] Vectors exchange_points(const ExecutionSpace& space, const Cloth& cloth) const override {
     if (_inset.size() == 0) return cloth.positions;
     device::launch_each(space, "drogue::coupling::present_positions", _transfer.points,
-                        CopyRowsFunctor<ExecutionSpace>{1, {cloth.positions}, {_present}});
+                        CopyPositionFunctor<ExecutionSpace>{cloth.positions, _present});
     _inset(space, cloth, 0.0, _present);
     return _present;
   }
@@ -319,7 +332,7 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
   Vectors _trend;                                       ///< of the acceleration; empty if no vertex has one
   /// Along the normal, m/s^2: filtered, of a step, and smoothed; empty without
   /// `SheetParameters::leak_filter`.
-  StateView<ExecutionSpace> _defect, _present_defect, _smoothed_defect;
+  SurfaceNumbers<ExecutionSpace> _defect, _present_defect, _smoothed_defect;
   fabric::ListView<ExecutionSpace, double> _triangle_area;  ///< doubled, m^2; with a defect
   int _sweeps = 0;                                          ///< that smooth the defect
 };

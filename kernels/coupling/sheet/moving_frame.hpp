@@ -26,36 +26,52 @@ struct ShiftFrameFunctor {
   }
 };
 
-/// Copies position and velocity of a vertex to the places of a list.
+/// Writes the weighted means of the positions and velocities of vertices to the places of a list, in the
+/// order of the vertices.
 template <class ExecutionSpace>
 struct GuideStateFunctor {
   fabric::State<ExecutionSpace> cloth;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> list;
-  int vertex;
+  Kokkos::View<WeightedVertex*, typename ExecutionSpace::memory_space> vertices;
 
   KOKKOS_FUNCTION void operator()(const int axis) const {
-    const auto a = static_cast<std::size_t>(axis), row = static_cast<std::size_t>(vertex);
-    list(a) = cloth.positions(row, a);
-    list(3 + a) = cloth.velocities(row, a);
+    const auto a = static_cast<std::size_t>(axis);
+    double position = 0.0, velocity = 0.0;
+    for (std::size_t k = 0; k < vertices.extent(0); ++k) {
+      const auto row = static_cast<std::size_t>(vertices(k).vertex);
+      position += vertices(k).weight * cloth.positions(row, a);
+      velocity += vertices(k).weight * cloth.velocities(row, a);
+    }
+    list(a) = position;
+    list(3 + a) = velocity;
   }
 };
 
-/// Motion of a frame of reference that follows a vertex of the cloth.
+/// Motion of a frame of reference that follows a point of the cloth.
 template <class ExecutionSpace>
 class MovingFrame {
  public:
-  /// Throws std::invalid_argument for parameters out of range and a cloth with pinned or moving axes along
-  /// which the frame moves.
-  MovingFrame(const FollowParameters& parameters, const fabric::Parameters& cloth)
-      : _parameters(parameters), _list("drogue::coupling::guide_state", 6) {
+  /// Blocks. Throws std::invalid_argument for parameters out of range and a cloth with pinned or moving axes
+  /// along which the frame moves.
+  MovingFrame(const ExecutionSpace& space, const FollowParameters& parameters,
+              const fabric::Parameters& cloth)
+      : _parameters(parameters),
+        _list("drogue::coupling::guide_state", 6),
+        _vertices("drogue::coupling::guide_vertices", parameters.vertices.size()) {
     if (!follows()) return;
-    if (parameters.vertex >= static_cast<int>(cloth.mass.size()))
-      throw std::invalid_argument("moving frame: the vertex that it follows does not exist");
+    double weight = 0.0;
+    for (const WeightedVertex& each : parameters.vertices) {
+      weight += each.weight;
+      if (each.vertex < 0 || each.vertex >= static_cast<int>(cloth.mass.size()))
+        throw std::invalid_argument("moving frame: a vertex that it follows does not exist");
+    }
+    if (!(std::abs(weight - 1.0) <= 1e-9))
+      throw std::invalid_argument("moving frame: the weights of its vertices must add up to 1");
     if (!(parameters.relaxation > 0.0 && parameters.relaxation <= 1e100))
       throw std::invalid_argument("moving frame: the relaxation time must be positive");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!std::isfinite(parameters.place[axis]))
-        throw std::invalid_argument("moving frame: the place of the vertex must be finite");
+        throw std::invalid_argument("moving frame: the place of the point must be finite");
       if (!parameters.axes[axis]) continue;
       bool is_fixed = false;
       for (const std::uint8_t axes : cloth.pinned) is_fixed = is_fixed || (axes >> axis & 1U) != 0U;
@@ -63,10 +79,14 @@ class MovingFrame {
         is_fixed = is_fixed || motion.axis == static_cast<int>(axis);
       if (is_fixed) throw std::invalid_argument("moving frame: all vertices must move freely along its axes");
     }
+    const auto host = Kokkos::create_mirror_view(_vertices);
+    for (std::size_t k = 0; k < parameters.vertices.size(); ++k) host(k) = parameters.vertices[k];
+    Kokkos::deep_copy(space, _vertices, host);
+    space.fence("drogue::coupling::moving_frame");
   }
 
-  /// True if there is a vertex to follow. Does not throw.
-  [[nodiscard]] bool follows() const { return _parameters.vertex >= 0; }
+  /// True if there is a point to follow. Does not throw.
+  [[nodiscard]] bool follows() const { return !_parameters.vertices.empty(); }
   [[nodiscard]] const FrameMotion& motion() const { return _motion; }
 
   /// Sets the motion. Throws std::invalid_argument for a velocity along an axis that the frame does not
@@ -83,10 +103,10 @@ class MovingFrame {
   const FrameMotion& begin_block(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
                                  double time, double duration) {
     device::launch_each(space, "drogue::coupling::guide_state", 3,
-                        GuideStateFunctor<ExecutionSpace>{cloth, _list, _parameters.vertex});
+                        GuideStateFunctor<ExecutionSpace>{cloth, _list, _vertices});
     std::array<double, 6> guide{};
     device::copy_out(space, guide.data(), _list, guide.size());
-    space.fence("drogue::coupling::moving_frame: read the vertex");
+    space.fence("drogue::coupling::moving_frame: read the point");
     _motion.start = _motion.position(time);
     _motion.since = time;
     const double period = std::max(_parameters.relaxation, duration);
@@ -108,6 +128,7 @@ class MovingFrame {
   FollowParameters _parameters;
   FrameMotion _motion;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> _list;
+  Kokkos::View<WeightedVertex*, typename ExecutionSpace::memory_space> _vertices;
 };
 
 }  // namespace drogue::coupling

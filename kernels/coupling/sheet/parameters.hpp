@@ -69,13 +69,21 @@ struct SheetParameters {
   std::vector<ClosingSheet> closing;
 };
 
-/// Frame of reference that follows a vertex, such as a payload, so that the vertex stays in the grid. The
-/// frame keeps its velocity during a block of steps, so that it is inertial there.
+/// Vertex with its weight in a mean.
+struct WeightedVertex {
+  int vertex = 0;
+  double weight = 1.0;
+};
+
+/// Frame of reference that follows a point of the cloth, such as a payload, so that the point stays in the
+/// grid. The frame keeps its velocity during a block of steps, so that it is inertial there.
 struct FollowParameters {
-  int vertex = -1;                ///< -1: the frame is at rest
+  /// Vertices whose weighted mean is the point, few of them; none: the frame is at rest. The weights add up
+  /// to 1.
+  std::vector<WeightedVertex> vertices;
   std::array<bool, 3> axes{};     ///< along which it moves; no walls or slip sides are normal to them
-  std::array<double, 3> place{};  ///< in the grid to which the vertex returns, m
-  /// s; at the beginning of a block, the velocity of the vertex becomes minus its distance from `place` over
+  std::array<double, 3> place{};  ///< in the grid to which the point returns, m
+  /// s; at the beginning of a block, the velocity of the point becomes minus its distance from `place` over
   /// this time, or over the duration of the block if that is longer.
   double relaxation = 1.0;
 };

@@ -14,12 +14,12 @@
 #include "kernels/coupling/sheet/closing_sheets.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
 #include "kernels/coupling/sheet/parameters.hpp"
-#include "kernels/coupling/sheet/state_list.hpp"
 #include "kernels/coupling/spread.hpp"
 #include "kernels/device/backend_list.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/surface/surface.hpp"
 #include "kernels/flow/face_views.hpp"
+#include "kernels/stepping/state_list.hpp"
 
 namespace drogue::coupling {
 
@@ -63,7 +63,7 @@ class Sheet {
   /// Weights of both directions. Does not throw.
   [[nodiscard]] const GridTransfer<ExecutionSpace>& transfer() const { return _transfer; }
   /// Arrays that continue a run with the state of cloth and flow. Does not throw.
-  [[nodiscard]] const StateList<ExecutionSpace>& state() const { return _state; }
+  [[nodiscard]] const stepping::StateList<ExecutionSpace>& state() const { return _state; }
 
   /// Sets the force and the acceleration of the air to zero, as before the first step, but beside closing
   /// sheets to that of what drives the air. Does not throw.
@@ -139,13 +139,12 @@ class Sheet {
                                                                             : _air.acceleration),
         _force(vectors("force")),
         _after(vectors("velocity_after")),
-        _state(_surface.vertices()),
         _closing(space, parameters.closing, _air.law, corners) {
     const bool is_explicit = parameters.method == CouplingMethod::explicit_;
     if (is_explicit) _air.last_force = _force;
-    _state.add("air_acceleration", "m/s^2", _acceleration);
-    _state.add("sheet_force", "N", _force, {.restarted = is_explicit});
-    _state.add("sheet_place", "m", _transfer.positions, {.restarted = false});
+    _state.add("air_acceleration", "m/s^2", _acceleration, _surface.vertices());
+    _state.add("sheet_force", "N", _force, _surface.vertices(), {.restarted = is_explicit});
+    _state.add("sheet_place", "m", _transfer.positions, _surface.vertices(), {.restarted = false});
   }
 
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_surface.vertices()); }
@@ -191,7 +190,7 @@ class Sheet {
   LocalAir<ExecutionSpace> _air;
   Vectors _acceleration;  ///< filtered, of the air at the vertices, m/s^2
   Vectors _force, _after;
-  StateList<ExecutionSpace> _state;
+  stepping::StateList<ExecutionSpace> _state;
   ClosingSheets<ExecutionSpace> _closing;
 
  private:

@@ -63,7 +63,7 @@ struct FrameMotion {
 struct Progress {
   flow::Progress flow;
   BlockProgress block;
-  FrameMotion frame;  ///< at rest unless `Parameters::follow` has a vertex
+  FrameMotion frame;  ///< at rest unless `Parameters::follow` has vertices
 };
 
 /// Failure that ended an `advance` with `flow::Stop::failed`.
@@ -134,15 +134,12 @@ class Solver {
   virtual void air_velocity(std::span<fabric::Vector> at_vertices) = 0;
 
   /// Records the largest forces of lines on vertices, N, at the start and the end of every step of the flow,
-  /// on the device. Call it before `start`, or before `restore` and `set_peak_pulls`. Replaces former pulls.
-  /// Throws std::invalid_argument for lines that do not end at their vertex.
+  /// on the device. Call it before `start`, or before the upload of the state, to which the peaks belong
+  /// then. Replaces former pulls. Throws std::invalid_argument for lines that do not end at their vertex.
   virtual void watch_pulls(std::span<const fabric::Pull> pulls) = 0;
 
   /// Peaks of the pulls that are watched. Throws only after a failed kernel.
   [[nodiscard]] virtual std::vector<fabric::PeakPull> peak_pulls() = 0;
-
-  /// Restores the peaks, N and s. Throws std::invalid_argument for another number than that of the pulls.
-  virtual void set_peak_pulls(std::span<const fabric::PeakPull> peaks) = 0;
 };
 
 /// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters out of

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/device/expression.hpp"
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/body.hpp"
 #include "kernels/spatial/closest_points.hpp"
 
 namespace drogue::fabric {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/elastic/sliced_ell.hpp"
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::fabric {
 

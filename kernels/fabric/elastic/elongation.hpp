@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::fabric {
 

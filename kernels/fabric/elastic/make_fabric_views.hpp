@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/elastic/adjacency.hpp"
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/points_transfer.hpp"
 
 namespace drogue::fabric {

@@ -2,7 +2,7 @@
 
 #include "kernels/device/dual.hpp"
 #include "kernels/device/pack.hpp"
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::fabric {
 

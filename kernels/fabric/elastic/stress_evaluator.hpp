@@ -7,6 +7,7 @@
 #include "kernels/device/copy.hpp"
 #include "kernels/fabric/elastic/dispatch_model.hpp"
 #include "kernels/fabric/elastic/stress.hpp"
+#include "kernels/fabric/parameters.hpp"
 
 namespace drogue::fabric {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::fabric {
 

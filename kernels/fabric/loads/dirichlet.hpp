@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/loads/make_loads.hpp"
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
 
 namespace drogue::fabric {

@@ -5,6 +5,7 @@
 
 #include "kernels/fabric/elastic/make_fabric_views.hpp"
 #include "kernels/fabric/loads/external.hpp"
+#include "kernels/fabric/parameters.hpp"
 
 namespace drogue::fabric {
 

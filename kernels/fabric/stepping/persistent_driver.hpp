@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/stepping/persistent_euler.hpp"
 #include "kernels/fabric/stepping/persistent_rings.hpp"
 

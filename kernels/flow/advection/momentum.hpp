@@ -50,10 +50,15 @@ KOKKOS_INLINE_FUNCTION StageFactors stage_factors(const MomentumSetup<ExecutionS
   return {w.state, (1.0 + half_ratio) * dt, -half_ratio * dt, force};
 }
 
-/// Enqueues a momentum stage. Asynchronous. Compiled once for each backend. Throws std::runtime_error for a
-/// team that does not fit the device.
+/// Enqueues a momentum stage on a grid without stretched axes. Asynchronous. Compiled once for each backend.
+/// Throws std::runtime_error for a team that does not fit the device.
 template <class ExecutionSpace>
 void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                        Advection advection);
+
+/// As `dispatch_momentum`, on a grid with stretched axes.
+template <class ExecutionSpace>
+void dispatch_stretched_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                                 Advection advection);
 
 }  // namespace drogue::flow

@@ -12,18 +12,21 @@ static_assert(ghost_width == 3, "advective_flux reads three cells on each side o
 
 /// Flux of momentum component c through a face normal to axis d, per density, m^2/s^2: advection minus
 /// diffusion. The face is the low face along d of the control volume of the component. `carried` points at
-/// component c at the control volume, `carrier` at component d of the same cell.
-template <Advection scheme, class R>
+/// component c at the control volume, `carrier` at component d of the same cell. `skew` as
+/// `AxisRow::skew`; nothing along uniform axes.
+template <Advection scheme, class R, class Factor, class... Skew>
 KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carrier, std::int64_t stride_c,
-                                       std::int64_t stride_d, double nu_over_h, R epsilon) {
-  const R speed = 0.5 * (load_field<R>(carrier - stride_c) + load_field<R>(carrier));
+                                       std::int64_t stride_d, Factor nu_over_h, R epsilon, Skew... skew) {
+  R speed = 0.5 * (load_field<R>(carrier - stride_c) + load_field<R>(carrier));
+  if constexpr (sizeof...(skew) > 0)
+    speed = speed + (skew * ...) * (load_field<R>(carrier) - load_field<R>(carrier - stride_c));
   return advective_flux<scheme, R>(speed, carried, stride_d, epsilon) -
          nu_over_h * (load_field<R>(carried) - load_field<R>(carried - stride_d));
 }
 
-/// Momentum stage on a device. A thread marches along z and keeps the fluxes through the face between two
-/// planes.
-template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
+/// Momentum stage on a device; on grids with stretched axes another kernel, so that the widths cost nothing
+/// on others. A thread marches along z and keeps the fluxes through the face between two planes.
+template <class ExecutionSpace, Advection scheme, bool adams_bashforth, bool is_stretched>
 struct MomentumFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<device::largest_block, 1>>;
   using Member = typename Policy::member_type;
@@ -44,7 +47,7 @@ struct MomentumFunctor {
     std::int64_t at = g.offset(i, j, k_begin);
     double below[3] = {0.0, 0.0, 0.0};
     if (g.n[2] > 1)
-      for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at);
+      for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at, {i, j, k_begin});
     for (int k = k_begin; k < k_end; ++k, at += g.stride[2]) {
       double value[3], rates[3];
 #if defined(__CUDA_ARCH__)
@@ -56,11 +59,15 @@ struct MomentumFunctor {
         const double other = adams_bashforth ? factors.old_rate * setup.old_rate(place)
                                              : device::load_constant(setup.state.data() + place);
         double rate = setup.acceleration[c];
-        if (g.n[0] > 1) rate -= g.inverse_h[0] * (flux(c, 0, at + g.stride[0]) - flux(c, 0, at));
-        if (g.n[1] > 1) rate -= g.inverse_h[1] * (flux(c, 1, at + g.stride[1]) - flux(c, 1, at));
+        if (g.n[0] > 1)
+          rate -= inverse_extent(c, 0, i) *
+                  (flux(c, 0, at + g.stride[0], {i + 1, j, k}) - flux(c, 0, at, {i, j, k}));
+        if (g.n[1] > 1)
+          rate -= inverse_extent(c, 1, j) *
+                  (flux(c, 1, at + g.stride[1], {i, j + 1, k}) - flux(c, 1, at, {i, j, k}));
         if (g.n[2] > 1) {
-          const double above = flux(c, 2, at + g.stride[2]);
-          rate -= g.inverse_h[2] * (above - below[c]);
+          const double above = flux(c, 2, at + g.stride[2], {i, j, k + 1});
+          rate -= inverse_extent(c, 2, k) * (above - below[c]);
           below[c] = above;
         }
         if (setup.eddy.data() != nullptr) rate += setup.eddy(place);
@@ -79,18 +86,29 @@ struct MomentumFunctor {
     }
   }
 
-  KOKKOS_FUNCTION double flux(int c, int d, std::int64_t at) const {
+  /// Flux of component c along axis d into the control volume at `index`, whose place is `at`.
+  KOKKOS_FUNCTION double flux(int c, int d, std::int64_t at, const int (&index)[3]) const {
     const MacGrid& g = setup.grid;
-    const double* u = setup.stage.data();
-    return momentum_flux<scheme, double>(u + c * g.component + at, u + d * g.component + at,
-                                         g.n[c] > 1 ? g.stride[c] : 0, g.stride[d], setup.nu * g.inverse_h[d],
-                                         setup.epsilon);
+    const double *u = setup.stage.data(), *carried = u + c * g.component + at,
+                 *carrier = u + d * g.component + at;
+    const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
+    if constexpr (is_stretched)
+      return momentum_flux<scheme, double>(carried, carrier, stride_c, g.stride[d],
+                                           setup.nu * g.inverse_step(c, d, index[d]), setup.epsilon,
+                                           c == d ? 0.0 : g.skew(c, index[c]));
+    else
+      return momentum_flux<scheme, double>(carried, carrier, stride_c, g.stride[d], setup.nu * g.inverse_h[d],
+                                           setup.epsilon);
+  }
+  /// 1 / width of the control volumes of component c along axis d, 1/m.
+  KOKKOS_FUNCTION double inverse_extent(int c, int d, int i) const {
+    return is_stretched ? setup.grid.inverse_extent(c, d, i) : setup.grid.inverse_h[d];
   }
 };
 
 /// Momentum stage on a host: packs of cells along x, rows in turn. A row keeps the fluxes that the next row
 /// and the next plane need, so that each is evaluated once.
-template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
+template <class ExecutionSpace, Advection scheme, bool adams_bashforth, bool is_stretched>
 struct MomentumRowsFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
   using Member = typename Policy::member_type;
@@ -136,13 +154,10 @@ struct MomentumRowsFunctor {
             Access::store(rate_row(next, c, length) + i, R(setup.acceleration[c]));
         if (g.n[0] > 1) {
           fluxes(0, j, k, g.n[0] + 1, west);
-          for (int c = 0; c < 3; ++c)
-            for (int i = 0; i < g.n[0]; i += lanes)
-              subtract(next + c * length + i, g.inverse_h[0],
-                       Access::load(west + c * length + i + 1) - Access::load(west + c * length + i));
+          for (int c = 0; c < 3; ++c) subtract_along_row(c, west + c * length, next + c * length);
         }
-        if (g.n[1] > 1) add_difference(1, j + 1, k, g.inverse_h[1], length, south, west, next);
-        if (g.n[2] > 1) add_difference(2, j, k + 1, g.inverse_h[2], length, under, west, next);
+        if (g.n[1] > 1) add_difference(1, j + 1, k, length, south, west, next);
+        if (g.n[2] > 1) add_difference(2, j, k + 1, length, under, west, next);
         for (int c = 0; c < 3; ++c) finish_row(c * g.component + at, next + c * length, factors);
       }
     }
@@ -150,8 +165,22 @@ struct MomentumRowsFunctor {
 
  private:
   static double* rate_row(double* rows, int c, int length) { return rows + c * length; }
-  static void subtract(double* place, double factor, R difference) {
+  template <class Factor>
+  static void subtract(double* place, Factor factor, R difference) {
     Access::store(place, Access::load(place) - factor * difference);
+  }
+
+  /// Subtracts the differences of fluxes along x.
+  void subtract_along_row(int c, const double* west, double* rates) const {
+    const MacGrid& g = setup.grid;
+    const auto difference = [west](int i) { return Access::load(west + i + 1) - Access::load(west + i); };
+    if (!is_stretched || !g.is_stretched(0)) {
+      for (int i = 0; i < g.n[0]; i += lanes) subtract(rates + i, g.inverse_h[0], difference(i));
+      return;
+    }
+    const double* inverse_extent = g.row(0, c == 0 ? AxisRow::inverse_gap : AxisRow::inverse_width);
+    for (int i = 0; i < g.n[0]; i += lanes)
+      subtract(rates + i, Access::load(inverse_extent + i), difference(i));
   }
 
   /// Fluxes of all components through the low faces along d of `count` control volumes of a row.
@@ -163,6 +192,10 @@ struct MomentumRowsFunctor {
     for (int c = 0; c < 3; ++c) {
       const double *carried = u + c * g.component + at, *carrier = u + d * g.component + at;
       const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
+      if constexpr (is_stretched) {
+        stretched_fluxes(c, d, {0, j, k}, count, carried, carrier, rows + c * length);
+        continue;
+      }
       for (int i = 0; i < count; i += lanes)
         Access::store(rows + c * length + i,
                       momentum_flux<scheme, R>(carried + i, carrier + i, stride_c, g.stride[d],
@@ -170,18 +203,40 @@ struct MomentumRowsFunctor {
     }
   }
 
+  /// Those of one component, of control volumes from `first` on.
+  void stretched_fluxes(int c, int d, const int (&first)[3], int count, const double* carried,
+                        const double* carrier, double* row) const {
+    const MacGrid& g = setup.grid;
+    const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
+    const bool is_skewed = c != d && g.is_stretched(c), varies_along_row = d == 0 && g.is_stretched(0);
+    const R skew_of_row = is_skewed ? g.skew(c, first[c]) : 0.0,
+            step_of_row = setup.nu * g.inverse_step(c, d, first[d]);
+    const double* inverse_step = !varies_along_row ? nullptr
+                                 : c == 0          ? g.row(0, AxisRow::inverse_width) - 1
+                                                   : g.row(0, AxisRow::inverse_gap);
+    const double* skew = is_skewed && c == 0 ? g.row(0, AxisRow::skew) : nullptr;
+    for (int i = 0; i < count; i += lanes)
+      Access::store(row + i,
+                    momentum_flux<scheme, R>(
+                        carried + i, carrier + i, stride_c, g.stride[d],
+                        inverse_step != nullptr ? setup.nu * Access::load(inverse_step + i) : step_of_row,
+                        R(setup.epsilon), skew != nullptr ? Access::load(skew + i) : skew_of_row));
+  }
+
   /// Subtracts the difference of the fluxes at the row (j, k) and those kept in `kept`, and keeps the new
   /// ones.
-  void add_difference(int d, int j, int k, double inverse_h, int length, double* kept, double* work,
-                      double* rates) const {
+  void add_difference(int d, int j, int k, int length, double* kept, double* work, double* rates) const {
     const MacGrid& g = setup.grid;
     fluxes(d, j, k, g.n[0], work);
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; ++c) {
+      const double inverse_extent =
+          is_stretched ? g.inverse_extent(c, d, (d == 1 ? j : k) - 1) : g.inverse_h[d];
       for (int i = 0; i < g.n[0]; i += lanes) {
         const R high = Access::load(work + c * length + i);
-        subtract(rates + c * length + i, inverse_h, high - Access::load(kept + c * length + i));
+        subtract(rates + c * length + i, inverse_extent, high - Access::load(kept + c * length + i));
         Access::store(kept + c * length + i, high);
       }
+    }
   }
 
   void finish_row(std::int64_t place, double* rates, const StageFactors& factors) const {
@@ -208,19 +263,19 @@ struct MomentumRowsFunctor {
 };
 
 /// Enqueues a momentum stage. Asynchronous.
-template <Advection scheme, bool adams_bashforth, class ExecutionSpace>
+template <Advection scheme, bool adams_bashforth, bool is_stretched, class ExecutionSpace>
 void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) {
   const MacGrid& g = setup.grid;
   const auto parts = [](int n, int size) { return (n + size - 1) / size; };
   if constexpr (device::is_host<ExecutionSpace>) {
-    using Functor = MomentumRowsFunctor<ExecutionSpace, scheme, adams_bashforth>;
+    using Functor = MomentumRowsFunctor<ExecutionSpace, scheme, adams_bashforth, is_stretched>;
     const int planes = parts(g.n[2], space.concurrency());
     const int slabs = parts(g.n[2], planes);
     auto policy = typename Functor::Policy(space, slabs, 1)
                       .set_scratch_size(1, Kokkos::PerTeam(Functor::scratch_bytes(g)));
     device::launch_teams("drogue::flow::momentum", policy, Functor{setup, slabs, planes});
   } else {
-    using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth>;
+    using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth, is_stretched>;
     const int tiles_x = parts(g.n[0], tile_x), tiles_y = parts(g.n[1], setup.rows);
     const int planes = momentum_planes(scheme, tiles_x * tiles_y, g.n[2]);
     const typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes),
@@ -229,17 +284,18 @@ void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionS
   }
 }
 
-template <class ExecutionSpace>
-void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
-                       Advection advection) {
+/// Enqueues a momentum stage on a grid with stretched axes, or without.
+template <bool is_stretched, class ExecutionSpace>
+void choose_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                     Advection advection) {
   const auto launch = [&]<bool adams_bashforth>() {
     switch (advection) {
       case Advection::central:
-        return launch_momentum<Advection::central, adams_bashforth>(space, setup);
+        return launch_momentum<Advection::central, adams_bashforth, is_stretched>(space, setup);
       case Advection::weno_js:
-        return launch_momentum<Advection::weno_js, adams_bashforth>(space, setup);
+        return launch_momentum<Advection::weno_js, adams_bashforth, is_stretched>(space, setup);
       case Advection::weno_z:
-        return launch_momentum<Advection::weno_z, adams_bashforth>(space, setup);
+        return launch_momentum<Advection::weno_z, adams_bashforth, is_stretched>(space, setup);
     }
   };
   setup.weights.adams_bashforth ? launch.template operator()<true>() : launch.template operator()<false>();

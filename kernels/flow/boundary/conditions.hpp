@@ -131,7 +131,8 @@ struct BoundaryTableFunctor {
       for (int i = 0; i < 2; ++i) {
         const bool is_next = (corner >> i) % 2 == 1;
         weight *= is_next ? support[i].weight : 1.0 - support[i].weight;
-        point[at.axis[i]] = coordinate(at.axis[i], component, support[i].index + (is_next ? 1 : 0));
+        point[at.axis[i]] =
+            g.coordinate(at.axis[i], support[i].index + (is_next ? 1 : 0), component == at.axis[i]);
       }
       if (weight == 0.0) continue;
       const device::ExpressionProgram& program = programs(static_cast<std::size_t>(component));
@@ -146,14 +147,6 @@ struct BoundaryTableFunctor {
     if (stage.initial || stage.fraction < 1.0 || g.n[component] == 1 || !at.is_beside_cell(g)) return;
     raise(c.side_acceleration[component],
           Kokkos::bit_cast<std::uint64_t>(change * g.inverse_h[component] / c.trial.dt));
-  }
-
- private:
-  /// Coordinate of a component along an axis, m. The last face lies on the side, without round-off.
-  [[nodiscard]] KOKKOS_FUNCTION double coordinate(int axis, int component, int index) const {
-    const MacGrid& g = grid;
-    if (component == axis && index == g.whole[axis]) return g.high[axis];
-    return g.low[axis] + (index + (component == axis ? 0.0 : 0.5)) * g.h[axis];
   }
 };
 

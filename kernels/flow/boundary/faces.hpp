@@ -26,8 +26,16 @@ struct BoundaryFacesFunctor {
   int side_faces[6];  ///< 0 for periodic sides and neighbours
 
   KOKKOS_FUNCTION void operator()(int face) const {
-    const Control& control = setup.control();
-    if (control.trial.stop != stepping::Stop::running) return;
+    if (setup.control().trial.stop != stepping::Stop::running) return;
+    if (setup.grid.is_stretched())
+      predict(setup.grid, face);
+    else
+      predict(UniformWidths{setup.grid}, face);
+  }
+
+ private:
+  template <class Widths>
+  KOKKOS_FUNCTION void predict(const Widths& widths, int face) const {
     const MacGrid& g = setup.grid;
     int side = 0;
     while (face >= side_faces[side]) face -= side_faces[side++];
@@ -38,16 +46,15 @@ struct BoundaryFacesFunctor {
     cell[a] = face % g.n[a];
     cell[b] = face / g.n[a];
     if (boundary.kind[side] == BoundaryKind::outflow) {
-      const StageFactors factors = stage_factors(setup, control);
-      advance_outflow(side, cell, factors);
-      carry_in(side, cell, factors);
+      const StageFactors factors = stage_factors(setup, setup.control());
+      advance_outflow(widths, side, cell, factors);
+      carry_in(widths, side, cell, factors);
     } else {
       setup.out(place_of(side, cell)) =
           boundary.kind[side] == BoundaryKind::slip ? 0.0 : boundary.value(g, side, axis, cell);
     }
   }
 
- private:
   /// Place of the face of a cell on a side.
   [[nodiscard]] KOKKOS_FUNCTION std::int64_t place_of(int side, const int cell[3]) const {
     const MacGrid& g = setup.grid;
@@ -55,7 +62,9 @@ struct BoundaryFacesFunctor {
     return axis * g.component + g.offset(cell[0], cell[1], cell[2]) + (side % 2) * g.stride[axis];
   }
 
-  KOKKOS_FUNCTION void advance_outflow(int side, const int cell[3], const StageFactors& f) const {
+  template <class Widths>
+  KOKKOS_FUNCTION void advance_outflow(const Widths& widths, int side, const int cell[3],
+                                       const StageFactors& f) const {
     const MacGrid& g = setup.grid;
     const int axis = side / 2;
     const bool high = side % 2 == 1;
@@ -64,13 +73,14 @@ struct BoundaryFacesFunctor {
     const double inner = setup.stage(place + inward), mean = 0.5 * (value + inner);
     // Where fluid enters, upwind advection has nothing to carry from inside, and central fluxes have a mean.
     const double speed = outward > 0.0 ? outward : upwind ? 0.0 : high ? mean : -mean;
-    double rate = setup.acceleration[axis] - speed * g.inverse_h[axis] * (value - inner);
+    const double inverse_width = widths.inverse_width(axis, cell[axis]);
+    double rate = setup.acceleration[axis] - speed * inverse_width * (value - inner);
     if (outward < 0.0) {
-      const double push = 2.0 * g.inverse_h[axis] * entering_pressure(side, outward);
+      const double push = 2.0 * inverse_width * entering_pressure(side, outward);
       rate += high ? -push : push;
     }
     for (int end = 0; end < 6; ++end)
-      if (end / 2 != axis && g.n[end / 2] > 1) rate += advection_from(end, side, cell, value);
+      if (end / 2 != axis && g.n[end / 2] > 1) rate += advection_from(widths, end, side, cell, value);
     double next = value + f.rate * rate;
     if (setup.weights.adams_bashforth) {
       const std::int64_t kept = high ? place : place - g.stride[axis];
@@ -94,15 +104,17 @@ struct BoundaryFacesFunctor {
 
   /// Rate of change of the normal velocity on a side by advection along the side, m/s^2, through the end
   /// `end` (numbered as sides) of the cell.
-  [[nodiscard]] KOKKOS_FUNCTION double advection_from(int end, int side, const int cell[3],
-                                                      double value) const {
+  template <class Widths>
+  [[nodiscard]] KOKKOS_FUNCTION double advection_from(const Widths& widths, int end, int side,
+                                                      const int cell[3], double value) const {
     const MacGrid& g = setup.grid;
     const std::int64_t outward = (end % 2 == 1 ? 1 : -1) * g.stride[end / 2];
     const double speed = setup.stage(place_of(end, cell)), inward = end % 2 == 1 ? -speed : speed;
+    const double inverse_width = widths.inverse_width(end / 2, cell[end / 2]);
     if (is_beside_outflow(end, cell))
-      return inward > 0.0 ? inward * g.inverse_h[end / 2] * (boundary.velocity[end][side / 2] - value) : 0.0;
+      return inward > 0.0 ? inward * inverse_width * (boundary.velocity[end][side / 2] - value) : 0.0;
     const double weight = !upwind ? 0.5 * inward : inward > 0.0 ? inward : 0.0;
-    return weight * g.inverse_h[end / 2] * (setup.stage(place_of(side, cell) + outward) - value);
+    return weight * inverse_width * (setup.stage(place_of(side, cell) + outward) - value);
   }
 
   /// True for the outermost cells beside an outflow.
@@ -114,7 +126,9 @@ struct BoundaryFacesFunctor {
 
   /// Replaces the tangential momentum that enters the control volumes at the low faces of a cell. That at an
   /// edge between outflows is treated once, for all of them.
-  KOKKOS_FUNCTION void carry_in(int side, const int cell[3], const StageFactors& f) const {
+  template <class Widths>
+  KOKKOS_FUNCTION void carry_in(const Widths& widths, int side, const int cell[3],
+                                const StageFactors& f) const {
     const MacGrid& g = setup.grid;
     for (int c = 0; c < 3; ++c) {
       if (c == side / 2 || (cell[c] == 0 && side_faces[2 * c] > 0)) continue;
@@ -123,7 +137,7 @@ struct BoundaryFacesFunctor {
       for (int other = 0; other < 6; ++other) {
         if (other / 2 == c || !is_beside_outflow(other, cell)) continue;
         is_first = is_first && other >= side;
-        rate += carried_rate(other, c, cell);
+        rate += carried_rate(widths, other, c, cell);
       }
       if (!is_first || rate == 0.0) continue;
       const std::int64_t place = c * g.component + g.offset(cell[0], cell[1], cell[2]);
@@ -134,13 +148,17 @@ struct BoundaryFacesFunctor {
 
   /// Change of the rate of component c, m/s^2, where fluid enters its control volume through a side: with the
   /// velocity outside in place of that inside.
-  [[nodiscard]] KOKKOS_FUNCTION double carried_rate(int side, int c, const int cell[3]) const {
+  template <class Widths>
+  [[nodiscard]] KOKKOS_FUNCTION double carried_rate(const Widths& widths, int side, int c,
+                                                    const int cell[3]) const {
     const MacGrid& g = setup.grid;
     const std::int64_t face = place_of(side, cell), before = face - (g.n[c] > 1 ? g.stride[c] : 0);
-    const double mean = 0.5 * (setup.stage(before) + setup.stage(face));
+    double mean = 0.5 * (setup.stage(before) + setup.stage(face));
+    if constexpr (!Widths::are_equal) mean += g.skew(c, cell[c]) * (setup.stage(face) - setup.stage(before));
     const double outward = side % 2 == 1 ? mean : -mean;
     const double inside = setup.stage(c * g.component + g.offset(cell[0], cell[1], cell[2]));
-    return outward < 0.0 ? -outward * g.inverse_h[side / 2] * (boundary.velocity[side][c] - inside) : 0.0;
+    const double inverse_width = widths.inverse_width(side / 2, cell[side / 2]);
+    return outward < 0.0 ? -outward * inverse_width * (boundary.velocity[side][c] - inside) : 0.0;
   }
 };
 
@@ -148,7 +166,7 @@ struct BoundaryFacesFunctor {
 template <class ExecutionSpace>
 void launch_boundary_faces(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                            const BoundaryConditions<ExecutionSpace>& boundary, Advection advection) {
-  BoundaryFacesFunctor<ExecutionSpace> functor{setup, boundary, advection != Advection::central, {}};
+  BoundaryFacesFunctor<ExecutionSpace> functor{setup, boundary, is_upwind(advection), {}};
   const MacGrid& g = setup.grid;
   int total = 0;
   for (int side = 0; side < 6; ++side) {

@@ -22,21 +22,24 @@ bool depends_on(const device::ExpressionProgram& program, Operation variable) {
 }
 
 /// Coordinates along an axis at which a component is sampled, m.
-std::vector<double> places(const MacGrid& grid, int axis, int component, bool depends) {
+std::vector<double> places(const Parameters& p, const MacGrid& grid, int axis, int component, bool depends) {
   constexpr int most = 9;
-  const double offset = axis == component ? 0.0 : 0.5;
+  const bool on_faces = axis == component;
   const int cells = grid.whole[axis], count = depends ? std::min(cells, most) : 1;
   std::vector<double> result;
   for (int i = 0; i < count; ++i) {
     const int index =
         count == 1 ? 0 : static_cast<int>(static_cast<std::int64_t>(i) * (cells - 1) / (count - 1));
-    result.push_back(grid.low[axis] + (index + offset) * grid.h[axis]);
+    const auto a = static_cast<std::size_t>(axis);
+    result.push_back(!is_stretched(p, a) ? grid.coordinate(axis, index, on_faces)
+                     : on_faces          ? face_coordinate(p, a, index)
+                                         : centre_coordinate(p, a, index));
   }
   return result;
 }
 
 /// Points at which a component of the velocity of a side is sampled, m.
-std::vector<std::array<double, 3>> points(const MacGrid& grid, int side, int component,
+std::vector<std::array<double, 3>> points(const Parameters& p, const MacGrid& grid, int side, int component,
                                           const device::ExpressionProgram& program) {
   const Operation variables[] = {Operation::x, Operation::y, Operation::z};
   std::array<std::vector<double>, 3> along;
@@ -45,7 +48,7 @@ std::vector<std::array<double, 3>> points(const MacGrid& grid, int side, int com
     if (axis == side / 2)
       along[a] = {side % 2 == 0 ? grid.low[axis] : grid.high[axis]};
     else
-      along[a] = places(grid, axis, component, depends_on(program, variables[axis]));
+      along[a] = places(p, grid, axis, component, depends_on(program, variables[axis]));
   }
   std::vector<std::array<double, 3>> result;
   for (const double z : along[2])
@@ -54,13 +57,13 @@ std::vector<std::array<double, 3>> points(const MacGrid& grid, int side, int com
   return result;
 }
 
-std::vector<stepping::MotionInterval> motion_of(const MacGrid& grid, int side, const Boundary& boundary,
-                                                double horizon) {
+std::vector<stepping::MotionInterval> motion_of(const Parameters& parameters, const MacGrid& grid, int side) {
+  const Boundary& boundary = parameters.boundary[static_cast<std::size_t>(side)];
   std::array<std::vector<std::array<double, 3>>, 3> at;
   stepping::PrescribedMotion motion;
   for (int c = 0; c < 3; ++c) {
     const auto component = static_cast<std::size_t>(c);
-    at[component] = points(grid, side, c, boundary.velocity_expressions[component]);
+    at[component] = points(parameters, grid, side, c, boundary.velocity_expressions[component]);
     motion.values += at[component].size();
   }
   // Velocities over cell widths, so that a rate is their sum; those along an axis of one cell have none.
@@ -82,7 +85,7 @@ std::vector<stepping::MotionInterval> motion_of(const MacGrid& grid, int side, c
     return rate;
   };
   motion.times = stepping::constants_of(boundary.velocity_expressions);
-  return stepping::motion_intervals(motion, horizon);
+  return stepping::motion_intervals(motion, parameters.horizon);
 }
 
 }  // namespace
@@ -94,7 +97,7 @@ std::vector<stepping::MotionInterval> side_motion(const Parameters& parameters) 
   for (int side = 0; side < 6; ++side) {
     const Boundary& boundary = parameters.boundary[static_cast<std::size_t>(side)];
     if (std::ranges::any_of(boundary.velocity_expressions, changes_in_time))
-      result = stepping::merged(result, motion_of(grid, side, boundary, parameters.horizon));
+      result = stepping::merged(result, motion_of(parameters, grid, side));
   }
   return result;
 }

@@ -18,7 +18,7 @@ namespace drogue::flow {
 
 /// Laplacian of the change of a velocity component in a step, at the faces inside the domain. The change is
 /// zero on sides with a prescribed velocity, after known changes have moved to the right-hand side; its
-/// normal derivative is zero on slip sides and outflows. Does not throw.
+/// normal derivative is zero on slip sides and outflows. Throws std::bad_alloc.
 inline linear::PoissonProblem diffusion_problem(const Parameters& parameters, std::size_t component) {
   linear::PoissonProblem problem;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -31,7 +31,10 @@ inline linear::PoissonProblem diffusion_problem(const Parameters& parameters, st
     };
     problem.cells[axis] = parameters.cells[axis] - (on_faces ? 1 : 0);
     problem.spacing[axis] = (parameters.high[axis] - parameters.low[axis]) / parameters.cells[axis];
-    problem.axes[axis] = {periodic, end(2 * axis), end(2 * axis + 1), on_faces};
+    problem.widths[axis] = widths(parameters, axis);
+    // Without widths, unknowns on periodic faces have the equation of those at centres.
+    const bool on_periodic_faces = axis == component && periodic && is_stretched(parameters, axis);
+    problem.axes[axis] = {periodic, end(2 * axis), end(2 * axis + 1), on_faces || on_periodic_faces};
   }
   return problem;
 }
@@ -104,15 +107,20 @@ struct DiffusionSourceFunctor {
     Control& control = setup.control();
     if (control.trial.stop != stepping::Stop::running) return;
     Maxima maxima;
+    const MacGrid& g = setup.grid;
     for (int k = march.begin(part); k < march.end(part); ++k)
-      source[march.offset(i, j, k)] = source_at({i, j, k}, control.trial.dt, maxima);
+      source[march.offset(i, j, k)] = g.is_stretched()
+                                          ? source_at(g, {i, j, k}, control.trial.dt, maxima)
+                                          : source_at(UniformWidths{g}, {i, j, k}, control.trial.dt, maxima);
     raise(control.viscous_acceleration, maxima.viscous_acceleration);
     raise(control.highest[component], maxima.highest);
     raise(control.lowest[component], maxima.lowest);
   }
 
  private:
-  [[nodiscard]] KOKKOS_FUNCTION double source_at(const int (&unknown)[3], double dt, Maxima& maxima) const {
+  template <class Widths>
+  [[nodiscard]] KOKKOS_FUNCTION double source_at(const Widths& widths, const int (&unknown)[3], double dt,
+                                                 Maxima& maxima) const {
     const MacGrid& g = setup.grid;
     int index[3] = {unknown[0], unknown[1], unknown[2]};
     index[component] += setup.first_unknown(component);
@@ -122,9 +130,16 @@ struct DiffusionSourceFunctor {
     for (int axis = 0; axis < 3; ++axis) {
       if (g.n[axis] == 1) continue;
       const std::int64_t stride = g.stride[axis];
-      const double w = g.inverse_h[axis] * g.inverse_h[axis];
+      const int i = index[axis];
+      const double extent = widths.inverse_extent(component, axis, i),
+                   step_low = widths.inverse_step(component, axis, i),
+                   step_high = widths.inverse_step(component, axis, i + 1);
+      const double w_low = extent * step_low, w_high = extent * step_high;
       const double below = u[-stride], above = u[stride];
-      laplacian += w * ((above - u[0]) - (u[0] - below));
+      if constexpr (Widths::are_equal)
+        laplacian += w_low * ((above - u[0]) - (u[0] - below));
+      else
+        laplacian += extent * (step_high * (above - u[0]) - step_low * (u[0] - below));
       // Half of these differences lead to the values on sides.
       const double sides[2] = {u[0] + 0.5 * (below - u[0]), u[0] + 0.5 * (above - u[0])};
       for (const double value : sides) {
@@ -133,14 +148,14 @@ struct DiffusionSourceFunctor {
       }
       if (g.periodic[axis]) continue;
       if (axis == component) {
-        if (index[axis] == 1 && setup.is_side(2 * axis))
-          change += w * normal_change(2 * axis, index, place - stride, dt);
-        if (index[axis] + 1 == g.n[axis] && setup.is_side(2 * axis + 1))
-          change += w * normal_change(2 * axis + 1, index, place + stride, dt);
+        if (i == 1 && setup.is_side(2 * axis))
+          change += w_low * normal_change(2 * axis, index, place - stride, dt);
+        if (i + 1 == g.n[axis] && setup.is_side(2 * axis + 1))
+          change += w_high * normal_change(2 * axis + 1, index, place + stride, dt);
       } else {
-        if (index[axis] == 0) change += 2.0 * w * tangential_change(2 * axis, index, place, -stride);
-        if (index[axis] + 1 == g.n[axis])
-          change += 2.0 * w * tangential_change(2 * axis + 1, index, place, stride);
+        if (i == 0) change += 2.0 * w_low * tangential_change(2 * axis, index, place, -stride);
+        if (i + 1 == g.n[axis])
+          change += 2.0 * w_high * tangential_change(2 * axis + 1, index, place, stride);
       }
     }
     // Bits, which let NaN prevail.
@@ -161,11 +176,11 @@ struct DiffusionSourceFunctor {
     const double here = pressure_at(index[0], index[1], index[2]);
     const double* other_rank = setup.pressure_below[component];
     if (index[component] == 0 && other_rank != nullptr)
-      return g.inverse_h[component] *
+      return g.inverse_gap(component, 0) *
              (here - other_rank[index[0] + g.n[0] * (component == 1 ? index[2] : index[1])]);
     int below[3] = {index[0], index[1], index[2]};
     below[component] = (index[component] == 0 ? g.n[component] : index[component]) - 1;
-    return g.inverse_h[component] * (here - pressure_at(below[0], below[1], below[2]));
+    return g.inverse_gap(component, index[component]) * (here - pressure_at(below[0], below[1], below[2]));
   }
   /// Change of the normal velocity on a side in this step, m/s, next to the unknown `index`.
   [[nodiscard]] KOKKOS_FUNCTION double normal_change(int side, const int index[3], std::int64_t face,
@@ -174,7 +189,8 @@ struct DiffusionSourceFunctor {
       int cell[3] = {index[0], index[1], index[2]};
       if (side % 2 == 0) --cell[component];
       // The pressure on the side is zero until the projection.
-      const double gradient = 2.0 * setup.grid.inverse_h[component] * pressure_at(cell[0], cell[1], cell[2]);
+      const double gradient =
+          2.0 * setup.grid.inverse_width(component, cell[component]) * pressure_at(cell[0], cell[1], cell[2]);
       setup.predicted(face) -= dt * (side % 2 == 0 ? gradient : -gradient);
     }
     return setup.predicted(face) - setup.velocity(face);

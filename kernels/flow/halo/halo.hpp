@@ -153,6 +153,7 @@ class Halo {
   static void cut(MacGrid& grid, int axis, int begin, int count) {
     grid.first += begin * grid.stride[axis];
     grid.origin[axis] += begin;
+    if (grid.is_stretched(axis)) grid.table[axis] += begin;
     grid.n[axis] = count;
   }
 

@@ -29,7 +29,8 @@ KOKKOS_INLINE_FUNCTION void add_step(Extremes& extremes, std::int64_t step, doub
   e.energy = energy;
 }
 
-/// Kinetic energy per mass, summed over cells, and the largest squared speed at their centres, m^2/s^2.
+/// Kinetic energy per mass, summed over cells by their volumes over that of one of widths `MacGrid::h`, and
+/// the largest squared speed at their centres, m^2/s^2.
 template <class ExecutionSpace>
 using EnergyView = Kokkos::View<double* [2], Kokkos::LayoutRight, typename ExecutionSpace::memory_space>;
 
@@ -44,14 +45,26 @@ struct RowEnergyFunctor {
   EnergyView<ExecutionSpace> parts;
 
   KOKKOS_FUNCTION void operator()(const int index) const {
+    if (grid.is_stretched())
+      add_row(grid, index);
+    else
+      add_row(UniformWidths{grid}, index);
+  }
+
+ private:
+  template <class Widths>
+  KOKKOS_FUNCTION void add_row(const Widths& widths, const int index) const {
     const int part = index * width, first = part % lanes, row = part / lanes;
-    const double* u = velocity.data() + grid.offset(0, row % grid.n[1], row / grid.n[1]);
+    const int j = row % grid.n[1], k = row / grid.n[1];
+    const double* u = velocity.data() + grid.offset(0, j, k);
+    const double area = widths.relative_width(1, j) * widths.relative_width(2, k);
     double sum[width] = {}, largest[width] = {};
     int i = first;
     for (; i + width <= grid.n[0]; i += lanes)
-      for (int lane = 0; lane < width; ++lane) add(u + i + lane, sum[lane], largest[lane]);
+      for (int lane = 0; lane < width; ++lane)
+        add(u + i + lane, area * widths.relative_width(0, i + lane), sum[lane], largest[lane]);
     for (int lane = 0; i + lane < grid.n[0] && lane < width; ++lane)
-      add(u + i + lane, sum[lane], largest[lane]);
+      add(u + i + lane, area * widths.relative_width(0, i + lane), sum[lane], largest[lane]);
     for (int lane = 0; lane < width; ++lane) {
       const auto at = static_cast<std::size_t>(part + lane);
       parts(at, 0) = sum[lane];
@@ -59,12 +72,11 @@ struct RowEnergyFunctor {
     }
   }
 
- private:
-  KOKKOS_FUNCTION void add(const double* u, double& sum, double& largest) const {
+  KOKKOS_FUNCTION void add(const double* u, double volume, double& sum, double& largest) const {
     double energy = 0.0, squared_speed = 0.0;
     for (int c = 0; c < 3; ++c)
       add_energy(u[c * grid.component], u[c * grid.component + edge_step(grid, c)], energy, squared_speed);
-    sum += energy;
+    sum += volume * energy;
     largest = larger_or_nan(largest, squared_speed);
   }
 };

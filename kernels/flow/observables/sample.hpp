@@ -36,7 +36,7 @@ struct SampleFunctor {
         break;
       case CellField::vorticity: {
         double d[3][3];
-        centred_gradient(g, u, d);
+        centred_gradient(g, u, {i, j, k}, d);
         for (int c = 0; c < 3; ++c) out[c] = d[(c + 2) % 3][(c + 1) % 3] - d[(c + 1) % 3][(c + 2) % 3];
         break;
       }
@@ -46,7 +46,7 @@ struct SampleFunctor {
         break;
       case CellField::q_criterion: {
         double d[3][3], sum = 0.0;
-        centred_gradient(g, u, d);
+        centred_gradient(g, u, {i, j, k}, d);
         for (int a = 0; a < 3; ++a)
           for (int b = 0; b < 3; ++b) sum -= 0.5 * d[a][b] * d[b][a];
         out[0] = sum;

@@ -49,7 +49,8 @@ KOKKOS_INLINE_FUNCTION void add_energy(double low, double high, double& energy, 
   squared_speed += mean * mean;
 }
 
-/// Contributions of the cells of a column along z, in order, per unit density and cell volume.
+/// Contributions of the cells of a column along z, in order, per unit density and volume of a cell with the
+/// widths `MacGrid::h`.
 template <class ExecutionSpace>
 struct ColumnTotalsFunctor {
   MacGrid grid;
@@ -57,19 +58,32 @@ struct ColumnTotalsFunctor {
   TotalsView<ExecutionSpace> columns;
 
   KOKKOS_FUNCTION void operator()(const int column) const {
+    if (grid.is_stretched())
+      add_column(grid, column);
+    else
+      add_column(UniformWidths{grid}, column);
+  }
+
+ private:
+  template <class Widths>
+  KOKKOS_FUNCTION void add_column(const Widths& widths, const int column) const {
     const MacGrid& g = grid;
     double sum[total_count] = {};
     for (int k = 0; k < g.n[2]; ++k) {
       double own[total_count];
-      of_cell(velocity.data() + g.offset(column % g.n[0], column / g.n[0], k), own);
+      const int cell[3] = {column % g.n[0], column / g.n[0], k};
+      of_cell(widths, velocity.data() + g.offset(cell[0], cell[1], cell[2]), cell, own);
+      const double volume = widths.relative_volume(cell[0], cell[1], cell[2]);
+      for (int q = 0; q < total_sums; ++q) own[q] *= volume;
       combine_totals(sum, own);
     }
     for (int q = 0; q < total_count; ++q)
       columns(static_cast<std::size_t>(column), static_cast<std::size_t>(q)) = sum[q];
   }
 
- private:
-  KOKKOS_FUNCTION void of_cell(const double* u, double own[total_count]) const {
+  template <class Widths>
+  KOKKOS_FUNCTION void of_cell(const Widths& widths, const double* u, const int (&cell)[3],
+                               double own[total_count]) const {
     const MacGrid& g = grid;
     double energy = 0.0, squared_speed = 0.0, squared_vorticity = 0.0, squared_strain = 0.0, divergence = 0.0;
     for (int c = 0; c < 3; ++c) {
@@ -77,14 +91,15 @@ struct ColumnTotalsFunctor {
                    mean = 0.5 * (low + high);
       add_energy(low, high, energy, squared_speed);
       own[total_momentum_x + c] = mean;
-      const double diagonal = staggered_derivative(g, u, c, c);
+      const double diagonal = staggered_derivative(g, widths, u, c, c, cell[c]);
       divergence += diagonal;
       squared_strain += diagonal * diagonal;
       // Mean of the squares at the four edges parallel to axis c.
       const int a = (c + 1) % 3, b = (c + 2) % 3;
       for (int edge = 0; edge < 4; ++edge) {
         const double* at = u + (edge % 2) * edge_step(g, a) + (edge / 2) * edge_step(g, b);
-        const double ba = staggered_derivative(g, at, b, a), ab = staggered_derivative(g, at, a, b);
+        const double ba = staggered_derivative(g, widths, at, b, a, cell[a] + edge % 2),
+                     ab = staggered_derivative(g, widths, at, a, b, cell[b] + edge / 2);
         squared_vorticity += 0.25 * (ba - ab) * (ba - ab);
         squared_strain += 0.125 * (ba + ab) * (ba + ab);
       }
@@ -117,7 +132,8 @@ struct PlaneTotalsFunctor {
   }
 };
 
-/// Sum of the normal velocity over a row of faces of each bounded side, outwards, m/s.
+/// Sum of the normal velocity over a row of faces of each bounded side, outwards, by their areas over that of
+/// a face of widths `MacGrid::h`, m/s.
 template <class ExecutionSpace>
 struct OutflowRowsFunctor {
   MacGrid grid;
@@ -137,6 +153,7 @@ struct OutflowRowsFunctor {
       for (int i = 0; i < g.n[a]; ++i) {
         index[a] = i;
         sum +=
+            g.relative_width(a, i) * g.relative_width(b, row) *
             velocity(static_cast<std::size_t>(axis * g.component + g.offset(index[0], index[1], index[2])));
       }
     }
@@ -147,7 +164,7 @@ struct OutflowRowsFunctor {
 /// Sums over the cells of a rank.
 struct PartTotals {
   double sum[total_count] = {};  ///< contributions of the cells
-  double outflow[6] = {};        ///< normal velocity outwards, m/s, summed over the faces of each side
+  double outflow[6] = {};        ///< of each side, as `OutflowRowsFunctor`
 };
 
 /// Sums over a velocity field in an order that does not depend on the backend, with their scratch memory.
@@ -212,7 +229,11 @@ class TotalsSum {
 /// Totals, SI units, from the sums of all ranks; step, time and dt are left out. Does not throw.
 inline Totals make_totals(const PartTotals& whole, const Parameters& parameters, const MacGrid& grid) {
   const double volume = grid.h[0] * grid.h[1] * grid.h[2], mass = parameters.density * volume;
-  const double cells = static_cast<double>(grid.whole[0]) * grid.whole[1] * grid.whole[2];
+  // In cells of the widths h, as the sums.
+  double cells = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    cells *=
+        is_stretched(parameters, axis) ? (grid.high[axis] - grid.low[axis]) / grid.h[axis] : grid.whole[axis];
   Totals totals;
   totals.kinetic_energy = mass * whole.sum[total_energy];
   totals.enstrophy = volume * whole.sum[total_enstrophy];

@@ -42,18 +42,19 @@ struct NetInflowFunctor {
           boundary.kind[side] == BoundaryKind::wall || boundary.kind[side] == BoundaryKind::inflow;
       if (!is_prescribed || grid.n[axis] == 1) continue;
       const int a = boundary.first_axis(axis), b = boundary.second_axis(axis), row = grid.n[a];
-      const auto speed = [&](int entry) {
+      const auto flow = [&](int entry) {
         int index[3] = {0, 0, 0};
         index[a] = entry % row;
         index[b] = entry / row;
-        return boundary.value(grid, side, axis, index);
+        return boundary.value(grid, side, axis, index) *
+               (grid.relative_width(a, index[a]) * grid.relative_width(b, index[b]));
       };
       double sum = 0.0, sum_of_magnitudes = 0.0;
       const auto faces = Kokkos::TeamThreadRange(member, row * grid.n[b]);
       Kokkos::parallel_reduce(
-          faces, [&](const int entry, double& part) { part += speed(entry); }, sum);
+          faces, [&](const int entry, double& part) { part += flow(entry); }, sum);
       Kokkos::parallel_reduce(
-          faces, [&](const int entry, double& part) { part += Kokkos::fabs(speed(entry)); },
+          faces, [&](const int entry, double& part) { part += Kokkos::fabs(flow(entry)); },
           sum_of_magnitudes);
       const double area = grid.h[a] * grid.h[b];
       net += (side % 2 == 0 ? area : -area) * sum;

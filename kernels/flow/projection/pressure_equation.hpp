@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "kernels/flow/axis_lines.hpp"
 #include "kernels/flow/parameters.hpp"
 #include "kernels/flow/prefers_transforms.hpp"
 #include "kernels/flow/state.hpp"
@@ -20,7 +21,7 @@
 namespace drogue::flow {
 
 /// Pressure equation of a flow: zero normal derivative of the pressure on sides with a prescribed normal
-/// velocity, zero pressure on outflows. Does not throw.
+/// velocity, zero pressure on outflows. Throws std::bad_alloc.
 inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
   linear::PoissonProblem problem;
   problem.cells = parameters.cells;
@@ -32,6 +33,7 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
     problem.spacing[axis] = (parameters.high[axis] - parameters.low[axis]) / parameters.cells[axis];
     problem.axes[axis] = {parameters.boundary[2 * axis].kind == BoundaryKind::periodic, end(2 * axis),
                           end(2 * axis + 1)};
+    problem.widths[axis] = widths(parameters, axis);
   }
   return problem;
 }

@@ -63,7 +63,7 @@ struct DivergenceFunctor {
       const std::int64_t next = g.periodic[axis] && index[axis] + 1 == g.n[axis]
                                     ? (1 - g.n[axis]) * g.stride[axis]
                                     : g.stride[axis];
-      divergence += g.inverse_h[axis] * (low[next] - low[0]);
+      divergence += g.inverse_width(axis, index[axis]) * (low[next] - low[0]);
     }
     const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
     if (!(Kokkos::fabs(divergence) < 1e100))
@@ -74,7 +74,7 @@ struct DivergenceFunctor {
 
 /// Subtracts the pressure gradient; reduces the maximum of |u|/hx + |v|/hy + |w|/hz, without axes of one
 /// cell. The velocities are those on the low faces of a cell, and on the larger of both faces beside a high
-/// side, so that each face counts.
+/// side, so that each face counts. The width is the lesser one of the cells on both sides of a face.
 template <class ExecutionSpace>
 struct CorrectionFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
@@ -142,11 +142,11 @@ struct CorrectionFunctor {
           below = setup.pressure_below[axis][axis == 1 ? i + g.n[0] * k : i + g.n[0] * j];
         else if (setup.is_outflow(2 * axis))
           below = -p;
-        value -= dt * g.inverse_h[axis] * (p - below);
+        value -= dt * g.inverse_gap(axis, index[axis]) * (p - below);
         if (index[axis] + 1 == g.n[axis] && !g.periodic[axis]) {
           const std::int64_t high = place + g.stride[axis];
           double last = setup.predicted(high);
-          if (setup.is_outflow(2 * axis + 1)) last += 2.0 * dt * g.inverse_h[axis] * p;
+          if (setup.is_outflow(2 * axis + 1)) last += 2.0 * dt * g.inverse_gap(axis, g.n[axis]) * p;
           setup.velocity(high) = last;
           if (!setup.is_neighbour(2 * axis + 1)) beyond = Kokkos::fabs(last);
         }
@@ -154,7 +154,10 @@ struct CorrectionFunctor {
       setup.velocity(place) = value;
       const double speed = Kokkos::fabs(value);
       // A factor of zero keeps a NaN.
-      rate += (g.n[axis] > 1 ? g.inverse_h[axis] : 0.0) * (beyond > speed ? beyond : speed);
+      if (g.is_stretched(axis))
+        rate += g.inverse_least_width(axis, index[axis]) * (beyond > speed ? beyond : speed);
+      else
+        rate += (g.n[axis] > 1 ? g.inverse_h[axis] : 0.0) * (beyond > speed ? beyond : speed);
     }
     return rate;
   }

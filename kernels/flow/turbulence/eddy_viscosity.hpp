@@ -9,8 +9,8 @@
 
 namespace drogue::flow {
 
-/// Model of unresolved scales and its constant C, with the width of the filter along each axis, m; zero along
-/// axes with one cell.
+/// Model of unresolved scales and its constant C, with the width of the filter along each axis, m, in a cell
+/// with the widths `MacGrid::h`; zero along axes with one cell.
 struct EddyModel {
   Turbulence model;
   double constant;
@@ -34,6 +34,16 @@ inline EddyModel make_eddy_model(const Parameters& parameters, const MacGrid& gr
     ++axes;
   }
   model.squared_mean_width = std::pow(product, 2.0 / axes);
+  return model;
+}
+
+/// The model in cell `index`. Does not throw.
+KOKKOS_INLINE_FUNCTION EddyModel model_in_cell(EddyModel model, const MacGrid& g, const int (&index)[3]) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!g.is_stretched(axis)) continue;
+    model.width[axis] *= g.relative_width(axis, index[axis]);
+    model.squared_mean_width *= g.row(axis, AxisRow::filter)[index[axis]];
+  }
   return model;
 }
 
@@ -109,8 +119,8 @@ struct EddyViscosityFunctor {
     if (c.trial.stop != stepping::Stop::running) return;
     const int cell[3] = {i + cells.first[0], j + cells.first[1], k + cells.first[2]};
     double gradient[3][3];
-    centred_gradient(grid, velocity.data() + grid.offset(cell[0], cell[1], cell[2]), gradient);
-    const double value = eddy_viscosity(model, gradient);
+    centred_gradient(grid, velocity.data() + grid.offset(cell[0], cell[1], cell[2]), cell, gradient);
+    const double value = eddy_viscosity(model_in_cell(model, grid, cell), gradient);
     viscosity(cells.nearest(cell)) = value;
     raise(c.eddy_viscosity, Kokkos::bit_cast<std::uint64_t>(value));
   }
@@ -129,33 +139,45 @@ struct EddyStressFunctor {
 
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
     if (control().trial.stop != stepping::Stop::running) return;
+    if (grid.is_stretched())
+      accelerate(grid, {i, j, k});
+    else
+      accelerate(UniformWidths{grid}, {i, j, k});
+  }
+
+ private:
+  template <class Widths>
+  KOKKOS_FUNCTION void accelerate(const Widths& widths, const int (&cell)[3]) const {
     const MacGrid& g = grid;
-    const int cell[3] = {i, j, k};
-    const std::int64_t place = g.offset(i, j, k);
+    const std::int64_t place = g.offset(cell[0], cell[1], cell[2]);
     const double* u = velocity.data() + place;
     for (int c = 0; c < 3; ++c) {
       double sum = 0.0;
       for (int d = 0; d < 3; ++d)
-        if (g.n[d] > 1) sum += g.inverse_h[d] * (stress(cell, u, c, d, 1) - stress(cell, u, c, d, 0));
+        if (g.n[d] > 1)
+          sum += widths.inverse_extent(c, d, cell[d]) *
+                 (stress(widths, cell, u, c, d, 1) - stress(widths, cell, u, c, d, 0));
       acceleration(static_cast<std::size_t>(c * g.component + place)) = sum;
     }
   }
 
- private:
   /// Stress 2 nu_t S_cd, m^2/s^2, on the low (0) or high (1) face along d of the control volume of component
   /// c.
-  KOKKOS_FUNCTION double stress(const int cell[3], const double* u, int c, int d, int high) const {
+  template <class Widths>
+  KOKKOS_FUNCTION double stress(const Widths& widths, const int cell[3], const double* u, int c, int d,
+                                int high) const {
     const MacGrid& g = grid;
     int at[3] = {cell[0], cell[1], cell[2]};
     if (c == d) {
       // The faces lie at the centres of the cells on both sides of the velocity.
       const int shift = high - 1;
       at[c] += shift;
-      return 2.0 * at_cell(at) * staggered_derivative(g, u + shift * g.stride[c], c, c);
+      return 2.0 * at_cell(at) * staggered_derivative(g, widths, u + shift * g.stride[c], c, c, at[c]);
     }
     at[d] += high;
     const double* edge = u + high * g.stride[d];
-    const double strain = staggered_derivative(g, edge, c, d) + staggered_derivative(g, edge, d, c);
+    const double strain = staggered_derivative(g, widths, edge, c, d, at[d]) +
+                          staggered_derivative(g, widths, edge, d, c, at[c]);
     if (strain == 0.0) return 0.0;
     double sum = 0.0;
     for (int neighbour = 0; neighbour < 4; ++neighbour) {

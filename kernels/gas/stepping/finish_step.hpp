@@ -82,10 +82,6 @@ KOKKOS_INLINE_FUNCTION void reject(Progress& now, StepTrial& trial, StepFailure&
 KOKKOS_INLINE_FUNCTION void accept(Progress& now, StepTrial& trial, StepFailure& failure,
                                    const StepResult& result, const StepConstants& k, int result_buffer,
                                    bool limited) {
-  const double dt = trial.dt;
-  now.last_dt = dt;
-  now.dt_min = now.step == 0 || dt < now.dt_min ? dt : now.dt_min;
-  now.dt_max = dt > now.dt_max ? dt : now.dt_max;
   stepping::advance_time(now, trial);
   now.current = (now.current + result_buffer) % 3;
   now.limited_faces += result.limited_faces;

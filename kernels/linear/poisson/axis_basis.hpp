@@ -19,8 +19,11 @@ struct AxisConditions {
   EndCondition low = EndCondition::neumann;   ///< not used if periodic
   EndCondition high = EndCondition::neumann;  ///< not used if periodic
   /// The n unknowns of a bounded axis are at the inner faces of n + 1 cells, not at the centres of n cells;
-  /// the outermost faces have the value zero.
+  /// the outermost faces have the value zero. Those of a periodic axis are at the low faces of n cells.
   bool on_faces = false;
+
+  /// Whether the unknowns are at the inner faces of a bounded axis. Does not throw.
+  [[nodiscard]] bool on_inner_faces() const { return on_faces && !periodic; }
 
   friend bool operator==(const AxisConditions&, const AxisConditions&) = default;
 };

@@ -8,24 +8,26 @@
 #include <vector>
 
 #include "kernels/linear/dense_product.hpp"
+#include "kernels/linear/poisson/axis_modes.hpp"
 #include "kernels/linear/poisson/spectral_scaling.hpp"
 #include "kernels/linear/poisson/tridiagonal_lines.hpp"
 
 namespace drogue::linear {
 
-/// Matrix (n * n) of the normalised eigenvectors along an axis of n cells, dimensionless, on a device. Column
-/// k holds eigenvector k. Blocks. Throws std::runtime_error if memory runs out.
+/// Matrices of `AxisModes` on a device; one View twice if they are equal.
 template <class ExecutionSpace>
-Kokkos::View<double*, typename ExecutionSpace::memory_space> eigenvector_matrix(const ExecutionSpace& space,
-                                                                                const PoissonProblem& problem,
-                                                                                std::size_t axis) {
-  const int n = problem.cells[axis];
-  std::vector<double> basis(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
-  for (int k = 0; k < n; ++k)
-    for (int i = 0; i < n; ++i)
-      basis[static_cast<std::size_t>(k) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)] =
-          axis_eigenvector(problem.axes[axis], n, k, i);
-  return to_device(space, "drogue::linear::eigenvectors", basis);
+struct AxisBasis {
+  Kokkos::View<double*, typename ExecutionSpace::memory_space> forward, backward;
+};
+
+/// Copies the matrices to a device; blocks. Throws std::runtime_error if memory runs out.
+template <class ExecutionSpace>
+AxisBasis<ExecutionSpace> to_device(const ExecutionSpace& space, const AxisModes& modes) {
+  AxisBasis<ExecutionSpace> basis;
+  basis.forward = basis.backward = to_device(space, "drogue::linear::eigenvectors", modes.forward);
+  if (!modes.backward.empty())
+    basis.backward = to_device(space, "drogue::linear::eigenvectors", modes.backward);
+  return basis;
 }
 
 /// Operators that a direct solver can invert.
@@ -37,14 +39,15 @@ enum class InvertedOperators {
 /// Direct solver by diagonalization of the second differences along each axis (Lynch, Rice and Thomas 1964):
 /// six products with dense matrices of eigenvectors, 4 (nx + ny + nz) floating-point operations per cell, for
 /// any combination of boundary conditions and any size. If only the Laplacian is inverted and z has ends,
-/// tridiagonal systems along z take the place of two products.
+/// tridiagonal systems along z take the place of two products. The volumes of cells weigh the mean of a
+/// singular problem.
 template <class ExecutionSpace>
 class DiagonalizationSolver {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
   /// Allocates the matrices and one work array, and one more for the tridiagonal systems; blocks. Throws
-  /// std::runtime_error if memory runs out.
+  /// std::invalid_argument for a wrong number or value of widths and std::runtime_error if memory runs out.
   DiagonalizationSolver(const ExecutionSpace& space, const PoissonProblem& problem,
                         InvertedOperators operators = InvertedOperators::any)
       : _space(space), _problem(problem), _operators(operators), _product(space) {
@@ -53,9 +56,10 @@ class DiagonalizationSolver {
                            (problem.varies_along(0) || problem.varies_along(1)) &&
                            TridiagonalLines<ExecutionSpace>::supports(problem);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", axis_eigenvalues(problem, axis));
-      if (problem.varies_along(axis) && !(axis == 2 && has_lines))
-        _basis[axis] = eigenvector_matrix(space, problem, axis);
+      if (axis == 2 && has_lines) continue;
+      const AxisModes modes = axis_modes(problem, axis);
+      _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", modes.eigenvalues);
+      if (problem.varies_along(axis)) _basis[axis] = to_device(space, modes);
     }
     if (has_lines) _lines.emplace(space, problem, _eigenvalues[0], _eigenvalues[1]);
     _work =
@@ -75,7 +79,8 @@ class DiagonalizationSolver {
     List from = right_hand_side, to = _work, other = solution;
     const auto transform = [&](std::size_t axis, bool forward) {
       if (!_problem.varies_along(axis)) return;
-      _product.along_axis(_problem.cells, axis, _basis[axis], forward, from, to);
+      _product.along_axis(_problem.cells, axis, forward ? _basis[axis].forward : _basis[axis].backward,
+                          forward, from, to);
       from = to;
       std::swap(to, other);
     };
@@ -104,7 +109,8 @@ class DiagonalizationSolver {
   InvertedOperators _operators;
   DenseProduct<ExecutionSpace> _product;
   std::optional<TridiagonalLines<ExecutionSpace>> _lines;
-  List _basis[3], _eigenvalues[3], _work;
+  AxisBasis<ExecutionSpace> _basis[3];
+  List _eigenvalues[3], _work;
 };
 
 }  // namespace drogue::linear

@@ -158,13 +158,14 @@ class FourierSolver {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
-  /// Whether the solver can treat the problem: always on a host. Does not throw.
-  static bool supports(const PoissonProblem& /*problem*/) { return true; }
+  /// Whether the cells along each axis have equal widths. Does not throw.
+  static bool supports(const PoissonProblem& problem) { return !problem.is_stretched(); }
 
   /// Makes the plans; blocks. `in_place`: right-hand side and solution are always the same array, or never.
-  /// Throws std::runtime_error if FFTW cannot plan.
+  /// Throws std::invalid_argument for an unsupported problem and std::runtime_error if FFTW cannot plan.
   FourierSolver(const ExecutionSpace& space, const PoissonProblem& problem, bool in_place = false)
       : _space(space), _problem(problem) {
+    refuse_stretched(problem);
     // The transform of the first axis with more than one cell reads the right-hand side.
     bool is_first = !in_place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -217,8 +218,9 @@ class FourierSolver<Kokkos::Cuda> {
  public:
   using List = Kokkos::View<double*, Kokkos::CudaSpace>;
 
-  /// Whether all axes are periodic or have one cell. Does not throw.
+  /// Whether all axes are periodic or have one cell, and all cells have equal widths. Does not throw.
   static bool supports(const PoissonProblem& problem) {
+    if (problem.is_stretched()) return false;
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (problem.varies_along(axis) && !problem.axes[axis].periodic) return false;
     return true;
@@ -228,7 +230,8 @@ class FourierSolver<Kokkos::Cuda> {
   /// if cuFFT cannot plan. The solution may always be in the array of the right-hand side.
   FourierSolver(const Kokkos::Cuda& space, const PoissonProblem& problem, bool /*in_place*/ = false)
       : _space(space) {
-    if (!supports(problem)) throw std::invalid_argument("the Fourier solver on CUDA needs periodic axes");
+    if (!supports(problem))
+      throw std::invalid_argument("the Fourier solver on CUDA needs periodic axes and cells of equal widths");
     // The order of cuFFT is the slowest axis first; axes of one cell have no transform.
     std::vector<int> lengths;
     std::size_t modes = 1;

@@ -19,13 +19,13 @@ class HyprePfmgSolver {
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
   /// Sets up the multigrid levels on this rank alone. `tolerance`: ratio of the norms of residual and
-  /// right-hand side. Throws std::runtime_error if hypre fails.
+  /// right-hand side as of `HypreStructSolver`, which lists the errors.
   HyprePfmgSolver(const ExecutionSpace& space, const PoissonProblem& problem, double tolerance,
                   int max_iterations = 200)
       : HyprePfmgSolver(space, problem, {}, {}, tolerance, max_iterations) {}
 
   /// Sets up the levels on the ranks of a group, of which each holds the cells of `box_of`; `tolerance`:
-  /// ratio as above. The constructor and the solves are collective. Throws std::runtime_error if hypre fails.
+  /// ratio as above. The constructor and the solves are collective. Throws as above.
   HyprePfmgSolver(const ExecutionSpace& space, const PoissonProblem& problem, const RankGroup& group,
                   const PencilRanks& ranks, double tolerance, int max_iterations = 200)
       : _space(space),
@@ -76,7 +76,7 @@ class HyprePfmgSolver {
 
   /// Iterations of the last solve. Does not throw.
   [[nodiscard]] int iterations() const { return _solver->iterations(); }
-  /// Ratio of the 2-norms of the residual of the last solve and its right-hand side. Does not throw.
+  /// Ratio of the norms of the residual of the last solve and its right-hand side. Does not throw.
   [[nodiscard]] double residual() const { return _solver->residual(); }
   /// False if the last solve did not reach the tolerance. Does not throw.
   [[nodiscard]] bool converged() const { return _solver->converged(); }

@@ -7,11 +7,15 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "kernels/linear/poisson/axis_modes.hpp"
 
 namespace drogue::linear {
 
@@ -40,6 +44,21 @@ std::shared_ptr<Library> library() {
   return shared;
 }
 
+/// Second difference along an axis as `stretched_axis`; lengths of 1 if all are equal, or there is one.
+StretchedAxis scaled_axis(const PoissonProblem& problem, std::size_t axis) {
+  if (problem.is_stretched(axis)) return stretched_axis(problem, axis);
+  const auto n = static_cast<std::size_t>(problem.cells[axis]);
+  const double coefficient = n == 1 ? 0.0 : 1.0 / (problem.spacing[axis] * problem.spacing[axis]);
+  StretchedAxis result{.lengths = std::vector<double>(n, 1.0),
+                       .conductances = std::vector<double>(n + 1, coefficient)};
+  const AxisConditions& conditions = problem.axes[axis];
+  if (conditions.periodic) return result;
+  // The face of a Dirichlet end is half a cell away.
+  result.conductances.front() = conditions.low == EndCondition::dirichlet ? 2.0 * coefficient : 0.0;
+  result.conductances.back() = conditions.high == EndCondition::dirichlet ? 2.0 * coefficient : 0.0;
+  return result;
+}
+
 }  // namespace
 
 struct HypreStructSolver::Objects {
@@ -53,7 +72,9 @@ struct HypreStructSolver::Objects {
   HYPRE_StructSolver pcg = nullptr, pfmg = nullptr;
   HYPRE_Int low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
   std::vector<double> values;
-  double cells = 0.0;  ///< of all ranks
+  std::array<StretchedAxis, 3> axes;
+  std::vector<double> volumes;  ///< of the cells of this rank, in units of those of equal widths
+  double whole_volume = 1.0;    ///< of all ranks
   bool singular = false;
   double tolerance = 0.0;
   int max_iterations = 0;
@@ -73,18 +94,28 @@ struct HypreStructSolver::Objects {
     if (grid != nullptr) HYPRE_StructGridDestroy(grid);
   }
 
+  template <class Visit>
+  void for_each_cell(const Visit& visit) const {
+    for (int k = low[2]; k <= high[2]; ++k)
+      for (int j = low[1]; j <= high[1]; ++j)
+        for (int i = low[0]; i <= high[0]; ++i)
+          visit(std::array{static_cast<std::size_t>(i), static_cast<std::size_t>(j),
+                           static_cast<std::size_t>(k)});
+  }
   void make_matrix(const PoissonProblem& problem);
+  void subtract_mean_source();
   void subtract_mean();
   [[nodiscard]] double norm_of_values() const;
   void iterate(double relative);
   [[nodiscard]] double true_residual(const std::vector<double>& right, const std::vector<double>& x);
   void set(HYPRE_StructVector vector, const std::vector<double>& from);
   void make_vector(HYPRE_StructVector& vector);
-  void make_solver();
+  void make_solver(bool stretched);
 };
 
-/// Minus the Laplacian, which is positive. All of the seven entries that PFMG expects; those along an axis
-/// with one cell are zero.
+/// Minus the Laplacian, which is positive, with each row multiplied by the volume of its cell, so that the
+/// matrix is symmetric. All of the seven entries that PFMG expects; those along an axis with one cell are
+/// zero.
 void HypreStructSolver::Objects::make_matrix(const PoissonProblem& problem) {
   HYPRE_Int periods[3] = {0, 0, 0};
   std::vector<std::array<HYPRE_Int, 3>> offsets{{0, 0, 0}};
@@ -106,28 +137,21 @@ void HypreStructSolver::Objects::make_matrix(const PoissonProblem& problem) {
   check(HYPRE_StructMatrixInitialize(matrix));
 
   std::vector<double> entries;
-  for (int k = low[2]; k <= high[2]; ++k)
-    for (int j = low[1]; j <= high[1]; ++j)
-      for (int i = low[0]; i <= high[0]; ++i) {
-        const std::array<int, 3> cell{i, j, k};
-        const std::size_t diagonal = entries.size();
-        entries.push_back(0.0);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const int n = problem.cells[axis];
-          const double coefficient = n == 1 ? 0.0 : 1.0 / (problem.spacing[axis] * problem.spacing[axis]);
-          const AxisConditions& conditions = problem.axes[axis];
-          for (const bool upper : {false, true}) {
-            const bool inside =
-                (conditions.periodic && n > 1) || (upper ? cell[axis] + 1 < n : cell[axis] > 0);
-            const EndCondition end = upper ? conditions.high : conditions.low;
-            // The face of a Dirichlet end is half a cell away.
-            entries[diagonal] += inside                           ? coefficient
-                                 : end == EndCondition::dirichlet ? 2.0 * coefficient
-                                                                  : 0.0;
-            entries.push_back(inside ? -coefficient : 0.0);
-          }
-        }
+  for_each_cell([&](const std::array<std::size_t, 3>& cell) {
+    const std::size_t diagonal = entries.size();
+    entries.push_back(0.0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t second = (axis + 1) % 3, third = (axis + 2) % 3;
+      const double area = axes[second].lengths[cell[second]] * axes[third].lengths[cell[third]];
+      for (const std::size_t upper : {0U, 1U}) {
+        const std::size_t face = cell[axis] + upper;
+        const double coefficient = axes[axis].conductances[face] * area;
+        const bool is_end = face == 0 || face == axes[axis].lengths.size();
+        entries[diagonal] += coefficient;
+        entries.push_back(is_end && periods[axis] == 0 ? 0.0 : -coefficient);
       }
+    }
+  });
   std::vector<HYPRE_Int> numbers(offsets.size());
   for (std::size_t entry = 0; entry < numbers.size(); ++entry) numbers[entry] = static_cast<HYPRE_Int>(entry);
   check(HYPRE_StructMatrixSetBoxValues(matrix, low, high, static_cast<HYPRE_Int>(numbers.size()),
@@ -135,11 +159,21 @@ void HypreStructSolver::Objects::make_matrix(const PoissonProblem& problem) {
   check(HYPRE_StructMatrixAssemble(matrix));
 }
 
-void HypreStructSolver::Objects::subtract_mean() {
+/// Makes the sum of values that are multiplied by volumes zero.
+void HypreStructSolver::Objects::subtract_mean_source() {
   double sum = 0.0;
   for (const double value : values) sum += value;
   group.sum({&sum, 1});
-  const double mean = sum / cells;
+  const double mean = sum / whole_volume;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] -= volumes[i] * mean;
+}
+
+/// Makes the mean of values, weighted by volumes, zero.
+void HypreStructSolver::Objects::subtract_mean() {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) sum += volumes[i] * values[i];
+  group.sum({&sum, 1});
+  const double mean = sum / whole_volume;
   for (double& value : values) value -= mean;
 }
 
@@ -200,7 +234,7 @@ void HypreStructSolver::Objects::make_vector(HYPRE_StructVector& vector) {
   check(HYPRE_StructVectorAssemble(vector));
 }
 
-void HypreStructSolver::Objects::make_solver() {
+void HypreStructSolver::Objects::make_solver(bool stretched) {
   check(HYPRE_StructPFMGCreate(communicator, &pfmg));
   check(HYPRE_StructPFMGSetMaxIter(pfmg, 1));
   check(HYPRE_StructPFMGSetTol(pfmg, 0.0));
@@ -208,6 +242,9 @@ void HypreStructSolver::Objects::make_solver() {
   // Weighted Jacobi: conjugate gradients need a symmetric preconditioner, and periodic axes with an odd
   // number of cells have no red-black order.
   check(HYPRE_StructPFMGSetRelaxType(pfmg, 1));
+  // Operators of seven points on coarse grids keep the signs of the entries. With Galerkin's, conjugate
+  // gradients broke down on periodic axes of 6 and 31 stretched cells.
+  if (stretched) check(HYPRE_StructPFMGSetRAPType(pfmg, 1));
   check(HYPRE_StructPFMGSetNumPreRelax(pfmg, 1));
   check(HYPRE_StructPFMGSetNumPostRelax(pfmg, 1));
   check(HYPRE_StructPCGCreate(communicator, &pcg));
@@ -224,25 +261,29 @@ HypreStructSolver::HypreStructSolver(const PoissonProblem& problem, const RankGr
   o.singular = problem.is_singular();
   o.tolerance = tolerance;
   o.max_iterations = max_iterations;
-  o.cells = 1.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     o.low[axis] = box.begin[axis];
     o.high[axis] = box.begin[axis] + box.cells[axis] - 1;
-    o.cells *= problem.cells[axis];
+    o.axes[axis] = scaled_axis(problem, axis);
+    const std::vector<double>& lengths = o.axes[axis].lengths;
+    o.whole_volume *= std::accumulate(lengths.begin(), lengths.end(), 0.0);
   }
+  o.for_each_cell([&](const std::array<std::size_t, 3>& cell) {
+    o.volumes.push_back(o.axes[0].lengths[cell[0]] * o.axes[1].lengths[cell[1]] * o.axes[2].lengths[cell[2]]);
+  });
   o.values.assign(box.size(), 0.0);
   o.make_matrix(problem);
   o.make_vector(o.right_hand_side);
   o.make_vector(o.solution);
-  o.make_solver();
+  o.make_solver(problem.is_stretched());
 }
 
 HypreStructSolver::~HypreStructSolver() = default;
 
 void HypreStructSolver::solve(const double* right_hand_side, double* solution) {
   Objects& o = *_objects;
-  for (std::size_t i = 0; i < o.values.size(); ++i) o.values[i] = -right_hand_side[i];
-  if (o.singular) o.subtract_mean();
+  for (std::size_t i = 0; i < o.values.size(); ++i) o.values[i] = -o.volumes[i] * right_hand_side[i];
+  if (o.singular) o.subtract_mean_source();
   double sum = 0.0;
   for (const double value : o.values) sum += std::abs(value);
   o.group.sum({&sum, 1});
@@ -269,7 +310,7 @@ void HypreStructSolver::solve(const double* right_hand_side, double* solution) {
     o.iterate(std::isinf(before) ? o.tolerance : std::min(0.5 * o.tolerance / before, 0.1));
     for (std::size_t i = 0; i < o.values.size(); ++i) sum_of_corrections[i] += o.values[i];
     o.residual = o.true_residual(given, sum_of_corrections) / norm;
-    if (o.singular) o.subtract_mean();
+    if (o.singular) o.subtract_mean_source();
   } while (o.residual > o.tolerance && o.residual < 0.9 * before && o.iterations < o.max_iterations);
   o.set(o.solution, sum_of_corrections);  // where the next solve begins
   std::ranges::copy(sum_of_corrections, solution);

@@ -9,12 +9,15 @@
 namespace drogue::linear {
 
 /// Conjugate gradients preconditioned by the semicoarsening multigrid PFMG of hypre (Ashby and Falgout 1996),
-/// on the hosts of a group of ranks, each with a box of cells. Only in builds with DROGUE_HAVE_HYPRE.
+/// on the hosts of a group of ranks, each with a box of cells. PFMG does not coarsen a periodic axis with an
+/// odd number of cells: if the coupling along it is strong, hundreds of iterations may not suffice. Only in
+/// builds with DROGUE_HAVE_HYPRE.
 class HypreStructSolver {
  public:
   /// Sets up the hierarchy of grids; collective, blocks. Initialises MPI if that was not done, until the
   /// program ends. `box`: cells of this rank. `tolerance`: of the 2-norm of the residual relative to that of
-  /// the right-hand side. Throws std::runtime_error if hypre fails.
+  /// the right-hand side, both multiplied by the volumes of the cells. Throws std::invalid_argument for a
+  /// wrong number or value of widths and std::runtime_error if hypre fails.
   HypreStructSolver(const PoissonProblem& problem, const RankGroup& group, const CellBox& box,
                     double tolerance, int max_iterations);
   ~HypreStructSolver();

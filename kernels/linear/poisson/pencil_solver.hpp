@@ -25,10 +25,10 @@ enum class AxisMethod {
 /// throw.
 [[nodiscard]] inline CellBox unknowns_of(const PencilRanks& ranks, const PoissonProblem& problem) {
   std::array<int, 3> cells = problem.cells;
-  for (std::size_t axis = 0; axis < 3; ++axis) cells[axis] += problem.axes[axis].on_faces ? 1 : 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) cells[axis] += problem.axes[axis].on_inner_faces() ? 1 : 0;
   CellBox box = box_of(ranks, cells);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!problem.axes[axis].on_faces) continue;
+    if (!problem.axes[axis].on_inner_faces()) continue;
     int& changed = box.begin[axis] == 0 ? box.cells[axis] : box.begin[axis];
     --changed;
   }
@@ -42,11 +42,13 @@ class PencilSolver {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
-  /// Collective on `group`, which `ranks` divides; blocks. On CUDA only diagonalization works, and
-  /// std::invalid_argument is thrown otherwise. Throws std::runtime_error if memory runs out.
+  /// Collective on `group`, which `ranks` divides; blocks. On CUDA and for cells of different widths only
+  /// diagonalization works, and std::invalid_argument is thrown otherwise. Throws std::runtime_error if
+  /// memory runs out.
   PencilSolver(const ExecutionSpace& space, const PoissonProblem& problem, const RankGroup& group,
                const PencilRanks& ranks, AxisMethod method)
       : _space(space), _method(method), _product(space) {
+    if (method == AxisMethod::fourier) refuse_stretched(problem);
     if (method == AxisMethod::fourier && !device::is_host<ExecutionSpace>)
       throw std::invalid_argument("the Fourier solver on CUDA works on one rank");
     const RankGroup rows = group.split(ranks.place[2]), columns = group.split(ranks.place[1]);
@@ -107,24 +109,24 @@ class PencilSolver {
     _boxes[gathered] = _boxes[from];
     if (group.size() == 1) return;
     _turns[from].emplace(group, _boxes[from], gathered, problem.cells[gathered], split,
-                         problem.axes[gathered].on_faces ? 1 : 0);
+                         problem.axes[gathered].on_inner_faces() ? 1 : 0);
     _boxes[gathered] = _turns[from]->after();
   }
 
   void make_transforms(const PoissonProblem& problem, std::size_t axis) {
-    std::vector<double> eigenvalues;
+    _has_one_cell[axis] = !problem.varies_along(axis);
+    AxisModes modes;
     if (_method == AxisMethod::fourier)
-      eigenvalues = transform_eigenvalues(problem, axis);
+      modes.eigenvalues = transform_eigenvalues(problem, axis);
     else
-      eigenvalues = axis_eigenvalues(problem, axis);
+      modes = axis_modes(problem, axis);
     // Scaling takes place in the last box.
-    const auto begin = eigenvalues.begin() + _boxes[2].begin[axis];
+    const auto begin = modes.eigenvalues.begin() + _boxes[2].begin[axis];
     _eigenvalues[axis] = to_device(_space, "drogue::linear::eigenvalues",
                                    std::vector<double>(begin, begin + _boxes[2].cells[axis]));
-    _has_one_cell[axis] = !problem.varies_along(axis);
     if (_has_one_cell[axis]) return;
     if (_method == AxisMethod::diagonalization) {
-      _basis[axis] = eigenvector_matrix(_space, problem, axis);
+      _basis[axis] = to_device(_space, modes);
     } else if constexpr (device::is_host<ExecutionSpace>) {
       _transforms[axis] = AxisTransforms<ExecutionSpace>(_boxes[axis].cells, axis, problem.axes[axis], false);
       _normalisation *= _transforms[axis].normalisation();
@@ -134,7 +136,8 @@ class PencilSolver {
   void transform(std::size_t axis, bool forward) {
     if (_has_one_cell[axis] || _boxes[axis].size() == 0) return;
     if (_method == AxisMethod::diagonalization) {
-      _product.along_axis(_boxes[axis].cells, axis, _basis[axis], forward, _arrays[0], _arrays[1]);
+      _product.along_axis(_boxes[axis].cells, axis, forward ? _basis[axis].forward : _basis[axis].backward,
+                          forward, _arrays[0], _arrays[1]);
       std::swap(_arrays[0], _arrays[1]);
     } else if constexpr (device::is_host<ExecutionSpace>) {
       if (forward)
@@ -157,7 +160,8 @@ class PencilSolver {
   bool _has_one_cell[3] = {};
   Transforms _transforms[3];
   double _normalisation = 1.0;
-  List _basis[3], _eigenvalues[3];
+  AxisBasis<ExecutionSpace> _basis[3];
+  List _eigenvalues[3];
   List _arrays[2];  ///< values at present, and room for the next
   HostBuffer<ExecutionSpace> _send, _receive;
 };

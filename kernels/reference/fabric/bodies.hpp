@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/body.hpp"
 
 namespace drogue::reference {
 

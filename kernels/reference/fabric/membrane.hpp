@@ -4,7 +4,7 @@
 #include <complex>
 #include <vector>
 
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::reference {
 

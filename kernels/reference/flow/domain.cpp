@@ -15,8 +15,40 @@ FlowDomain::FlowDomain(flow::Parameters parameters, SideVelocity side_velocity)
                                                     double) { return sides[side].velocity[component]; };
 }
 
-double FlowDomain::spacing(std::size_t axis) const {
-  return (_parameters.high[axis] - _parameters.low[axis]) / _parameters.cells[axis];
+double FlowDomain::face_coordinate(std::size_t axis, int face) const {
+  const flow::Parameters& p = _parameters;
+  const int n = p.cells[axis];
+  if (p.faces[axis].empty()) return p.low[axis] + face * ((p.high[axis] - p.low[axis]) / n);
+  const auto inside = [&](int i) { return p.faces[axis][static_cast<std::size_t>(i)]; };
+  if (face >= 0 && face <= n) return inside(face);
+  const double length = p.high[axis] - p.low[axis];
+  if (!is_bounded(axis)) return face < 0 ? inside(face + n) - length : inside(face - n) + length;
+  return face < 0 ? 2.0 * p.low[axis] - inside(-face) : 2.0 * p.high[axis] - inside(2 * n - face);
+}
+
+double FlowDomain::coordinate(std::size_t component, std::size_t axis, int face) const {
+  if (component == axis) return face_coordinate(axis, face);
+  return 0.5 * (face_coordinate(axis, face) + face_coordinate(axis, face + 1));
+}
+
+double FlowDomain::width(std::size_t axis, int cell) const {
+  return face_coordinate(axis, cell + 1) - face_coordinate(axis, cell);
+}
+
+double FlowDomain::distance(std::size_t axis, int cell) const {
+  return 0.5 * (face_coordinate(axis, cell + 1) - face_coordinate(axis, cell - 1));
+}
+
+double FlowDomain::extent(std::size_t component, std::size_t axis, int face) const {
+  return component == axis ? distance(axis, face) : width(axis, face);
+}
+
+double FlowDomain::step(std::size_t component, std::size_t axis, int face) const {
+  return coordinate(component, axis, face) - coordinate(component, axis, face - 1);
+}
+
+double FlowDomain::volume(const GridIndex& cell) const {
+  return width(0, cell[0]) * width(1, cell[1]) * width(2, cell[2]);
 }
 
 bool FlowDomain::is_bounded(std::size_t axis) const {
@@ -78,7 +110,7 @@ double FlowDomain::side_velocity(std::size_t side, std::size_t component, const 
       const double last = side_velocity(side, component, inside, time);
       return last + std::abs(i - outermost) * (last - side_velocity(side, component, second, time));
     }
-    point[axis] = _parameters.low[axis] + (inside[axis] + (axis == component ? 0.0 : 0.5)) * spacing(axis);
+    point[axis] = coordinate(component, axis, inside[axis]);
     if (axis == component && is_bounded(axis) && i == cells(axis)) point[axis] = _parameters.high[axis];
   }
   point[side / 2] = side % 2 == 0 ? _parameters.low[side / 2] : _parameters.high[side / 2];
@@ -130,7 +162,8 @@ std::vector<double> divergence(const FlowDomain& domain, const StaggeredField& u
       if (domain.cells(axis) == 1) continue;
       GridIndex next = cell;
       next[axis] = (cell[axis] + 1) % domain.faces(axis, axis);
-      sum += (u[axis][domain.at(axis, next)] - u[axis][domain.at(axis, cell)]) / domain.spacing(axis);
+      sum +=
+          (u[axis][domain.at(axis, next)] - u[axis][domain.at(axis, cell)]) / domain.width(axis, cell[axis]);
     }
     result.push_back(sum);
   });
@@ -141,17 +174,18 @@ StaggeredField pressure_gradient(const FlowDomain& domain, const std::vector<dou
   StaggeredField gradient = domain.zero_field();
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
     if (domain.cells(c) == 1) return;
-    const double h = domain.spacing(c);
     const std::size_t place = domain.at(c, face);
     const int side = domain.side_of(c, face);
     GridIndex below = face;
     below[c] -= 1;
     if (side < 0) {
       below[c] = (below[c] + domain.cells(c)) % domain.cells(c);
-      gradient[c][place] = (pressure[domain.cell_at(face)] - pressure[domain.cell_at(below)]) / h;
+      gradient[c][place] =
+          (pressure[domain.cell_at(face)] - pressure[domain.cell_at(below)]) / domain.distance(c, face[c]);
     } else if (domain.kind(static_cast<std::size_t>(side)) == BoundaryKind::outflow) {
-      gradient[c][place] = side % 2 == 0 ? pressure[domain.cell_at(face)] / (0.5 * h)
-                                         : -pressure[domain.cell_at(below)] / (0.5 * h);
+      gradient[c][place] = side % 2 == 0
+                               ? pressure[domain.cell_at(face)] / (0.5 * domain.width(c, face[c]))
+                               : -pressure[domain.cell_at(below)] / (0.5 * domain.width(c, below[c]));
     }
   });
   return gradient;

@@ -29,7 +29,20 @@ class FlowDomain {
 
   [[nodiscard]] const flow::Parameters& parameters() const { return _parameters; }
   [[nodiscard]] int cells(std::size_t axis) const { return _parameters.cells[axis]; }
-  [[nodiscard]] double spacing(std::size_t axis) const;
+  /// Coordinate of a face of the cells, m: beyond bounded sides that of the mirror image.
+  [[nodiscard]] double face_coordinate(std::size_t axis, int face) const;
+  /// Coordinate of a component of the velocity, m.
+  [[nodiscard]] double coordinate(std::size_t component, std::size_t axis, int face) const;
+  /// Width of a cell, m; beyond sides as in `face_coordinate`.
+  [[nodiscard]] double width(std::size_t axis, int cell) const;
+  /// Distance between the centres of a cell and the one before it, m.
+  [[nodiscard]] double distance(std::size_t axis, int cell) const;
+  /// Width of the control volume of a component along an axis, m, and the distance of the component from that
+  /// at the face before.
+  [[nodiscard]] double extent(std::size_t component, std::size_t axis, int face) const;
+  [[nodiscard]] double step(std::size_t component, std::size_t axis, int face) const;
+  /// Volume of a cell, m^3.
+  [[nodiscard]] double volume(const GridIndex& cell) const;
   [[nodiscard]] flow::BoundaryKind kind(std::size_t side) const { return _parameters.boundary[side].kind; }
   [[nodiscard]] bool is_bounded(std::size_t axis) const;
 

@@ -16,7 +16,7 @@ GridIndex shifted(const FlowDomain& domain, GridIndex index, std::size_t axis, i
 double edge_derivative(const FlowDomain& domain, const StaggeredField& u, std::size_t i, std::size_t j,
                        const GridIndex& cell, double time) {
   return (domain.velocity(u, i, cell, time) - domain.velocity(u, i, shifted(domain, cell, j, -1), time)) /
-         domain.spacing(j);
+         domain.distance(j, cell[j]);
 }
 
 /// The four edges of a cell that are normal to axes i and j, as cells whose low edges they are.
@@ -30,7 +30,7 @@ std::array<GridIndex, 4> edges(const FlowDomain& domain, const GridIndex& cell, 
 double normal_derivative(const FlowDomain& domain, const StaggeredField& u, std::size_t i,
                          const GridIndex& cell, double time) {
   return (domain.velocity(u, i, shifted(domain, cell, i, 1), time) - domain.velocity(u, i, cell, time)) /
-         domain.spacing(i);
+         domain.width(i, cell[i]);
 }
 
 }  // namespace
@@ -52,9 +52,9 @@ std::array<Point, 3> velocity_gradient(const FlowDomain& domain, const Staggered
 
 FlowSums flow_sums(const FlowDomain& domain, const StaggeredField& u, double time) {
   const flow::Parameters& p = domain.parameters();
-  const double volume = domain.spacing(0) * domain.spacing(1) * domain.spacing(2);
   FlowSums sums;
   domain.for_each_cell([&](const GridIndex& cell) {
+    const double volume = domain.volume(cell);
     double squared_speed = 0.0;
     for (std::size_t c = 0; c < 3; ++c) {
       const double low = domain.velocity(u, c, cell, time),
@@ -77,9 +77,12 @@ FlowSums flow_sums(const FlowDomain& domain, const StaggeredField& u, double tim
   });
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
     const int side = domain.side_of(c, face);
-    if (side >= 0)
-      sums.outflow[static_cast<std::size_t>(side)] +=
-          (side % 2 == 0 ? -1.0 : 1.0) * u[c][domain.at(c, face)] * volume / domain.spacing(c);
+    if (side < 0) return;
+    double area = 1.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (axis != c) area *= domain.width(axis, face[axis]);
+    sums.outflow[static_cast<std::size_t>(side)] +=
+        (side % 2 == 0 ? -1.0 : 1.0) * u[c][domain.at(c, face)] * area;
   });
   return sums;
 }

@@ -21,16 +21,37 @@ StaggeredField combine(const FlowDomain& domain,
   return sum;
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
+/// Integral of a product; the operators below are symmetric in this inner product.
+double dot(const std::vector<double>& volumes, const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  for (std::size_t i = 0; i < a.size(); ++i) sum += volumes[i] * a[i] * b[i];
   return sum;
 }
 
-void subtract_mean(std::vector<double>& values) {
-  double mean = 0.0;
-  for (const double value : values) mean += value / static_cast<double>(values.size());
-  for (double& value : values) value -= mean;
+void subtract_mean(const std::vector<double>& volumes, std::vector<double>& values) {
+  double integral = 0.0, volume = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    integral += volumes[i] * values[i];
+    volume += volumes[i];
+  }
+  for (double& value : values) value -= integral / volume;
+}
+
+std::vector<double> cell_volumes(const FlowDomain& domain) {
+  std::vector<double> volumes;
+  domain.for_each_cell([&](const GridIndex& cell) { volumes.push_back(domain.volume(cell)); });
+  return volumes;
+}
+
+/// Control volumes of a component, m^3.
+std::vector<double> control_volumes(const FlowDomain& domain, std::size_t c) {
+  std::vector<double> volumes;
+  domain.for_each_face([&](std::size_t component, const GridIndex& face) {
+    if (component != c) return;
+    volumes.push_back(domain.extent(c, 0, face[0]) * domain.extent(c, 1, face[1]) *
+                      domain.extent(c, 2, face[2]));
+  });
+  return volumes;
 }
 
 bool has_outflow(const FlowDomain& domain) {
@@ -52,23 +73,24 @@ bool is_beside_outflow(const FlowDomain& domain, const GridIndex& cell) {
 /// Solves div grad p = f with zero pressure on outflows.
 std::vector<double> solve_pressure(const FlowDomain& domain, std::vector<double> f) {
   const bool singular = !has_outflow(domain);
-  if (singular) subtract_mean(f);
+  const std::vector<double> volumes = cell_volumes(domain);
+  if (singular) subtract_mean(volumes, f);
   std::vector<double> p(f.size(), 0.0), residual = f, direction = f;
-  double norm = dot(residual, residual);
+  double norm = dot(volumes, residual, residual);
   const double target = 1e-31 * norm;
   for (std::size_t iteration = 0; iteration < 20 * f.size() && norm > target; ++iteration) {
     const std::vector<double> image = divergence(domain, pressure_gradient(domain, direction));
-    const double alpha = norm / dot(direction, image);
+    const double alpha = norm / dot(volumes, direction, image);
     for (std::size_t i = 0; i < p.size(); ++i) {
       p[i] += alpha * direction[i];
       residual[i] -= alpha * image[i];
     }
-    if (singular) subtract_mean(residual);
-    const double next = dot(residual, residual);
+    if (singular) subtract_mean(volumes, residual);
+    const double next = dot(volumes, residual, residual);
     for (std::size_t i = 0; i < p.size(); ++i) direction[i] = residual[i] + next / norm * direction[i];
     norm = next;
   }
-  if (singular) subtract_mean(p);
+  if (singular) subtract_mean(volumes, p);
   return p;
 }
 
@@ -95,7 +117,9 @@ std::vector<double> change_laplacian(const FlowDomain& domain, const StaggeredFi
           if (domain.kind(side) == BoundaryKind::wall || domain.kind(side) == BoundaryKind::inflow)
             value = 2.0 * on_wall(side, next) - own;
         }
-        laplacian[domain.at(c, face)] += (value - own) / (domain.spacing(axis) * domain.spacing(axis));
+        laplacian[domain.at(c, face)] += (value - own) /
+                                         domain.step(c, axis, direction > 0 ? face[axis] + 1 : face[axis]) /
+                                         domain.extent(c, axis, face[axis]);
       }
     }
   });
@@ -112,24 +136,25 @@ void solve_change(const FlowDomain& domain, StaggeredField& change, std::size_t 
     if (component == c) inside[domain.at(c, face)] = domain.side_of(c, face) < 0;
   });
   const auto at_rest = [](std::size_t, const GridIndex&) { return 0.0; };
+  const std::vector<double> volumes = control_volumes(domain, c);
   const std::vector<double> known = change_laplacian(domain, change, c, on_wall);
   std::vector<double> residual(source.size(), 0.0);
   for (std::size_t i = 0; i < source.size(); ++i)
     if (inside[i]) residual[i] = source[i] + a * known[i] - change[c][i];
   StaggeredField direction = domain.zero_field();
   direction[c] = residual;
-  double norm = dot(residual, residual);
+  double norm = dot(volumes, residual, residual);
   const double target = 1e-31 * norm;
   for (std::size_t iteration = 0; iteration < 20 * source.size() && norm > target; ++iteration) {
     const std::vector<double> laplacian = change_laplacian(domain, direction, c, at_rest);
     std::vector<double> image = direction[c];
     for (std::size_t i = 0; i < image.size(); ++i) image[i] -= a * laplacian[i];
-    const double alpha = norm / dot(direction[c], image);
+    const double alpha = norm / dot(volumes, direction[c], image);
     for (std::size_t i = 0; i < image.size(); ++i) {
       change[c][i] += alpha * direction[c][i];
       residual[i] -= alpha * image[i];
     }
-    const double next = dot(residual, residual);
+    const double next = dot(volumes, residual, residual);
     for (std::size_t i = 0; i < image.size(); ++i)
       direction[c][i] = residual[i] + next / norm * direction[c][i];
     norm = next;

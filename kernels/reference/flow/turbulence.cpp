@@ -13,11 +13,15 @@ GridIndex shifted(GridIndex index, std::size_t axis, int by) {
   return index;
 }
 
-/// Derivatives of the velocity components (first index) along the axes at the centre of a cell, 1/s: central
-/// differences of velocities at the centres.
+/// Derivatives of the velocity components (first index) along the axes at the centre of a cell, 1/s: means of
+/// the differences of velocities at the centres on both sides.
 Tensor gradient_at(const FlowDomain& domain, const StaggeredField& u, const GridIndex& cell, double time) {
   const auto at_centre = [&](std::size_t c, const GridIndex& of) {
     return 0.5 * (domain.velocity(u, c, of, time) + domain.velocity(u, c, shifted(of, c, 1), time));
+  };
+  /// Derivative on the low face of a cell.
+  const auto slope = [&](std::size_t c, std::size_t axis, const GridIndex& of) {
+    return (at_centre(c, of) - at_centre(c, shifted(of, axis, -1))) / domain.distance(axis, of[axis]);
   };
   Tensor gradient{};
   for (std::size_t c = 0; c < 3; ++c)
@@ -25,9 +29,8 @@ Tensor gradient_at(const FlowDomain& domain, const StaggeredField& u, const Grid
       if (domain.cells(axis) == 1) continue;
       gradient[c][axis] =
           axis == c ? (domain.velocity(u, c, shifted(cell, c, 1), time) - domain.velocity(u, c, cell, time)) /
-                          domain.spacing(axis)
-                    : (at_centre(c, shifted(cell, axis, 1)) - at_centre(c, shifted(cell, axis, -1))) /
-                          (2.0 * domain.spacing(axis));
+                          domain.width(axis, cell[axis])
+                    : 0.5 * (slope(c, axis, shifted(cell, axis, 1)) + slope(c, axis, cell));
     }
   return gradient;
 }
@@ -40,11 +43,11 @@ double contraction(const Tensor& a, const Tensor& b) {
   return sum;
 }
 
-double smagorinsky(const FlowDomain& domain, const Tensor& gradient, double constant) {
+double smagorinsky(const FlowDomain& domain, const GridIndex& cell, const Tensor& gradient, double constant) {
   double volume = 1.0, axes = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (domain.cells(axis) > 1) {
-      volume *= domain.spacing(axis);
+      volume *= domain.width(axis, cell[axis]);
       axes += 1.0;
     }
   Tensor strain{};
@@ -53,13 +56,13 @@ double smagorinsky(const FlowDomain& domain, const Tensor& gradient, double cons
   return std::pow(constant * std::pow(volume, 1.0 / axes), 2) * std::sqrt(2.0 * contraction(strain, strain));
 }
 
-double vreman(const FlowDomain& domain, const Tensor& gradient, double constant) {
+double vreman(const FlowDomain& domain, const GridIndex& cell, const Tensor& gradient, double constant) {
   Tensor beta{};
   double trace = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j)
       for (std::size_t m = 0; m < 3; ++m)
-        beta[i][j] += std::pow(domain.spacing(m), 2) * gradient[i][m] * gradient[j][m];
+        beta[i][j] += std::pow(domain.width(m, cell[m]), 2) * gradient[i][m] * gradient[j][m];
     trace += beta[i][i];
   }
   // The sum of the principal minors of a symmetric tensor.
@@ -79,10 +82,10 @@ std::vector<double> eddy_viscosity(const FlowDomain& domain, const StaggeredFiel
       return p.turbulence_constant > 0.0 ? p.turbulence_constant : standard;
     };
     if (p.turbulence == flow::Turbulence::smagorinsky)
-      viscosity.push_back(smagorinsky(domain, gradient, constant(0.17)));
+      viscosity.push_back(smagorinsky(domain, cell, gradient, constant(0.17)));
     else
-      viscosity.push_back(p.turbulence == flow::Turbulence::vreman ? vreman(domain, gradient, constant(0.07))
-                                                                   : 0.0);
+      viscosity.push_back(
+          p.turbulence == flow::Turbulence::vreman ? vreman(domain, cell, gradient, constant(0.07)) : 0.0);
   });
   return viscosity;
 }
@@ -96,11 +99,11 @@ StaggeredField eddy_acceleration(const FlowDomain& domain, const StaggeredField&
     }
     return viscosity[domain.cell_at(cell)];
   };
-  /// Backward difference of a component along an axis, 1/s.
+  /// Difference of a component from that before it along an axis over their distance, 1/s.
   const auto difference = [&](std::size_t c, std::size_t axis, const GridIndex& at) {
     if (domain.cells(axis) == 1) return 0.0;
     return (domain.velocity(u, c, at, time) - domain.velocity(u, c, shifted(at, axis, -1), time)) /
-           domain.spacing(axis);
+           domain.step(c, axis, at[axis]);
   };
   /// Stress of component c on the face normal to an axis between a face and the one before it, m^2/s^2.
   const auto stress = [&](std::size_t c, std::size_t axis, const GridIndex& face) {
@@ -116,7 +119,8 @@ StaggeredField eddy_acceleration(const FlowDomain& domain, const StaggeredField&
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (domain.cells(axis) > 1)
         acceleration[c][domain.at(c, face)] +=
-            (stress(c, axis, shifted(face, axis, 1)) - stress(c, axis, face)) / domain.spacing(axis);
+            (stress(c, axis, shifted(face, axis, 1)) - stress(c, axis, face)) /
+            domain.extent(c, axis, face[axis]);
   });
   return acceleration;
 }

@@ -17,7 +17,8 @@ constexpr double most_vertices = 1048576.0;  // 2^20
 bool is_sharp(const FlowScene& scene) { return scene.coupling.method == coupling::CouplingMethod::sharp; }
 
 bool is_bounded(const flow::Parameters& p, std::size_t axis) {
-  return p.cells[axis] > 1 && p.boundary[2 * axis].kind != flow::BoundaryKind::periodic;
+  return p.cells[axis] > 1 &&
+         (flow::is_stretched(p, axis) || p.boundary[2 * axis].kind != flow::BoundaryKind::periodic);
 }
 
 double width_of(const flow::Parameters& p, std::size_t axis) { return p.high[axis] - p.low[axis]; }
@@ -27,7 +28,8 @@ double width_of(const flow::Parameters& p, std::size_t axis) { return p.high[axi
 double margin_of(const FlowScene& scene, const Body& body, std::size_t axis) {
   if (!is_bounded(scene.parameters, axis)) return 0.0;
   const auto [to_low, to_high] = body.extents()[axis];
-  return is_sharp(scene) && to_low + to_high > 0.0 ? 0.0 : cell_width(scene.parameters, axis);
+  const bool may_touch = is_sharp(scene) && !flow::is_stretched(scene.parameters, axis);
+  return may_touch && to_low + to_high > 0.0 ? 0.0 : core_width(scene.parameters, axis);
 }
 
 /// Checks the extent of a body along an axis, m. It may cross periodic sides, beyond which it has an image.
@@ -47,13 +49,14 @@ void check_extent(const Place& at, const FlowScene& scene, const Body& body, con
     at.contradict(key, reaches, " and would cross its image beyond the periodic sides: it must be at most ",
                   width, " m long");
   }
-  if (low >= p.low[axis] + margin - rounding && high <= p.high[axis] - margin + rounding) return;
+  const auto [begin, end] = sheet_extent(p, axis);
+  if (low >= begin + margin - rounding && high <= end - margin + rounding) return;
   const bool can_be_sharp =
       margin > 0.0 && !is_sharp(scene) && !body.mount && scene.canopies.empty() && scene.flags.empty();
   at.contradict(key, reaches, ", beyond ",
-                margin > 0.0 ? "the cells beside the sides of the domain" : "the domain",
-                ": it must lie between ", rounded_text(p.low[axis] + margin), " and ",
-                rounded_text(p.high[axis] - margin), " m",
+                margin > 0.0 || flow::is_stretched(p, axis) ? beyond_sides_text(p, axis) : "the domain",
+                ": it must lie between ", rounded_text(begin + margin), " and ", rounded_text(end - margin),
+                " m",
                 can_be_sharp ? "; periodic sides it may cross, and with coupling.method = \"sharp\" it may "
                                "touch all sides along which it extends"
                              : "");
@@ -85,6 +88,8 @@ void check_two_dimensions(const Place& at, const flow::Parameters& p, const Body
 void check_mount(const Place& root, const Place& at, const FlowScene& scene, const Body& body) {
   if (!body.mount) return;
   const flow::Parameters& p = scene.parameters;
+  at.refuse_if(scene.has_stretched_axes(), "mount",
+               ": the plate must close a channel with cells of one width");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     at.refuse_if(is_bounded(p, axis), "mount",
                  ": the plate must close a channel with periodic sides; those along ", axis_names[axis],
@@ -115,7 +120,7 @@ void check_edges(const Place& at, const flow::Parameters& p, const Body& body) {
     if (p.cells[axis] == 1 || (is_plate && static_cast<int>(axis) == body.axis)) continue;
     const std::size_t k = axis == body.axes()[0] ? 0 : 1;
     const double edge = is_plate ? body.lengths[k] / body.divisions()[k] : body.largest_edge(),
-                 h = cell_width(p, axis);
+                 h = core_width(p, axis);
     at.refuse_if(edge > (1.0 + 1e-9) * largest_edge_in_cells * h, key, ": edges of ", edge, " m along ",
                  axis_names[axis], " leak on cells of ", h, " m; at most ", largest_edge_in_cells * h, " m");
   }
@@ -203,7 +208,7 @@ void complete_and_check_bodies(const Place& root, FlowScene& scene) {
     Body& body = scene.bodies[i];
     const Place at = root.at("body", i);
     body.slip = body.slips();
-    body.spacing = lattice_of(p).spacing;
+    body.spacing = flow::core_of(p).spacing;
     if (body.kind != BodyKind::file) continue;
     body.surface = framework::read_obj(at, body.scale, scene.file, body.file, scene.notices);
     at.refuse_if(body.surface.triangles.empty(), "file", ": ", body.file, " has no face");

@@ -17,16 +17,24 @@ using flow::BoundaryKind;
 class Section {
  public:
   Section(const flow::Parameters& p, std::size_t axis)
-      : _p(p), _across((axis + 1) % 3), _last((axis + 2) % 3), _is_covered(cells(_across) * cells(_last)) {}
+      : _p(p),
+        _cells(lattice_of(p)),
+        _across((axis + 1) % 3),
+        _last((axis + 2) % 3),
+        _is_covered(cells(_across) * cells(_last)) {}
 
   [[nodiscard]] double area() const { return width(_across) * width(_last); }
   [[nodiscard]] bool is_covered() const {
     return std::ranges::all_of(_is_covered, [](char covered) { return covered != 0; });
   }
 
-  /// Part of the cells that are covered.
+  /// Part of the area whose cells are covered.
   [[nodiscard]] double covered_part() const {
-    return static_cast<double>(std::ranges::count(_is_covered, 1)) / static_cast<double>(_is_covered.size());
+    double covered = 0.0;
+    for (std::size_t i = 0; i < _is_covered.size(); ++i)
+      if (_is_covered[i] != 0)
+        covered += _cells.widths[_across][i % cells(_across)] * _cells.widths[_last][i / cells(_across)];
+    return covered / static_cast<double>(_is_covered.size());
   }
 
   /// Covers the cells whose centre line a triangle crosses, also beyond periodic sides. Returns its projected
@@ -57,12 +65,19 @@ class Section {
   [[nodiscard]] std::size_t cells(std::size_t axis) const { return static_cast<std::size_t>(_p.cells[axis]); }
   [[nodiscard]] double width(std::size_t axis) const { return _p.high[axis] - _p.low[axis]; }
   [[nodiscard]] double centre(std::size_t axis, double index) const {
-    return _p.low[axis] + (index + 0.5) * cell_width(_p, axis);
+    if (!flow::is_stretched(_p, axis)) return _p.low[axis] + (index + 0.5) * flow::cell_width(_p, axis, 0);
+    return _cells.coordinates[axis][static_cast<std::size_t>(index)];
   }
   [[nodiscard]] std::array<double, 2> range(const std::array<mesh::Vector, 3>& corner,
                                             std::size_t axis) const {
     const auto [low, high] = std::minmax({corner[0][axis], corner[1][axis], corner[2][axis]});
-    const auto index = [&](double x) { return (x - _p.low[axis]) / cell_width(_p, axis) - 0.5; };
+    if (flow::is_stretched(_p, axis)) {  // sheets lie in its core, far from images beyond its sides
+      const std::vector<double>& centres = _cells.coordinates[axis];
+      const auto first = std::ranges::lower_bound(centres, low),
+                 end = std::ranges::upper_bound(centres, high);
+      return {static_cast<double>(first - centres.begin()), static_cast<double>(end - centres.begin()) - 1.0};
+    }
+    const auto index = [&](double x) { return (x - _p.low[axis]) / flow::cell_width(_p, axis, 0) - 0.5; };
     return {std::ceil(index(low) - 1e-9), std::floor(index(high) + 1e-9)};
   }
   void mark(double i, double j) {
@@ -77,6 +92,7 @@ class Section {
   }
 
   const flow::Parameters& _p;
+  Lattice _cells;
   std::size_t _across, _last;
   std::vector<char> _is_covered;
 };
@@ -107,7 +123,7 @@ double closed_part(const flow::Parameters& p, const Body& body, std::size_t axis
 
 bool is_flat(const Body& body, const flow::Parameters& p, std::size_t axis) {
   const auto [low, high] = body.extents()[axis];
-  return low + high <= 1e-9 * cell_width(p, axis);
+  return low + high <= 1e-9 * core_width(p, axis);
 }
 
 /// True if the sides of an axis leave the mean velocity along it to the forces.
@@ -130,7 +146,7 @@ std::vector<const Body*> bodies_beside(const FlowScene& scene, const Body& body,
   const flow::Parameters& p = scene.parameters;
   std::vector<const Body*> bodies;
   for (const Body& other : scene.bodies)
-    if (is_flat(other, p, axis) && std::abs(other.centre[axis] - body.centre[axis]) <= cell_width(p, axis))
+    if (is_flat(other, p, axis) && std::abs(other.centre[axis] - body.centre[axis]) <= core_width(p, axis))
       bodies.push_back(&other);
   return bodies;
 }

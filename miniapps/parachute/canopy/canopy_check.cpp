@@ -75,10 +75,10 @@ void check_cuts(const Place& at, const Canopy& canopy, double end_time) {
 }
 
 void check_edges(const Place& at, const flow::Parameters& p, const Canopy& canopy) {
-  double width = cell_width(p, 0);
+  double width = core_width(p, 0);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     at.refuse_if(p.cells[axis] == 1, "", ": the grid has one cell along ", axis_names[axis]);
-    width = std::min(width, cell_width(p, axis));
+    width = std::min(width, core_width(p, axis));
   }
   const double longest = largest_edge_in_cells * width;
   at.refuse_if(canopy.edge_length > (1.0 + 1e-9) * longest, "edge_length", " = ", canopy.edge_length,
@@ -104,7 +104,7 @@ double first_dt(const FlowScene& scene) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::optional<double> speed = constant_value(scene.initial_velocity()[axis]);
     if (!speed) return 0.0;
-    rate += std::abs(*speed) / cell_width(p, axis);
+    rate += std::abs(*speed) / core_width(p, axis);
   }
   return rate > 0.0 ? std::min(p.max_dt, scene.cfl() / rate) : p.max_dt;
 }
@@ -125,12 +125,14 @@ void check_stiffness(const Place& at, const FlowScene& scene, const Canopy& cano
 void check_inside(const Place& root, const flow::Parameters& p, const std::vector<Vector>& positions,
                   const std::string& key, const std::string& name) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) continue;
+    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic && !flow::is_stretched(p, axis)) continue;
     const auto [low, high] = std::ranges::minmax(positions, {}, [axis](const Vector& x) { return x[axis]; });
-    const double margin = cell_width(p, axis), least = p.low[axis] + margin, most = p.high[axis] - margin;
+    const auto [begin, end] = sheet_extent(p, axis);
+    const double margin = core_width(p, axis), least = begin + margin, most = end - margin;
     const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
     if (low[axis] >= least - rounding && high[axis] <= most + rounding) continue;
-    refuse_beyond_sides(root, key, name + " with its payload", axis, {low[axis], high[axis]}, {least, most});
+    refuse_beyond_sides(root, p, key, name + " with its payload", axis, {low[axis], high[axis]},
+                        {least, most});
   }
 }
 

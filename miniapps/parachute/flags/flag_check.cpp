@@ -13,7 +13,7 @@ constexpr double most_flag_vertices = 1048576.0;  // 2^20
 
 /// Checks that a flag resolves its motion on the grid and lies within the domain at the start.
 void check_flag(const Place& at, const flow::Parameters& p, const Flag& flag) {
-  const auto spacing = lattice_of(p).spacing;
+  const auto spacing = flow::core_of(p).spacing;
   const double width = flag.has_width() ? std::min({spacing[0], spacing[1], spacing[2]})
                                         : std::min(spacing[0], spacing[1]),
                longest = largest_edge_in_cells * width;
@@ -27,7 +27,7 @@ void check_flag(const Place& at, const flow::Parameters& p, const Flag& flag) {
   std::vector<fabric::Vector> positions;
   append_flags({flag}, sheets, positions);
   for (std::size_t axis = 0; axis < (flag.has_width() ? 3U : 2U); ++axis) {
-    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) {
+    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic && !flow::is_stretched(p, axis)) {
       const double most = p.high[axis] - p.low[axis] - 2.0 * spacing[axis];
       at.refuse_if(axis == 2 && *flag.width > most, "width", " = ", flag.width.value_or(0.0),
                    " m: the flag meets itself across the periodic sides; at most ", rounded_text(most), " m");
@@ -35,10 +35,11 @@ void check_flag(const Place& at, const flow::Parameters& p, const Flag& flag) {
     }
     const auto [low, high] =
         std::ranges::minmax(positions, {}, [axis](const fabric::Vector& x) { return x[axis]; });
-    const double least = p.low[axis] + spacing[axis], most = p.high[axis] - spacing[axis];
+    const auto [begin, end] = sheet_extent(p, axis);
+    const double least = begin + spacing[axis], most = end - spacing[axis];
     if (low[axis] >= least && high[axis] <= most) continue;
     const char* const key = axis < 2 ? "leading_edge" : *flag.width <= most - least ? "middle" : "width";
-    refuse_beyond_sides(at, key, at.path(), axis, {low[axis], high[axis]}, {least, most},
+    refuse_beyond_sides(at, p, key, at.path(), axis, {low[axis], high[axis]}, {least, most},
                         axis == 2 ? ", by its width and middle" : "");
   }
 }

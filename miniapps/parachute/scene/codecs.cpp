@@ -25,28 +25,92 @@ std::string number_or_string(const std::string& text) {
   return is_number ? toml_text(number) : toml_string(text);
 }
 
+/// Reads the ends of three intervals, which it changes only without a fault.
+std::string read_box(const Node& node, const Limits& limits, std::array<double, 3>& low,
+                     std::array<double, 3>& high) {
+  std::array<double, 3> ends[2];
+  std::string fault = scene::read_elements(node, 3, "intervals", [&](const Node& element, std::size_t i) {
+    Pair interval{};
+    std::string wrong = scene::Form<Pair>::read(element, limits, interval);
+    if (wrong.empty() && !(interval[0] < interval[1]))
+      wrong = "= " + toml_text(interval) + ": the first number must be the smaller";
+    ends[0][i] = interval[0];
+    ends[1][i] = interval[1];
+    return wrong;
+  });
+  if (fault.empty()) low = ends[0], high = ends[1];
+  return fault;
+}
+
+std::string box_text(const std::array<double, 3>& low, const std::array<double, 3>& high) {
+  return array_text(std::array{0U, 1U, 2U}, [&](std::size_t axis) {
+    return toml_text(Pair{low[axis], high[axis]});
+  });
+}
+
+const char* const box_type = "array of 3 intervals [real, real]";
+
 }  // namespace
+
+Codec core_codec(std::optional<GridCore>& core) {
+  return scene::make_codec(
+      box_type, core,
+      [](const Node& node, const Limits& limits, std::optional<GridCore>& value) {
+        GridCore& box = value.emplace();
+        return read_box(node, limits, box.low, box.high);
+      },
+      [](const std::optional<GridCore>& value) {
+        return value ? std::optional(box_text(value->low, value->high)) : std::nullopt;
+      });
+}
+
+Codec spacing_codec(std::array<double, 3>& spacing) {
+  return scene::make_codec(
+      "real or array of 3 reals", spacing,
+      [](const Node& node, const Limits& limits, std::array<double, 3>& value) {
+        if (node.as<Node::Array>() != nullptr)
+          return scene::Form<std::array<double, 3>>::read(node, limits, value);
+        double all = 0.0;
+        std::string fault = scene::read_real(node, limits, all);
+        value.fill(all);
+        return fault;
+      },
+      [](const std::array<double, 3>& value) {
+        const bool is_one = value[0] == value[1] && value[0] == value[2];
+        return std::optional(is_one ? toml_text(value[0]) : toml_text(value));
+      });
+}
+
+Codec faces_codec(std::optional<std::array<AxisFaces, 3>>& faces) {
+  return scene::make_codec(
+      "array of 3 arrays of reals or names of files", faces,
+      [](const Node& node, const Limits& limits, std::optional<std::array<AxisFaces, 3>>& value) {
+        std::array<AxisFaces, 3>& axes = value.emplace();
+        return scene::read_elements(
+            node, 3, "arrays of numbers or names of files", [&](const Node& axis, std::size_t i) {
+              if (const auto* file = axis.as<std::string>(); file != nullptr) {
+                axes[i].file = *file;
+                return std::string();
+              }
+              return scene::read_elements(axis, 0, "numbers", [&](const Node& face, std::size_t) {
+                return scene::read_real(face, limits, axes[i].values.emplace_back());
+              });
+            });
+      },
+      [](const std::optional<std::array<AxisFaces, 3>>& value) -> std::optional<std::string> {
+        if (!value) return std::nullopt;
+        return array_text(*value, [](const AxisFaces& axis) {
+          return array_text(axis.values, [](double face) { return toml_text(face); });
+        });
+      });
+}
 
 Codec domain_codec(std::array<double, 3>& low, std::array<double, 3>& high) {
   const auto read = [&low, &high](const Node& node, const Limits& limits) {
-    std::array<double, 3> ends[2];
-    std::string fault = scene::read_elements(node, 3, "intervals", [&](const Node& element, std::size_t i) {
-      Pair interval{};
-      std::string wrong = scene::Form<Pair>::read(element, limits, interval);
-      if (wrong.empty() && !(interval[0] < interval[1]))
-        wrong = "= " + toml_text(interval) + ": the first number must be the smaller";
-      ends[0][i] = interval[0];
-      ends[1][i] = interval[1];
-      return wrong;
-    });
-    if (fault.empty()) low = ends[0], high = ends[1];
-    return fault;
+    return read_box(node, limits, low, high);
   };
-  const auto print = [&low, &high] {
-    const auto interval = [&](std::size_t axis) { return toml_text(Pair{low[axis], high[axis]}); };
-    return std::optional(array_text(std::array{0U, 1U, 2U}, interval));
-  };
-  return {"array of 3 intervals [real, real]", read, print,
+  const auto print = [&low, &high] { return std::optional(box_text(low, high)); };
+  return {box_type, read, print,
           [reset_low = scene::back_to_default(low), reset_high = scene::back_to_default(high)] {
             reset_low();
             reset_high();

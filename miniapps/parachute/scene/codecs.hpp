@@ -12,6 +12,15 @@ namespace drogue::parachute_app {
 /// Array of three intervals, one per axis. Does not throw.
 scene::Codec domain_codec(std::array<double, 3>& low, std::array<double, 3>& high);
 
+/// Array of three intervals, or nothing. Does not throw.
+scene::Codec core_codec(std::optional<GridCore>& core);
+
+/// One real for all axes, or an array of three. Does not throw.
+scene::Codec spacing_codec(std::array<double, 3>& spacing);
+
+/// Array of three lists of reals or names of files, or nothing. Does not throw.
+scene::Codec faces_codec(std::optional<std::array<AxisFaces, 3>>& faces);
+
 /// Array of three reals or expressions of `variables`. Does not throw.
 scene::Codec vector_expression_codec(VectorExpression& vector, const std::vector<std::string>& variables);
 

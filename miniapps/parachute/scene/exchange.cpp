@@ -32,7 +32,7 @@ double courant_number(const FlowScene& scene) {
   const double dt = p.fixed_dt > 0.0 ? p.fixed_dt : p.max_dt, given = p.fixed_dt > 0.0 ? 1.0 : scene.cfl();
   double passed = 0.0;  // cells of the stream in a step
   const std::array<double, 3> stream = scene.stream().value_or(std::array<double, 3>{});
-  for (std::size_t axis = 0; axis < 3; ++axis) passed += std::abs(stream[axis]) * dt / cell_width(p, axis);
+  for (std::size_t axis = 0; axis < 3; ++axis) passed += std::abs(stream[axis]) * dt / core_width(p, axis);
   return passed > 0.0 ? std::min(given, faster_beside_edges * passed) : given;
 }
 

@@ -35,22 +35,43 @@ device::ExpressionProgram device_program(const std::string& text) {
   return builder.program();
 }
 
-std::array<double, 3> Lattice::place(std::size_t entry) const {
+std::array<int, 3> Lattice::index(std::size_t entry) const {
   const auto row = static_cast<std::size_t>(n[0]), column = static_cast<std::size_t>(n[1]);
-  const std::size_t index[] = {entry % row, entry / row % column, entry / row / column};
+  return {static_cast<int>(entry % row), static_cast<int>(entry / row % column),
+          static_cast<int>(entry / row / column)};
+}
+
+std::array<double, 3> Lattice::place(std::size_t entry) const {
+  const std::array<int, 3> at = index(entry);
   std::array<double, 3> result{};
-  for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = coordinate(axis, static_cast<int>(index[axis]));
+  for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = coordinate(axis, at[axis]);
   return result;
 }
 
-Lattice lattice_of(const flow::Parameters& parameters, std::size_t normal) {
-  Lattice lattice{flow::extents(parameters, normal), {}, {}, {0, 0, 0}};
+double Lattice::volume(std::size_t entry) const {
+  const std::array<int, 3> at = index(entry);
+  double volume = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    volume *= widths[axis][static_cast<std::size_t>(origin[axis] + at[axis])];
+  return volume;
+}
+
+Lattice lattice_of(const flow::Parameters& p, std::size_t normal) {
+  Lattice lattice{flow::extents(p, normal), {}, {}, {0, 0, 0}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int cells = parameters.cells[axis];
-    const double h = (parameters.high[axis] - parameters.low[axis]) / cells;
-    const bool on_faces = normal == axis && cells > 1;
-    lattice.spacing[axis] = h;
-    lattice.first[axis] = parameters.low[axis] + (on_faces ? 0.0 : 0.5 * h);
+    const int cells = p.cells[axis];
+    const bool on_faces = normal == axis && cells > 1,
+               is_periodic = p.boundary[2 * axis].kind == flow::BoundaryKind::periodic;
+    const double mean = (p.high[axis] - p.low[axis]) / cells;
+    const auto width = [&](int i) {  // none beyond the sides
+      if (is_periodic) i = (i + cells) % cells;
+      return i < 0 || i >= cells ? 0.0 : flow::cell_width(p, axis, i) / mean;
+    };
+    for (int i = 0; i < lattice.n[axis]; ++i) {
+      lattice.coordinates[axis].push_back(on_faces ? flow::face_coordinate(p, axis, i)
+                                                   : flow::centre_coordinate(p, axis, i));
+      lattice.widths[axis].push_back(on_faces ? 0.5 * (width(i - 1) + width(i)) : width(i));
+    }
   }
   return lattice;
 }

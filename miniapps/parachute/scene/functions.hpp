@@ -7,6 +7,7 @@
 
 #include "common/expression/expression.hpp"
 #include "kernels/device/expression_program.hpp"
+#include "kernels/flow/axis_lines.hpp"
 #include "kernels/flow/solver.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
@@ -44,24 +45,28 @@ class SpaceTimeFunction {
 /// Program of an expression for kernels. Throws std::invalid_argument if it is too long.
 [[nodiscard]] device::ExpressionProgram device_program(const std::string& text);
 
-/// Points of an array of the state, or of a part of it: `n` along each axis. Point (0, 0, 0) of the whole
-/// array is at `first`, m; points are `spacing`, m, apart. Entry i + n[0] (j + n[1] k) is at point `origin` +
-/// (i, j, k).
+/// Points of an array of the state, or of a part of it: `n` along each axis. Entry i + n[0] (j + n[1] k) is
+/// at point `origin` + (i, j, k) of the whole array.
 struct Lattice {
   std::array<int, 3> n;
-  std::array<double, 3> first, spacing;
+  std::array<std::vector<double>, 3> coordinates;  ///< of all points of the whole array along each axis, m
+  /// Widths of the parts of each axis that these points stand for, over the mean width of a cell.
+  std::array<std::vector<double>, 3> widths;
   std::array<int, 3> origin = {0, 0, 0};
 
   [[nodiscard]] std::size_t size() const {
     return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
   }
+  [[nodiscard]] std::array<int, 3> index(std::size_t entry) const;
   [[nodiscard]] double coordinate(std::size_t axis, int index) const {
-    return first[axis] + (origin[axis] + index) * spacing[axis];
+    return coordinates[axis][static_cast<std::size_t>(origin[axis] + index)];
   }
   [[nodiscard]] std::array<double, 3> place(std::size_t entry) const;
+  /// Volume that an entry stands for, over the mean volume of a cell.
+  [[nodiscard]] double volume(std::size_t entry) const;
 };
 
-/// Cell centres, or the faces normal to an axis, coordinates in m. Does not throw.
+/// Cell centres, or the faces normal to an axis, coordinates in m. Throws only std::bad_alloc.
 [[nodiscard]] Lattice lattice_of(const flow::Parameters& parameters, std::size_t normal = flow::at_cells);
 
 /// "(x, y, z)" of a place, m. Throws only std::bad_alloc.

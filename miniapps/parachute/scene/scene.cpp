@@ -100,7 +100,12 @@ std::array<bool, 3> FlowScene::open_axes() const {
   return axes;
 }
 
-double cell_width(const flow::Parameters& p, std::size_t axis) { return lattice_of(p).spacing[axis]; }
+double core_width(const flow::Parameters& p, std::size_t axis) { return flow::core_of(p).spacing[axis]; }
+
+std::array<double, 2> sheet_extent(const flow::Parameters& p, std::size_t axis) {
+  const flow::Core box = flow::force_box(p);
+  return {box.low[axis], box.high[axis]};
+}
 
 std::string print_flow_scene(const FlowScene& scene) {
   return framework::print_scene(scene, declare_flow_scene);

@@ -35,7 +35,18 @@ inline constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 /// Frame of reference of the grid.
 enum class Frame {
   fixed,   ///< that of fluid.velocity
-  follow,  ///< moves with the payload of the first canopy
+  follow,  ///< moves with the payload of the first canopy, or with its middle to the canopy
+};
+
+/// Box of a stretched grid whose cells have one width along each axis, m.
+struct GridCore {
+  std::array<double, 3> low{}, high{};
+};
+
+/// Coordinates of the faces of an axis, m, or the file that has them, one a line.
+struct AxisFaces {
+  std::vector<double> values;
+  std::string file;
 };
 
 enum class AdvectionScheme { central, weno5 };
@@ -162,6 +173,10 @@ struct FlowScene {
   std::optional<std::monostate> fluid;  ///< absent: a cloth drop, which has no grid either
   /// Complete once the scene has been read; of a cloth drop, only `fixed_dt` and `max_steps` count.
   flow::Parameters parameters = air_parameters();
+  std::optional<GridCore> core;                   ///< of a grid whose cells grow outside of it
+  std::array<double, 3> spacing{};                ///< largest widths of cells in `core`, m
+  double growth = 1.06;                           ///< largest ratio of the widths of neighbours
+  std::optional<std::array<AxisFaces, 3>> faces;  ///< of a grid that is given by them
   Frame frame = Frame::fixed;
   AdvectionScheme advection = AdvectionScheme::weno5;
   Weights weights = Weights::z;
@@ -202,6 +217,14 @@ struct FlowScene {
     if (parameters.cfl > 0.0) return parameters.cfl;
     return has_sheets() ? coupling::default_cfl : flow::default_cfl(parameters.time_scheme);
   }
+  /// Number of cells. Does not throw.
+  [[nodiscard]] double cells() const {
+    return static_cast<double>(parameters.cells[0]) * parameters.cells[1] * parameters.cells[2];
+  }
+  /// True if the cells of an axis have widths of their own. Does not throw.
+  [[nodiscard]] bool has_stretched_axes() const {
+    return std::ranges::any_of(parameters.faces, [](const auto& axis) { return !axis.empty(); });
+  }
   /// Axes along which the grid can move: fluid flows in or out at both sides. Does not throw.
   [[nodiscard]] std::array<bool, 3> open_axes() const;
   [[nodiscard]] const VectorExpression& initial_velocity() const {
@@ -213,8 +236,12 @@ struct FlowScene {
 /// throw.
 const std::vector<std::string>& field_names();
 
-/// Width of the cells along an axis, m. Does not throw.
-double cell_width(const flow::Parameters& p, std::size_t axis);
+/// Width of the cells in the core along an axis, m: that of all cells of a uniform axis. Does not throw.
+double core_width(const flow::Parameters& p, std::size_t axis);
+
+/// Ends along an axis of the part of the grid that sheets and their forces lie in, m: the domain, or near
+/// stretched cells the core without its outermost cells. Does not throw.
+std::array<double, 2> sheet_extent(const flow::Parameters& p, std::size_t axis);
 
 /// True for fields of canopies. Does not throw.
 bool is_canopy_field(const std::string& name);

@@ -24,25 +24,6 @@ constexpr double flux_tolerance = 1e-10;
 
 std::string key_of_wall(std::size_t side) { return std::string("grid.wall_velocity.") + side_names[side]; }
 
-void check_grid(const Place& root, const flow::Parameters& p) {
-  constexpr int least_cells = 4;
-  constexpr double most_cells = 2147483647.0;
-  double cells = 1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    root.refuse_if(p.cells[axis] > 1 && p.cells[axis] < least_cells, "grid.cells", "[", axis,
-                   "] = ", p.cells[axis], " is out of range: an axis has 1 cell, or at least 4");
-    cells *= p.cells[axis];
-    const double length = p.high[axis] - p.low[axis], h = length / p.cells[axis];
-    const double rounding =
-        std::numeric_limits<double>::epsilon() * std::max(std::abs(p.low[axis]), std::abs(p.high[axis]));
-    root.refuse_if(!std::isfinite(length) || h < 16.0 * rounding, "grid.domain", ": along ", axis_names[axis],
-                   ", ", p.cells[axis], " cells between ", p.low[axis], " and ", p.high[axis],
-                   " have faces that do not differ in FP64");
-  }
-  root.refuse_if(cells > most_cells, "grid.cells", ": ", static_cast<std::int64_t>(cells),
-                 " cells are more than 2^31 - 1");
-}
-
 void complete_sides(const Place& root, FlowScene& scene) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::optional<SidePair>& sides = scene.sides[axis];
@@ -63,9 +44,14 @@ void complete_sides(const Place& root, FlowScene& scene) {
 
 void complete_scheme(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  p.advection = scene.advection == AdvectionScheme::central ? flow::Advection::central
-                : scene.weights == Weights::js              ? flow::Advection::weno_js
-                                                            : flow::Advection::weno_z;
+  switch (scene.advection) {
+    case AdvectionScheme::central:
+      p.advection = flow::Advection::central;
+      break;
+    case AdvectionScheme::weno5:
+      p.advection = scene.weights == Weights::js ? flow::Advection::weno_js : flow::Advection::weno_z;
+      break;
+  }
   for (std::size_t axis = 0; axis < 3; ++axis)
     root.refuse_if(p.pressure_drop[axis] != 0.0 && p.boundary[2 * axis].kind != BoundaryKind::periodic,
                    "flow.pressure_drop", ": the axis ", axis_names[axis], " has no periodic sides");
@@ -101,7 +87,8 @@ Lattice side_lattice(const flow::Parameters& p, std::size_t side, std::size_t no
   const std::size_t axis = side / 2;
   Lattice lattice = lattice_of(p, normal);
   lattice.n[axis] = 1;
-  lattice.first[axis] = side % 2 == 0 ? p.low[axis] : p.high[axis];
+  lattice.coordinates[axis] = {side % 2 == 0 ? p.low[axis] : p.high[axis]};
+  lattice.widths[axis] = {1.0};
   return lattice;
 }
 
@@ -158,17 +145,26 @@ void complete_velocities(const Place& root, FlowScene& scene) {
   }
 }
 
+/// Mean area of the faces of the cells at the sides normal to an axis, m^2.
+double mean_face_area(const flow::Parameters& p, std::size_t axis) {
+  double area = 1.0;
+  for (const std::size_t across : {(axis + 1) % 3, (axis + 2) % 3})
+    area *= (p.high[across] - p.low[across]) / p.cells[across];
+  return area;
+}
+
 /// Net flow rate through all inflow sides into the domain, m^3/s, and the sum of its parts' magnitudes.
 std::array<double, 2> inflow_at(const FlowScene& scene, double time) {
   std::array<double, 2> rates{};
   for (std::size_t side = 0; side < 6; ++side) {
     if (scene.parameters.boundary[side].kind != BoundaryKind::inflow) continue;
     const Lattice lattice = side_lattice(scene.parameters, side);
-    const double area = lattice.spacing[(side / 2 + 1) % 3] * lattice.spacing[(side / 2 + 2) % 3] *
-                        (side % 2 == 0 ? 1.0 : -1.0);
-    for (const double value : evaluate(SpaceTimeFunction(scene.velocity[side / 2]), lattice, time)) {
-      rates[0] += value * area;
-      rates[1] += std::abs(value * area);
+    const double mean_area = mean_face_area(scene.parameters, side / 2) * (side % 2 == 0 ? 1.0 : -1.0);
+    const std::vector<double> values = evaluate(SpaceTimeFunction(scene.velocity[side / 2]), lattice, time);
+    for (std::size_t entry = 0; entry < values.size(); ++entry) {
+      const double rate = values[entry] * (mean_area * lattice.volume(entry));
+      rates[0] += rate;
+      rates[1] += std::abs(rate);
     }
   }
   return rates;
@@ -230,7 +226,7 @@ void note_growing_energy(FlowScene& scene) {
 double least_width(const flow::Parameters& p) {
   double least = infinity;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (p.cells[axis] > 1) least = std::min(least, cell_width(p, axis));
+    if (p.cells[axis] > 1) least = std::min(least, core_width(p, axis));
   return least;
 }
 
@@ -384,18 +380,24 @@ void complete_fields(const Place& root, FlowScene& scene) {
 
 }  // namespace
 
-void refuse_beyond_sides(const Place& root, const std::string& key, const std::string& name, std::size_t axis,
-                         std::array<double, 2> extent, std::array<double, 2> allowed, const char* remedy) {
+std::string beyond_sides_text(const flow::Parameters& p, std::size_t axis) {
+  return flow::is_stretched(p, axis) ? "the core of the grid less two cells at each end"
+                                     : "the cells beside the sides of the domain";
+}
+
+void refuse_beyond_sides(const Place& root, const flow::Parameters& p, const std::string& key,
+                         const std::string& name, std::size_t axis, std::array<double, 2> extent,
+                         std::array<double, 2> allowed, const char* remedy) {
   root.contradict(key, name, " reaches from ", rounded_text(extent[0]), " to ", rounded_text(extent[1]),
-                  " m along ", axis_names[axis],
-                  ", beyond the cells beside the sides of the domain: it must lie between ",
-                  rounded_text(allowed[0]), " and ", rounded_text(allowed[1]), " m", remedy);
+                  " m along ", axis_names[axis], ", beyond ", beyond_sides_text(p, axis),
+                  ": it must lie between ", rounded_text(allowed[0]), " and ", rounded_text(allowed[1]), " m",
+                  remedy);
 }
 
 void complete_and_check(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   if (scene.has_fluid()) {
-    check_grid(root, p);
+    complete_and_check_grid(root, scene);
     complete_sides(root, scene);
     complete_scheme(root, scene);
     note_growing_energy(scene);
@@ -421,6 +423,7 @@ void complete_and_check(const Place& root, FlowScene& scene) {
     if (!scene.flags.empty()) sheets = make_all_sheets({}, {}, p.density, p.viscosity, scene.flags);
     check_images(root, scene, sheets);
     note_narrow_channels(root, scene, sheets);
+    note_unfit_canopies(root, scene);
   } else {
     check_steps(root, scene);
   }

@@ -13,6 +13,9 @@ void complete_and_check(const scene::Place& root, FlowScene& scene);
 /// Checks [verify] against the rest of the scene.
 void check_verify(const scene::Place& root, const FlowScene& scene);
 
+/// Sets cells, domain and faces of a grid with a core or faces, and checks its size.
+void complete_and_check_grid(const scene::Place& root, FlowScene& scene);
+
 /// Fills in defaults of bodies that depend on their kind, and checks bodies against the grid and the steps.
 void complete_and_check_bodies(const scene::Place& root, FlowScene& scene);
 
@@ -43,6 +46,10 @@ void check_frame(const scene::Place& root, const FlowScene& scene);
 /// moves with it, sharp coupling prescribed motion.
 void check_method(const scene::Place& root, const FlowScene& scene);
 
+/// Notes canopies with lines whose drag and speed are not those in free air, or depend on the cells: a narrow
+/// or short domain, its sides, coarse cells, edges that act beyond the cloth, dimensions of another canopy.
+void note_unfit_canopies(const scene::Place& root, FlowScene& scene);
+
 /// Refuses canopies that cross a body at the start, with their cloth or their lines. `sheets`: of the scene.
 void check_canopies_beside_bodies(const scene::Place& root, const FlowScene& scene, const Sheets& sheets);
 
@@ -57,10 +64,15 @@ void check_images(const scene::Place& root, const FlowScene& scene, const Sheets
 /// to stop before them, which the coupling follows within many steps, without a given bound of dt.
 void note_narrow_channels(const scene::Place& root, FlowScene& scene, const Sheets& sheets);
 
+/// Words on where sheets must not reach along an axis: "the cells beside the sides of the domain". Throws
+/// only std::bad_alloc.
+std::string beyond_sides_text(const flow::Parameters& p, std::size_t axis);
+
 /// Refuses `name`, which reaches from `low` to `high` along an axis, m, beyond the cells beside the sides of
-/// the domain, as a fault of a key. `remedy`: the end of the sentence.
-[[noreturn]] void refuse_beyond_sides(const scene::Place& root, const std::string& key,
-                                      const std::string& name, std::size_t axis, std::array<double, 2> extent,
-                                      std::array<double, 2> allowed, const char* remedy = "");
+/// the domain or out of the core, as a fault of a key. `remedy`: the end of the sentence.
+[[noreturn]] void refuse_beyond_sides(const scene::Place& root, const flow::Parameters& p,
+                                      const std::string& key, const std::string& name, std::size_t axis,
+                                      std::array<double, 2> extent, std::array<double, 2> allowed,
+                                      const char* remedy = "");
 
 }  // namespace drogue::parachute_app

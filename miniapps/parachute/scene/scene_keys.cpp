@@ -54,13 +54,31 @@ void declare_fluid(Table& table, FlowScene& scene) {
 
 void declare_grid(Table& table, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  table.value("cells", p.cells, "Cells along x, y, z; 1 for an axis along which nothing varies",
-              {.range = between(1, most_cells_per_axis), .required = true});
+  const Condition core = {[&scene] { return scene.core.has_value(); }, "with core", "cells"};
+  table.value("cells", p.cells, "Cells of one width along x, y, z; 1 for an axis along which nothing varies",
+              {.range = between(1, most_cells_per_axis),
+               .when = {[&scene] { return !scene.core && !scene.faces; }, "without core and faces", "core"}});
   table.value("domain", domain_codec(p.low, p.high), "Ends of the domain along x, y, z",
-              {.unit = "m", .required = true});
-  table.value("frame", scene.frame, frame_choices,
-              "The grid is at rest, or moves with the payload of the first canopy along axes with inflow or "
-              "outflow sides");
+              {.unit = "m",
+               .when = {[&scene] { return !scene.faces; }, "without faces, which have them", "faces"},
+               .required = true});
+  table.value("core", core_codec(scene.core),
+              "Box in the domain with cells of one width, outside of which they grow up to its ends; for "
+              "canopies, flags and bodies",
+              {.unit = "m"});
+  table.value("spacing", spacing_codec(scene.spacing),
+              "Largest width of a cell in the core, of which each axis has the fewest that are no wider",
+              {.unit = "m", .range = positive, .when = core, .required = true});
+  table.value("growth", scene.growth, "Largest ratio of the widths of neighbouring cells outside the core",
+              {.range = scene::above(1.0).at_most(1.1), .when = core});
+  table.value("faces", faces_codec(scene.faces),
+              "Coordinates of the faces of the cells along x, y, z, ascending, or files with one a line",
+              {.unit = "m"});
+  table.exactly_one_of({"cells", "core", "faces"});
+  table.value(
+      "frame", scene.frame, frame_choices,
+      "The grid is at rest, or moves along axes with inflow or outflow sides: with the payload of the "
+      "first canopy, or on a stretched grid with the middle between it and its canopies");
   table.table(
       "boundary",
       [&scene](Table& sides) {

@@ -23,9 +23,6 @@ constexpr std::int64_t steps_per_block = 256;
 
 constexpr double most_steps_of_drop = 1e15;
 
-/// Longest wall-clock time between two polls for a signal, s.
-constexpr double longest_batch_s = 0.1;
-
 fabric::Parameters fabric_parameters(const FlowScene& scene, const Sheets& sheets) {
   fabric::Parameters p = sheets.fabric;
   p.gravity = scene.gravity;
@@ -69,12 +66,6 @@ void ClothSimulation::allocate_buffers() {
   static_cast<void>(snapshot());
 }
 
-framework::SimulationTime ClothSimulation::now() {
-  const fabric::TimeState now = _solver->time_state();
-  // At the end of a block the time equals that of an output or a cut bit for bit.
-  return {now.step, now.step == _block.end ? _block.time : now.time()};
-}
-
 /// Plans a block of steps from now towards a time, s, and cuts the lines that are due. Returns false if
 /// run.dt is too long.
 bool ClothSimulation::plan(double target) {
@@ -94,19 +85,18 @@ bool ClothSimulation::plan(double target) {
   const bool is_last = steps <= static_cast<double>(steps_per_block);
   const std::int64_t count = is_last ? static_cast<std::int64_t>(steps) : steps_per_block;
   _solver->set_time_state({step, dt, step, time});
-  _block.end = step + count;
-  _block.time = is_last ? stop : _solver->time_state().start + static_cast<double>(count) * dt;
-  _block.dt_min = _block.dt_min > 0.0 ? std::min(_block.dt_min, dt) : dt;
-  _block.dt_max = std::max(_block.dt_max, dt);
+  _plan.stop_step = step + count;
+  _plan.stop_time = is_last ? stop : _solver->time_state().start + static_cast<double>(count) * dt;
+  _plan.count(dt);
   return true;
 }
 
 std::int64_t ClothSimulation::steps_to_event(const framework::AdvanceLimits& limits) const {
   const std::int64_t step = _solver->time_state().step;
-  std::int64_t next = std::min(_block.end, _scene.parameters.max_steps);
+  std::int64_t next = std::min(_plan.stop_step, _scene.parameters.max_steps);
   if (limits.row_every > 0) next = std::min(next, (step / limits.row_every + 1) * limits.row_every);
   if (limits.pause_step > step) next = std::min(next, limits.pause_step);
-  return std::min(next - step, _batch);
+  return std::min(next - step, _batch.steps());
 }
 
 /// Takes steps and adapts the length of the next batch. Returns false if the state was lost.
@@ -114,9 +104,7 @@ bool ClothSimulation::take_steps(std::int64_t steps) {
   const Stopwatch stopwatch;
   _solver->enqueue_steps(steps);
   _failure = _solver->failure();
-  const double seconds = stopwatch.seconds();
-  if (seconds < 0.5 * longest_batch_s && steps == _batch) _batch *= 2;
-  if (seconds > longest_batch_s) _batch = std::max<std::int64_t>(1, _batch / 2);
+  _batch.adapt(steps, stopwatch.seconds());
   return !_failure;
 }
 
@@ -134,7 +122,7 @@ framework::StopReason ClothSimulation::advance(const framework::AdvanceLimits& l
     if (!poll({step, time})) return framework::StopReason::interrupted;
     if (step >= _scene.parameters.max_steps) return fail_with_row(step);
     // A run that continues may have other outputs.
-    if ((step >= _block.end || _block.time > limits.target_time) && !plan(limits.target_time))
+    if ((step >= _plan.stop_step || _plan.stop_time > limits.target_time) && !plan(limits.target_time))
       return fail_with_row(step);
     if (!take_steps(steps_to_event(limits))) {
       return_to_checkpoint();
@@ -152,8 +140,8 @@ void ClothSimulation::return_to_checkpoint() {
   _solver->download(positions, velocities);
   _solver->upload(positions, velocities);  // forgets the failure
   const fabric::TimeState now = _solver->time_state();
-  _block.end = now.step;
-  _block.time = now.time();
+  _plan.stop_step = now.step;
+  _plan.stop_time = now.time();
   if (_cuts.restart_at(now.time())) _solver->set_line_stiffness(_cuts.stiffness());
 }
 
@@ -223,8 +211,8 @@ std::string ClothSimulation::failure_text(bool) {
 
 void ClothSimulation::describe(run::ResultDocument& result) {
   result.driver = _solver->driver();
-  result.dt_min = _block.dt_min;
-  result.dt_max = _block.dt_max;
+  result.dt_min = _plan.dt_min;
+  result.dt_max = _plan.dt_max;
   result.metrics.set("canopies", "vertices", static_cast<std::int64_t>(_sheets.positions.size()));
 }
 
@@ -240,50 +228,16 @@ ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::Result
   return ExitCode::ok;
 }
 
-/// Visits every scalar entry of a restart file. `number` and `integer` write or read one entry.
-template <class Plan, class Number, class Integer>
-void ClothSimulation::visit(Plan& clock, Block& block, const Number& number, const Integer& integer) {
-  integer("step", clock.step);
-  number("dt", clock.dt);
-  integer("since", clock.since);
-  number("start", clock.start);
-  integer("block_end", block.end);
-  number("block_time", block.time);
-  number("dt_min", block.dt_min);
-  number("dt_max", block.dt_max);
-}
-
 void ClothSimulation::write_restart(run::RestartWriter& writer) {
-  fabric::TimeState clock = _solver->time_state();
-  visit(
-      clock, _block, [&](const std::string& name, double value) { writer.number(name, value); },
-      [&](const std::string& name, std::int64_t value) { writer.integer(name, value); });
   _peaks.write_watch(writer);
-  const std::vector<double> state = _solver->download_state();
-  std::span<const double> left = state;
-  for (const stepping::StateArray& array : _solver->state_arrays()) {
-    writer.array(array.name, array.size());
-    writer.write(array.name, 0, left.first(array.size()));
-    left = left.subspan(array.size());
-  }
+  framework::write_restart(writer, *_solver, _plan);
 }
 
 void ClothSimulation::restore(const run::RestartReader& reader) {
   const ScopedStopwatch stopwatch(_h2d_s);
-  fabric::TimeState clock;
-  visit(
-      clock, _block, [&](const std::string& name, double& value) { value = reader.number(name); },
-      [&](const std::string& name, std::int64_t& value) { value = reader.integer(name); });
   _peaks.require_watch(reader);
   _peaks.watch(*_solver, _sheets);
-  std::vector<double> state;
-  for (const stepping::StateArray& array : _solver->state_arrays()) {
-    std::vector<double> values(array.size());
-    reader.read(array.name, 0, values);
-    state.insert(state.end(), values.begin(), values.end());
-  }
-  _solver->set_time_state(clock);
-  _solver->upload_state(state);
+  framework::read_restart(reader, *_solver, _plan);
   if (_cuts.restart_at(now().time)) _solver->set_line_stiffness(_cuts.stiffness());
   allocate_buffers();
 }

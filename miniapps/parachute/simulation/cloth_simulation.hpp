@@ -5,6 +5,8 @@
 
 #include "kernels/coupling/sheet/line_cuts.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "kernels/stepping/batch_length.hpp"
+#include "miniapps/framework/fabric_run.hpp"
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/parachute/canopy/canopy_state.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
@@ -31,7 +33,7 @@ class ClothSimulation final : public framework::Simulation {
   void start() override;
   void restore(const run::RestartReader& reader) override;
   void write_restart(run::RestartWriter& writer) override;
-  [[nodiscard]] framework::SimulationTime now() override;
+  [[nodiscard]] framework::SimulationTime now() override { return _plan.now(_solver->time_state()); }
   framework::StopReason advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
                                 const framework::Poll& poll) override;
   [[nodiscard]] std::vector<run::Column> history_columns() const override {
@@ -47,16 +49,6 @@ class ClothSimulation final : public framework::Simulation {
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
  private:
-  /// Steps in progress.
-  struct Block {
-    std::int64_t end = 0;               ///< step at which they end
-    double time = 0.0;                  ///< s, then
-    double dt_min = 0.0, dt_max = 0.0;  ///< s, of the steps so far
-  };
-
-  template <class Plan, class Number, class Integer>
-  static void visit(Plan& clock, Block& block, const Number& number, const Integer& integer);
-
   void allocate_buffers();
   [[nodiscard]] bool plan(double target);
   [[nodiscard]] std::int64_t steps_to_event(const framework::AdvanceLimits& limits) const;
@@ -70,10 +62,10 @@ class ClothSimulation final : public framework::Simulation {
   coupling::LineCuts _cuts;
   std::unique_ptr<fabric::Solver> _solver;
   PeakPulls _peaks;
-  Block _block;
+  framework::StepPlan _plan;
   std::optional<fabric::StepFailure> _failure;
   double _stable_dt = 0.0;  ///< s, at the begin of the block
-  std::int64_t _batch = 1;  ///< steps that one call of the solver takes
+  stepping::BatchLength _batch;
   double _compute_s = 0.0, _h2d_s = 0.0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -43,6 +44,28 @@ run::DatasetSpec field_spec(const std::string& name, const std::array<int, 3>& c
   return {.name = name, .shape = shape, .units = "1/s", .centering = "cell", .description = "vorticity"};
 }
 
+/// Point that a grid follows: the payload of the first canopy, or on a stretched grid, whose core also has to
+/// hold a canopy that leans, the middle between it and the crown and skirt of the canopies that carry it.
+std::vector<coupling::WeightedVertex> followed_vertices(const FlowScene& scene, const Sheets& sheets) {
+  const std::size_t payload = sheets.canopies.front().payload.value();
+  if (!scene.has_stretched_axes()) return {{static_cast<int>(payload), 1.0}};
+  std::vector<std::vector<int>> rings;
+  for (std::size_t i = 0; i < sheets.canopies.size(); ++i) {
+    const CanopyRows& rows = sheets.canopies[i];
+    if (rows.payload != payload) continue;
+    std::vector<int>& skirt = rings.emplace_back();
+    for (const int line : rows.suspension)
+      skirt.push_back(sheets.fabric.mesh.lines[static_cast<std::size_t>(line)][0]);
+    std::vector<int>& crown = rings.emplace_back(static_cast<std::size_t>(ring_sizes(scene.canopies[i])[0]));
+    std::iota(crown.begin(), crown.end(), static_cast<int>(rows.begin));
+  }
+  std::vector<coupling::WeightedVertex> vertices = {{static_cast<int>(payload), 0.5}};
+  for (const std::vector<int>& ring : rings)
+    for (const int vertex : ring)
+      vertices.push_back({vertex, 0.5 / static_cast<double>(rings.size() * ring.size())});
+  return vertices;
+}
+
 /// Flow with all sheets of a scene. Sheets whose motion is prescribed need no steps of their own.
 coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sheets) {
   coupling::Parameters p;
@@ -58,10 +81,11 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
   p.cuts = sheets.cuts;
   p.line_strength = sheets.line_strength;
   if (scene.frame == Frame::follow) {
-    const std::size_t payload = sheets.canopies.front().payload.value();
-    p.follow.vertex = static_cast<int>(payload);
+    p.follow.vertices = followed_vertices(scene, sheets);
     p.follow.axes = scene.open_axes();
-    p.follow.place = sheets.positions[payload];
+    for (const auto& [vertex, weight] : p.follow.vertices)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        p.follow.place[axis] += weight * sheets.positions[static_cast<std::size_t>(vertex)][axis];
   }
   return p;
 }
@@ -190,8 +214,8 @@ void Simulation::write_mesh(run::FieldSink& fields) const {
   const flow::Parameters& p = _scene.parameters;
   const auto faces = [&](std::size_t axis) {
     std::vector<double> coordinates(static_cast<std::size_t>(p.cells[axis]) + 1, p.high[axis]);
-    const double h = (p.high[axis] - p.low[axis]) / p.cells[axis];
-    for (int i = 0; i < p.cells[axis]; ++i) coordinates[static_cast<std::size_t>(i)] = p.low[axis] + i * h;
+    for (int i = 0; i < p.cells[axis]; ++i)
+      coordinates[static_cast<std::size_t>(i)] = flow::face_coordinate(p, axis, i);
     return coordinates;
   };
   run::add_rectilinear_mesh(fields, {faces(0), faces(1), faces(2)}, run::AxisOrder::xyz);

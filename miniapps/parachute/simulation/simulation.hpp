@@ -82,7 +82,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::string stiff_cloth_text();
   [[nodiscard]] std::string broken_line_text();
   [[nodiscard]] std::string leaving_vertex_text();
-  [[nodiscard]] std::string leaving_part_text(std::size_t vertex) const;
+  [[nodiscard]] std::string leaving_part_text(std::size_t vertex, bool leaves_core) const;
   [[nodiscard]] std::string vertex_text(std::int64_t vertex) const;
   [[nodiscard]] std::string now_text();
   [[nodiscard]] const char* step_key() const;

@@ -162,40 +162,43 @@ std::string Simulation::broken_line_text() {
   return text.str();
 }
 
-/// Body, canopy or flag that leaves the domain with the vertex.
-std::string Simulation::leaving_part_text(std::size_t vertex) const {
+/// Body, canopy or flag that leaves the domain, or the core of its grid, with the vertex.
+std::string Simulation::leaving_part_text(std::size_t vertex, bool leaves_core) const {
+  const std::string leaves = leaves_core ? "] leaves the core of the grid: " : "] leaves the domain: ";
   std::size_t end = 0;
   for (std::size_t i = 0; i < _scene.bodies.size(); ++i) {
     const std::size_t begin = end;
     end += static_cast<std::size_t>(_scene.bodies[i].vertices());
-    if (vertex >= begin && vertex < end) return "body[" + std::to_string(i) + "] leaves the domain: a vertex";
+    if (vertex >= begin && vertex < end) return "body[" + std::to_string(i) + leaves + "a vertex";
   }
   for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
     const CanopyRows& rows = _sheets.canopies[i];
     if (vertex < rows.begin || vertex >= rows.end) continue;
-    return "canopy[" + std::to_string(i) + "] leaves the domain: its " + rows.part_of(vertex);
+    return "canopy[" + std::to_string(i) + leaves + "its " + rows.part_of(vertex);
   }
   for (std::size_t i = 0; i < _sheets.flags.size(); ++i)
     if (vertex >= _sheets.flags[i].begin && vertex < _sheets.flags[i].end)
-      return "flag[" + std::to_string(i) + "] leaves the domain: a vertex";
+      return "flag[" + std::to_string(i) + leaves + "a vertex";
   return "";
 }
 
-/// Vertex that is closest to a side, in cells.
+/// Vertex that is closest to a side of the domain, or to an end of the core, in cells.
 std::string Simulation::leaving_vertex_text() {
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
   _coupled->fabric().download(positions, velocities);
   const flow::Parameters& p = _scene.parameters;
-  const auto spacing = lattice_of(p).spacing;
+  const flow::Core box = flow::force_box(p);
   double least = std::numeric_limits<double>::infinity();
   std::size_t vertex = 0, closest = 0;
   for (std::size_t i = 0; i < positions.size(); ++i)
     for (std::size_t side = 0; side < 6; ++side) {
       const std::size_t axis = side / 2;
-      if (p.cells[axis] == 1 || p.boundary[side].kind == flow::BoundaryKind::periodic) continue;
+      const bool repeats =
+          p.boundary[side].kind == flow::BoundaryKind::periodic && !flow::is_stretched(p, axis);
+      if (p.cells[axis] == 1 || repeats) continue;
       const double distance =
-          (side % 2 == 0 ? positions[i][axis] - p.low[axis] : p.high[axis] - positions[i][axis]) /
-          spacing[axis];
+          (side % 2 == 0 ? positions[i][axis] - box.low[axis] : box.high[axis] - positions[i][axis]) /
+          box.spacing[axis];
       if (distance < least) least = distance, vertex = i, closest = side;
     }
   const bool is_sharp = _scene.coupling.method == coupling::CouplingMethod::sharp;
@@ -204,10 +207,15 @@ std::string Simulation::leaving_vertex_text() {
                               ? ""
                               : std::string("a smaller ") + (p.fixed_dt > 0.0 ? "run.dt" : "run.max_dt") +
                                     ", with which the grid follows sooner, ";
-  return leaving_part_text(vertex) + " at " + place_text(positions[vertex]) + " m " +
-         (is_sharp ? "lies beyond" : "comes closer than a cell to") + " the side " + side_names[closest] +
-         " after " + now_text() + "; " + lag +
-         "a larger grid.domain or a shorter run.end_time may save the run";
+  const std::size_t axis = closest / 2;
+  const bool leaves_core = closest % 2 == 0 ? box.low[axis] > p.low[axis] : box.high[axis] < p.high[axis];
+  const char* const beside = leaves_core ? (is_sharp ? "lies beyond" : "comes closer than two cells to")
+                                         : (is_sharp ? "lies beyond" : "comes closer than a cell to");
+  return leaving_part_text(vertex, leaves_core) + " at " + place_text(positions[vertex]) + " m " + beside +
+         (leaves_core ? " its end towards " : " the side ") + side_names[closest] + " after " + now_text() +
+         "; " + lag + "a larger " +
+         (leaves_core ? (_scene.faces ? "grid.faces" : "grid.core") : "grid.domain") +
+         " or a shorter run.end_time may save the run";
 }
 
 /// Motion of the body with the failed vertex that is not finite near the failed step; empty if there is none.

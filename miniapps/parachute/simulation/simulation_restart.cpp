@@ -31,7 +31,6 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
     writer.array(array.name, values.size());
     writer.write(array.name, 0, values);
   }
-  _peaks.write(writer, *_coupled);
   const auto [flow, block, frame] = _coupled->progress();
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
@@ -105,7 +104,6 @@ void Simulation::restore(const run::RestartReader& reader) {
   if (_coupled != nullptr) {
     read_coupling(reader, progress);
     _coupled->restore(progress);
-    _peaks.read(reader, *_coupled);
   } else {
     _solver->restore(progress.flow);
   }

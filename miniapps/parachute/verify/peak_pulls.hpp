@@ -8,7 +8,7 @@
 namespace drogue::parachute_app {
 
 /// Largest forces of the lines on the payloads of the canopies in all steps of a run, from its first start
-/// on. A run that continues has them from its restart file.
+/// on. A run that continues has them with the state of its solver.
 class PeakPulls {
  public:
   /// For a number of canopies. `watches`: whether the solver records them.
@@ -35,25 +35,7 @@ class PeakPulls {
   /// Throws `Failure` (io_error) if the file lacks those that the scene verifies.
   void require_watch(const run::RestartReader& reader) const;
 
-  /// Writes those of the solver. Throws `Failure` (io_error).
-  template <class Solver>
-  void write(run::RestartWriter& writer, Solver& solver) {
-    update(solver);
-    write(writer);
-  }
-
-  /// Reads them, and gives them to the solver. Throws `Failure` (io_error), also if the file lacks those that
-  /// the scene verifies.
-  template <class Solver>
-  void read(const run::RestartReader& reader, Solver& solver) {
-    read(reader);
-    if (_watches) solver.set_peak_pulls(_peaks);
-  }
-
  private:
-  void write(run::RestartWriter& writer) const;
-  void read(const run::RestartReader& reader);
-
   bool _watches;
   std::vector<fabric::PeakPull> _peaks;
 };

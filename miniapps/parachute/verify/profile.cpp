@@ -16,31 +16,40 @@ struct Neighbours {
   double weight = 0.0;
 };
 
-Neighbours neighbours(const Lattice& lattice, std::size_t axis, double coordinate, bool periodic) {
+/// `period`: length of a periodic axis, m; 0 for others.
+Neighbours neighbours(const Lattice& lattice, std::size_t axis, double coordinate, double period) {
+  const std::vector<double>& at = lattice.coordinates[axis];
   const int n = lattice.n[axis];
   if (n == 1) return {};
-  const double position = (coordinate - lattice.first[axis]) / lattice.spacing[axis];
-  const int lower = static_cast<int>(std::floor(position));
-  if (periodic) return {(lower % n + n) % n, ((lower + 1) % n + n) % n, position - lower};
-  const int inner = std::clamp(lower, 0, n - 2);
-  return {inner, inner + 1, std::clamp(position - inner, 0.0, 1.0)};
+  if (period > 0.0) coordinate -= period * std::floor((coordinate - at.front()) / period);
+  const auto after = static_cast<int>(std::ranges::upper_bound(at, coordinate) - at.begin());
+  if (period > 0.0 && after == n)
+    return {n - 1, 0, (coordinate - at.back()) / (at.front() + period - at.back())};
+  const int lower = std::clamp(after - 1, 0, n - 2);
+  const auto low = static_cast<std::size_t>(lower);
+  return {lower, lower + 1, std::clamp((coordinate - at[low]) / (at[low + 1] - at[low]), 0.0, 1.0)};
 }
 
 }  // namespace
 
-SampledLine::SampledLine(double first, double spacing, std::vector<double> values)
-    : _first(first), _spacing(spacing), _values(std::move(values)) {
+SampledLine::SampledLine(std::vector<double> coordinates, std::vector<double> values)
+    : _coordinates(std::move(coordinates)), _values(std::move(values)) {
   if (_values.size() < 4) throw std::invalid_argument("cubic interpolation needs four values");
 }
 
 double SampledLine::operator()(double coordinate) const {
-  const double position = (coordinate - _first) / _spacing;
-  const auto last_start = static_cast<double>(_values.size() - 4);
-  const double start = std::clamp(std::floor(position) - 1.0, 0.0, last_start);
-  const double s = position - start;
-  const double* v = _values.data() + static_cast<std::size_t>(start);
-  return -v[0] * (s - 1) * (s - 2) * (s - 3) / 6 + v[1] * s * (s - 2) * (s - 3) / 2 -
-         v[2] * s * (s - 1) * (s - 3) / 2 + v[3] * s * (s - 1) * (s - 2) / 6;
+  const auto after = std::ranges::upper_bound(_coordinates, coordinate) - _coordinates.begin();
+  const auto last_start = static_cast<std::ptrdiff_t>(_values.size()) - 4;
+  const auto start = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - 2, 0, last_start));
+  const double* x = _coordinates.data() + start;
+  double value = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    double weight = 1.0;
+    for (std::size_t other = 0; other < 4; ++other)
+      if (other != k) weight *= (coordinate - x[other]) / (x[k] - x[other]);
+    value += weight * _values[start + k];
+  }
+  return value;
 }
 
 std::pair<double, double> SampledLine::maximum(double sign) const {
@@ -53,14 +62,18 @@ std::pair<double, double> SampledLine::maximum(double sign) const {
     if (sign * _values[i] > sign * _values[top]) top = i;
   double offset = 0.0, value = _values[top];
   if (top > 0 && top + 1 < _values.size()) {
-    const double slope = 0.5 * (_values[top + 1] - _values[top - 1]);
-    const double curvature = _values[top + 1] - 2.0 * _values[top] + _values[top - 1];
+    const double before = _coordinates[top] - _coordinates[top - 1],
+                 after = _coordinates[top + 1] - _coordinates[top],
+                 rise = (_values[top] - _values[top - 1]) / before,
+                 next_rise = (_values[top + 1] - _values[top]) / after,
+                 slope = (after * rise + before * next_rise) / (before + after),
+                 curvature = 2.0 * (next_rise - rise) / (before + after);
     if (curvature != 0.0) {
       offset = -slope / curvature;
       value += 0.5 * offset * slope;
     }
   }
-  return {_first + (static_cast<double>(top) + offset) * _spacing, value};
+  return {_coordinates[top] + offset, value};
 }
 
 SampledLine sample_line(std::span<const double> all, const flow::Parameters& parameters,
@@ -73,8 +86,10 @@ SampledLine sample_line(std::span<const double> all, const flow::Parameters& par
   const std::size_t across[] = {(along + 1) % 3, (along + 2) % 3};
   Neighbours near[2];
   for (std::size_t i = 0; i < 2; ++i) {
-    const bool periodic = parameters.boundary[2 * across[i]].kind == flow::BoundaryKind::periodic;
-    near[i] = neighbours(lattice, across[i], profile.through[across[i]], periodic);
+    const std::size_t axis = across[i];
+    const bool is_periodic = parameters.boundary[2 * axis].kind == flow::BoundaryKind::periodic;
+    const double period = is_periodic ? parameters.high[axis] - parameters.low[axis] : 0.0;
+    near[i] = neighbours(lattice, axis, profile.through[axis], period);
   }
   std::vector<double> values(static_cast<std::size_t>(lattice.n[along]), 0.0);
   for (const bool upper_0 : {false, true})
@@ -87,7 +102,7 @@ SampledLine sample_line(std::span<const double> all, const flow::Parameters& par
           static_cast<std::size_t>(upper_1 ? near[1].upper : near[1].lower) * stride[across[1]];
       for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * all[base + i * stride[along]];
     }
-  return {lattice.first[along], lattice.spacing[along], std::move(values)};
+  return {lattice.coordinates[along], std::move(values)};
 }
 
 }  // namespace drogue::parachute_app

@@ -9,12 +9,11 @@
 
 namespace drogue::parachute_app {
 
-/// Equidistant values along a line, between which cubic polynomials interpolate.
+/// Values along a line, between which cubic polynomials interpolate.
 class SampledLine {
  public:
-  /// `values` are at `first`, `first + spacing`, ..., in m. Throws std::invalid_argument for fewer than four
-  /// values.
-  SampledLine(double first, double spacing, std::vector<double> values);
+  /// `values` are at `coordinates`, m, ascending. Throws std::invalid_argument for fewer than four values.
+  SampledLine(std::vector<double> coordinates, std::vector<double> values);
 
   /// Value at a coordinate, m: the cubic through the four nearest points (Lagrange). Does not throw.
   [[nodiscard]] double operator()(double coordinate) const;
@@ -24,8 +23,7 @@ class SampledLine {
   [[nodiscard]] std::pair<double, double> maximum(double sign) const;
 
  private:
-  double _first, _spacing;
-  std::vector<double> _values;
+  std::vector<double> _coordinates, _values;
 };
 
 /// Velocity component along the line of a profile, m/s, linearly interpolated across the line. `all`: its

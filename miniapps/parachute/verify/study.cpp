@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/program/failure.hpp"
+#include "common/scene/node.hpp"
 #include "common/study/axes.hpp"
 #include "kernels/flow/host_threads.hpp"
 #include "miniapps/framework/run_loop.hpp"
@@ -24,9 +25,19 @@ const study::Columns columns = {.settings = {"advection", "time_scheme", "diffus
 int longest(const flow::Parameters& p) { return *std::ranges::max_element(p.cells); }
 
 /// `--set` of the grid with `cells` along its longest axis and nearly the proportions of the scene. Axes with
-/// more than one cell keep at least the number that a solver needs.
-std::string scaled_cells(const flow::Parameters& p, std::int64_t cells) {
+/// more than one cell keep at least the number that a solver needs. Of a grid with a core, the width of its
+/// cells is scaled, so that the number of cells is nearly that. Throws `Failure` (usage) for given faces.
+std::string scaled_grid(const FlowScene& scene, std::int64_t cells) {
+  const flow::Parameters& p = scene.parameters;
+  if (scene.faces) throw Failure(ExitCode::usage, "--study with meshes needs grid.cells or grid.core");
   std::string list;
+  if (scene.core) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double scale = p.cells[axis] == 1 ? 1.0 : longest(p) / static_cast<double>(cells);
+      list += (list.empty() ? "[" : ", ") + scene::real_text(scene.spacing[axis] * scale);
+    }
+    return "grid.spacing=" + list + "]";
+  }
   for (const int n : p.cells) {
     const double scaled = static_cast<double>(n) * static_cast<double>(cells) / longest(p);
     const std::int64_t rounded = n == 1 ? 1 : std::max<std::int64_t>(std::llround(scaled), 4);
@@ -48,7 +59,7 @@ std::vector<std::string> point_of(const FlowScene& base, const std::string& adve
                                                         {"pressure", pressure}};
   for (const auto& [key, value] : values)
     if (!value.empty()) sets.push_back(std::string("flow.") + key + "=\"" + value + "\"");
-  if (cells > 0) sets.push_back(scaled_cells(base.parameters, cells));
+  if (cells > 0) sets.push_back(scaled_grid(base, cells));
   return sets;
 }
 

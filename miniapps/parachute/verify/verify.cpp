@@ -12,7 +12,7 @@
 namespace drogue::parachute_app {
 namespace {
 
-/// Sums of the errors of a field. The volume of a point on a side of the domain is half of that of others.
+/// Sums of the errors of a field. A point on a side of the domain stands for half a cell.
 struct ErrorSums {
   double volume = 0.0, absolute = 0.0, square = 0.0, largest = 0.0;
 
@@ -24,29 +24,19 @@ struct ErrorSums {
   }
 };
 
-/// Volume of a point of an array relative to that of a cell.
-double weight_of(const Lattice& lattice, const std::array<int, 3>& cells, std::size_t entry) {
-  double weight = 1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto n = static_cast<std::size_t>(lattice.n[axis]);
-    const std::size_t index = entry % n;
-    entry /= n;
-    if (lattice.n[axis] > cells[axis] && (index == 0 || index + 1 == n)) weight *= 0.5;
-  }
-  return weight;
-}
-
 /// Errors of values at the points of an array, less their mean where `up_to_constant`.
 ErrorSums errors_of(const std::vector<double>& values, const std::vector<double>& exact,
-                    const Lattice& lattice, const std::array<int, 3>& cells, bool up_to_constant) {
-  double mean = 0.0;
+                    const Lattice& lattice, bool up_to_constant) {
+  double mean = 0.0, volume = 0.0;
   if (up_to_constant) {
-    for (std::size_t i = 0; i < values.size(); ++i) mean += values[i] - exact[i];
-    mean /= static_cast<double>(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      mean += lattice.volume(i) * (values[i] - exact[i]);
+      volume += lattice.volume(i);
+    }
+    mean /= volume;
   }
   ErrorSums sums;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    sums.add(values[i] - exact[i] - mean, weight_of(lattice, cells, i));
+  for (std::size_t i = 0; i < values.size(); ++i) sums.add(values[i] - exact[i] - mean, lattice.volume(i));
   return sums;
 }
 
@@ -93,8 +83,7 @@ std::map<std::string, double> Simulation::error_norms() {
     ErrorSums sums;
     _communicator.run_on_root([&] {
       const Lattice lattice = lattice_of(p, normal);
-      sums = errors_of(values, evaluate(SpaceTimeFunction(wanted), lattice, time), lattice, p.cells,
-                       up_to_constant);
+      sums = errors_of(values, evaluate(SpaceTimeFunction(wanted), lattice, time), lattice, up_to_constant);
     });
     return _communicator.broadcast(sums);
   };

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "kernels/fabric/body.hpp"
 #include "kernels/fabric/elastic/lumped_mass.hpp"
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/integrator.hpp"
 #include "kernels/mesh/generators.hpp"
 #include "kernels/stepping/motion_interval.hpp"
 #include "miniapps/framework/history_checks.hpp"

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/results.hpp"
 #include "miniapps/springs/scene/scene.hpp"
 

@@ -27,9 +27,6 @@ std::int64_t order_in_time(const SpringsScene& scene) {
 /// velocity by (1 - z/4)/(1 + z/4), turns velocities around.
 constexpr double turning_damping = 4.0;
 
-/// Longest wall-clock time between two polls for a signal, s.
-constexpr double poll_interval_s = 0.1;
-
 /// Steps between two computations of the fastest frequency. Stiffness grows with strain, mostly at the start,
 /// and a step that loads overwhelm lasts for a few steps only.
 std::int64_t bound_every(std::int64_t step) {
@@ -108,26 +105,24 @@ double Simulation::stable_dt() {
 
 /// Plans equal steps from now to the next stop, at most as long as is stable or requested.
 void Simulation::plan() {
-  const std::int64_t step = _solver->time_state().step;
-  const double begin = time();
-  _stop_time = framework::next_stop(_scene.output, begin, _scene.time.end_time);
-  _stop_step = step;
-  if (_stop_time <= begin) return;
+  const auto [step, begin] = now();
+  _plan.stop_time = framework::next_stop(_scene.output, begin, _scene.time.end_time);
+  _plan.stop_step = step;
+  if (_plan.stop_time <= begin) return;
   double longest = _scene.time.dt ? *_scene.time.dt : _scene.time.safety * stable_dt();
   if (!_scene.time.dt)
     for (const std::vector<stepping::MotionInterval>& changes : _scene.changes)
-      longest = std::min(longest, stepping::shortest_interval(changes, begin, _stop_time));
+      longest = std::min(longest, stepping::shortest_interval(changes, begin, _plan.stop_time));
   // Round-off of an integer quotient must not add a step.
-  const double steps = std::max(1.0, std::ceil((_stop_time - begin) / longest * (1.0 - 1e-12)));
+  const double steps = std::max(1.0, std::ceil((_plan.stop_time - begin) / longest * (1.0 - 1e-12)));
   if (!(steps <= most_steps))
     throw Failure(ExitCode::numerical_failure,
                   "the highest frequency of the mesh requires more than 1e15 steps to t = " +
-                      scene::real_text(_stop_time) + " s");
-  const double dt = (_stop_time - begin) / steps;
-  _stop_step += static_cast<std::int64_t>(steps);
+                      scene::real_text(_plan.stop_time) + " s");
+  const double dt = (_plan.stop_time - begin) / steps;
+  _plan.stop_step += static_cast<std::int64_t>(steps);
   _solver->set_time_state({step, dt, step, begin});
-  _dt_min = _dt_min > 0.0 ? std::min(_dt_min, dt) : dt;
-  _dt_max = std::max(_dt_max, dt);
+  _plan.count(dt);
 }
 
 /// Shortens the steps where the stable step has shrunk.
@@ -186,7 +181,7 @@ std::string Simulation::too_long_step() {
 
 std::int64_t Simulation::steps_to_event(const framework::AdvanceLimits& limits) const {
   const std::int64_t step = _solver->time_state().step;
-  std::int64_t next = _stop_step;
+  std::int64_t next = _plan.stop_step;
   for (const std::int64_t every : {std::int64_t{limits.row_every}, bound_every(step)})
     if (every > 0) next = std::min(next, (step / every + 1) * every);
   if (limits.pause_step > step) next = std::min(next, limits.pause_step);
@@ -208,7 +203,7 @@ void Simulation::round_trip() {
 /// poll requested the end before all steps were taken.
 bool Simulation::take_steps(std::int64_t steps, const framework::Poll& poll) {
   while (steps > 0) {
-    const std::int64_t count = std::min(steps, _settings.baseline ? 1 : _batch);
+    const std::int64_t count = std::min(steps, _settings.baseline ? 1 : _batch.steps());
     const Stopwatch stopwatch;
     const bool advanced = _solver->enqueue_steps(count);
     _failure = _solver->failure();
@@ -216,8 +211,7 @@ bool Simulation::take_steps(std::int64_t steps, const framework::Poll& poll) {
     _compute_s += seconds;
     if (!advanced || _failure) return false;
     if (_settings.baseline) round_trip();
-    if (seconds < 0.5 * poll_interval_s && count == _batch) _batch *= 2;
-    if (seconds > poll_interval_s) _batch = std::max<std::int64_t>(1, _batch / 2);
+    _batch.adapt(count, seconds);
     steps -= count;
     const bool go_on = poll(now());
     if (steps > 0 && !go_on) return false;
@@ -237,7 +231,7 @@ framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits
     }
     const std::int64_t step = _solver->time_state().step;
     if (limits.row_every > 0 && step % limits.row_every == 0) rows(row());
-    if (step == _stop_step) return framework::StopReason::target;
+    if (step == _plan.stop_step) return framework::StopReason::target;
     if (step % bound_every(step) == 0) {
       replan_if_stiffer();
       _too_long = too_long_step();
@@ -284,8 +278,8 @@ std::string Simulation::failure_text(bool restart_written) {
 void Simulation::describe(run::ResultDocument& result) {
   result.driver = _settings.baseline ? "seed" : _solver->driver();
   result.metrics.set("order", "time", order_in_time(_scene));
-  result.dt_min = _dt_min;
-  result.dt_max = _dt_max;
+  result.dt_min = _plan.dt_min;
+  result.dt_max = _plan.dt_max;
 }
 
 run::ResultDocument::WallTimes Simulation::phases() const {

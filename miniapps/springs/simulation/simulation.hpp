@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "kernels/fabric/solver.hpp"
+#include "kernels/stepping/batch_length.hpp"
+#include "miniapps/framework/fabric_run.hpp"
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/springs/simulation/problem.hpp"
 #include "miniapps/springs/simulation/stress_fields.hpp"
@@ -36,7 +38,7 @@ class Simulation final : public framework::Simulation {
   void start() override;
   void restore(const run::RestartReader& reader) override;
   void write_restart(run::RestartWriter& writer) override;
-  [[nodiscard]] framework::SimulationTime now() override;
+  [[nodiscard]] framework::SimulationTime now() override { return _plan.now(_solver->time_state()); }
   framework::StopReason advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
                                 const framework::Poll& poll) override;
   bool plan_next_interval() override;
@@ -67,7 +69,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] bool take_steps(std::int64_t steps, const framework::Poll& poll);
   void round_trip();
   void return_to_last_good(std::int64_t lost);
-  [[nodiscard]] double time() const;
+  [[nodiscard]] double time() const { return _plan.now(_solver->time_state()).time; }
   [[nodiscard]] std::vector<fabric::Stress> stress_of(const StressKind& kind);
   [[nodiscard]] FinalState final_state();
 
@@ -76,13 +78,11 @@ class Simulation final : public framework::Simulation {
   Problem _problem;
   const double _pressure;  ///< Pa, with a potential
   std::unique_ptr<fabric::Solver> _solver;
-  std::int64_t _stop_step = 0;
-  double _stop_time = 0.0;
-  double _dt_min = 0.0, _dt_max = 0.0;
+  framework::StepPlan _plan;
   std::optional<std::string> _too_long;  ///< why the step is too long, empty if it is not; none: unchecked
   std::optional<fabric::StepFailure> _failure;
   double _checked_frequency = 0.0;  ///< 1/s, bound of the frequencies at the last search for the largest
-  std::int64_t _batch = 1;          ///< steps that one call of the solver takes
+  stepping::BatchLength _batch;
   double _compute_s = 0.0, _h2d_s = 0.0, _d2h_s = 0.0, _bound_s = 0.0;
 };
 

@@ -56,14 +56,6 @@ struct FieldValues {
 
 }  // namespace
 
-double Simulation::time() const {
-  const fabric::TimeState now = _solver->time_state();
-  // At a stop the time equals that stop bit for bit.
-  return now.step == _stop_step ? _stop_time : now.time();
-}
-
-framework::SimulationTime Simulation::now() { return {_solver->time_state().step, time()}; }
-
 std::vector<Vector> Simulation::positions() {
   std::vector<Vector> x(_problem.x.size()), v(x.size());
   _solver->download(x, v);

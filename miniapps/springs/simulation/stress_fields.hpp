@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/run/fields/dataset_spec.hpp"
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 #include "kernels/fabric/results.hpp"
 
 namespace drogue::springs_app {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 /// Closed-form solutions for membranes and strings.
 namespace drogue::springs_app {

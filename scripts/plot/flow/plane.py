@@ -8,6 +8,7 @@ from ..failure import USAGE, Failure
 from ..run_directory import Run, Snapshot
 
 AXES = "xyz"
+_MOST_PIXELS = 2000  # along an axis of a stretched grid
 
 
 def is_flow(run: Run) -> bool:
@@ -18,6 +19,12 @@ def is_flow(run: Run) -> bool:
 def cell_counts(run: Run) -> tuple[int, int, int]:
     """Cells along x, y and z."""
     return tuple(len(run.mesh[axis].values) - 1 for axis in AXES)
+
+
+def is_uniform(faces: np.ndarray) -> bool:
+    """Whether the cells between faces have one width."""
+    widths = np.diff(faces)
+    return bool(np.ptp(widths) <= 1e-9 * widths.max())
 
 
 def dimension(run: Run) -> int:
@@ -71,6 +78,28 @@ class Plane:
     def cut(self, values: np.ndarray) -> np.ndarray:
         """Values (nx, ny, nz) in the plane, as rows from bottom to top."""
         return np.take(values, self.index, axis=self.normal).T
+
+    def pixels(self, values: np.ndarray) -> np.ndarray:
+        """The same as pixels of one size: the cells, or on a stretched axis the cell at the centre of each pixel."""
+        rows = self.cut(values)
+        for axis, along in zip(self.across, (1, 0)):
+            faces = self.run.mesh[AXES[axis]].values
+            if not is_uniform(faces):
+                count = min(round(np.ptp(faces) / np.diff(faces).min()), _MOST_PIXELS)
+                centres = faces[0] + (np.arange(count) + 0.5) / count * np.ptp(faces)
+                rows = np.take(rows, np.searchsorted(faces, centres) - 1, axis=along)
+        return rows
+
+    def equidistant(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Places right and upwards, m, as many as cells and equidistant, and values there, linear between centres."""
+        rows, places = self.cut(values), []
+        for axis, along, centres in zip(self.across, (1, 0), self.centres):
+            if is_uniform(self.run.mesh[AXES[axis]].values):
+                places.append(centres)
+                continue
+            places.append(np.linspace(centres[0], centres[-1], len(centres)))
+            rows = np.apply_along_axis(lambda line, to=places[-1], at=centres: np.interp(to, at, line), along, rows)
+        return *places, rows
 
 
 def cell_at(faces: np.ndarray, place: float) -> int:

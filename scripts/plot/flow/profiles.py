@@ -14,21 +14,23 @@ _VARIES = 1e-9  # variation relative to the largest velocity below which an exac
 
 
 class SampledLine:
-    """Velocities at equidistant places, m, interpolated by cubic polynomials; needs four values."""
+    """Velocities at ascending places, m, interpolated by cubic polynomials; needs four values."""
 
     def __init__(self, places: np.ndarray, values: np.ndarray):
         self._places, self._values = places, values
 
     def __call__(self, at: np.ndarray) -> np.ndarray:
         """Values at places `at`; the outermost polynomials hold beyond the ends."""
-        position = (np.asarray(at, dtype=float) - self._places[0]) / (self._places[1] - self._places[0])
-        start = np.clip(np.floor(position) - 1, 0, len(self._values) - 4).astype(int)
-        s = position - start
-        v = [self._values[start + k] for k in range(4)]
-        return (
-            -v[0] * (s - 1) * (s - 2) * (s - 3) / 6 + v[1] * s * (s - 2) * (s - 3) / 2
-            - v[2] * s * (s - 1) * (s - 3) / 2 + v[3] * s * (s - 1) * (s - 2) / 6
-        )
+        at = np.asarray(at, dtype=float)
+        start = np.clip(np.searchsorted(self._places, at, side="right") - 2, 0, len(self._values) - 4)
+        x = [self._places[start + k] for k in range(4)]
+        total = 0.0
+        for k in range(4):
+            weight = np.ones_like(at)
+            for other in {0, 1, 2, 3} - {k}:
+                weight = weight * (at - x[other]) / (x[k] - x[other])
+            total = total + weight * self._values[start + k]
+        return total
 
     @property
     def places(self) -> np.ndarray:
@@ -74,17 +76,17 @@ class Comparison:
 
 def _neighbours(faces: np.ndarray, place: float, is_periodic: bool) -> list[tuple[int, float]]:
     """Cells whose centres enclose a place, with their weights of linear interpolation."""
-    count, width = len(faces) - 1, faces[1] - faces[0]
-    position = (place - faces[0]) / width - 0.5
-    lower = int(np.floor(position))
+    count, length = len(faces) - 1, faces[-1] - faces[0]
     if count == 1:
         return [(0, 1.0)]
+    centres = (faces[1:] + faces[:-1]) / 2
     if is_periodic:
-        weight = position - lower
-        return [(lower % count, 1 - weight), ((lower + 1) % count, weight)]
-    lower = min(max(lower, 0), count - 2)
-    weight = min(max(position - lower, 0.0), 1.0)
-    return [(lower, 1 - weight), (lower + 1, weight)]
+        place = faces[0] + (place - faces[0]) % length
+        centres = np.concatenate(([centres[-1] - length], centres, [centres[0] + length]))
+    lower = int(np.clip(np.searchsorted(centres, place, side="right") - 1, 0, len(centres) - 2))
+    weight = float(np.clip((place - centres[lower]) / (centres[lower + 1] - centres[lower]), 0.0, 1.0))
+    first = lower - 1 if is_periodic else lower
+    return [(first % count, 1 - weight), ((first + 1) % count, weight)]
 
 
 def sample(run: Run, snapshot: Snapshot, component: int, along: int, through) -> SampledLine | None:
@@ -138,7 +140,7 @@ def _exact(run: Run, snapshot: Snapshot) -> list[Comparison]:
     centres = [(faces[1:] + faces[:-1]) / 2 for faces in (run.mesh[axis].values for axis in AXES)]
     # A line through cell centres needs no interpolation across it.
     middle = tuple(float(places[count // 2]) for places, count in zip(centres, counts))
-    widths = [float(faces[1] - faces[0]) for faces in (run.mesh[axis].values for axis in AXES)]
+    widths = [np.diff(run.mesh[axis].values) for axis in AXES]
 
     def velocity(component, along):
         """Mean over the two faces across a component, as the velocity at the centre of a cell is."""
@@ -147,7 +149,8 @@ def _exact(run: Run, snapshot: Snapshot) -> list[Comparison]:
         def at(places):
             point = {axis: np.full(np.shape(places), middle[k]) for k, axis in enumerate(AXES)}
             point[AXES[along]] = np.asarray(places, dtype=float)
-            centre, half = point[AXES[component]], 0.5 * widths[component]
+            centre = point[AXES[component]]
+            half = 0.5 * np.interp(centre, centres[component], widths[component])
             faces = (point | {AXES[component]: centre + side * half} for side in (-1, 1))
             return 0.5 * sum(evaluate(text, t=snapshot.time, **face) for face in faces)
 

@@ -87,7 +87,7 @@ def draw_slice(axes, key, plane: Plane, quantity: Quantity, snapshots: list[Snap
     every = np.concatenate([plane.at(snapshot).cut(quantity.values(snapshot)).ravel() for snapshot in snapshots])
     norm, name, ends = colour_scale(quantity, every)
     image = axes.imshow(
-        plane.at(snapshots[-1]).cut(quantity.values(snapshots[-1])), origin="lower", extent=plane.extent, aspect="auto",
+        plane.at(snapshots[-1]).pixels(quantity.values(snapshots[-1])), origin="lower", extent=plane.extent, aspect="auto",
         cmap=plt.get_cmap(name, colours), norm=norm, interpolation="nearest",
     )
     axes.grid(False)
@@ -162,7 +162,7 @@ class SlicesFigure:
         """Replaces the drawn data by those of a snapshot."""
         for quantity, image, outline in self._images:
             outline.show(snapshot)
-            image.set_data(self._view.plane.cut(quantity.values(snapshot)))
+            image.set_data(self._view.plane.pixels(quantity.values(snapshot)))
         for streamlines in self._streamlines:
             streamlines.show(snapshot)
         self._caption.set_text(self._view.caption(snapshot))

@@ -8,7 +8,7 @@ from .. import style
 from ..checks import failure_caption
 from ..run_directory import Run, Snapshot, evenly_spaced
 from ..style import plt
-from .plane import AXES, cell_counts, dimension
+from .plane import AXES, cell_counts, dimension, is_uniform
 
 _MAX_CURVES = 6
 _SIZE = (5.2, 3.6)
@@ -31,7 +31,8 @@ def is_periodic(run: Run) -> bool:
     along = [axis for axis, count in zip(AXES, cell_counts(run)) if count > 1]
     periodic = all(boundary.get(axis) in ("periodic", ["periodic", "periodic"]) for axis in along)
     fields = run.snapshots[-1].fields
-    return periodic and len(along) >= 2 and "velocity" in fields and bool(np.isfinite(fields["velocity"].values).all())
+    uniform = all(is_uniform(run.mesh[axis].values) for axis in along)
+    return periodic and uniform and len(along) >= 2 and "velocity" in fields and bool(np.isfinite(fields["velocity"].values).all())
 
 
 def energy_spectrum(velocity: np.ndarray, lengths: tuple[float, float, float]) -> Spectrum:

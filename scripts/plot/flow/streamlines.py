@@ -37,7 +37,7 @@ class Streamlines:
             return
         velocity = snapshot.fields["velocity"].values
         plane = self._plane.at(snapshot)
-        u, v = (plane.cut(velocity[..., axis]) for axis in plane.across)
+        (x, y, u), (_, _, v) = (plane.equidistant(velocity[..., axis]) for axis in plane.across)
         if not (np.isfinite(u).all() and np.isfinite(v).all()) or not np.any(u) and not np.any(v):
             return
         inside = (self._seeds >= (x[0], y[0])) & (self._seeds <= (x[-1], y[-1]))

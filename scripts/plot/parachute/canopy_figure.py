@@ -190,7 +190,7 @@ class CanopyFigure:
             for circle, (centre, radius) in zip(spheres, self._spheres()):
                 circle.set_radius(np.sqrt(max(radius**2 - (centre[plane.normal] - plane.place) ** 2, 0.0)))
             across = list(plane.across)
-            image.set_data(plane.cut(quantity.values(snapshot)))
+            image.set_data(plane.pixels(quantity.values(snapshot)))
             lines.set_segments(positions[canopies.lines][..., across])
             cut.set_segments(canopies.section(snapshot, plane.normal, plane.place)[..., across])
             payloads.set_data(*positions[canopies.payloads][:, across].T)

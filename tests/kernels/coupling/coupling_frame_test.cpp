@@ -30,7 +30,7 @@ using flow::BoundaryKind;
 /// Frees the cloth of a case, and lets the frame follow its first vertex along x.
 void follow_first_vertex(CoupledCase& c) {
   for (std::uint8_t& axes : c.p.fabric.pinned) axes = 0;
-  c.p.follow.vertex = 0;
+  c.p.follow.vertices = {{0, 1.0}};
   c.p.follow.axes = {true, false, false};
   c.p.follow.place = c.x.front();
 }
@@ -133,6 +133,18 @@ TEST(MovingFrame, KeepsTheMomentumOfClothAndAirInTheFixedFrame) {
   EXPECT_LT(run.solver->progress().frame.velocity[0], 3.0);
 }
 
+TEST(MovingFrame, FollowsTheWeightedMeanOfVertices) {
+  CoupledCase c = coasting_strip();
+  const std::size_t last = c.x.size() - 1;
+  c.v[0][0] = 2.0, c.v[3][0] = 5.0, c.v[last][0] = 9.0;
+  c.p.follow.vertices = {{0, 0.25}, {3, 0.25}, {static_cast<int>(last), 0.5}};
+  c.p.follow.place = {0.25 * (c.x[0][0] + c.x[3][0]) + 0.5 * c.x[last][0] - 0.03, 0.0, 0.0};
+  CoupledRun run(c);
+  ASSERT_TRUE(run.advance(1));
+  const double relaxation = 0.3;
+  EXPECT_NEAR(run.solver->progress().frame.velocity[0], 0.25 * 7.0 + 4.5 + 0.03 / relaxation, 1e-12);
+}
+
 TEST(MovingFrame, ContinuesBitForBit) {
   for (const flow::TimeScheme time : {flow::TimeScheme::ab2, flow::TimeScheme::rk3}) {
     CoupledCase c = coasting_strip();
@@ -223,7 +235,8 @@ TEST(MovingFrame, RejectsInvalidParameters) {
     EXPECT_THROW(create_solver(tested_backend, c.p), std::invalid_argument);
   };
   EXPECT_NO_THROW(create_solver(tested_backend, coasting_strip().p));
-  rejects([](Parameters& p) { p.follow.vertex = static_cast<int>(p.fabric.mass.size()); });
+  rejects([](Parameters& p) { p.follow.vertices[0].vertex = static_cast<int>(p.fabric.mass.size()); });
+  rejects([](Parameters& p) { p.follow.vertices[0].weight = 0.5; });
   rejects([](Parameters& p) { p.follow.relaxation = 0.0; });
   rejects([](Parameters& p) { p.follow.relaxation = std::nan(""); });
   rejects([](Parameters& p) { p.follow.place[0] = std::numeric_limits<double>::infinity(); });

@@ -7,7 +7,8 @@
 
 #include "kernels/flow/halo/decomposition.hpp"
 #include "tests/support/coupled_case.hpp"
-#include "tests/support/ranks.hpp"
+#include "tests/support/flow_faces.hpp"
+#include "tests/support/flow_ranks.hpp"
 
 // Cloth in air on several ranks against itself on one.
 
@@ -149,6 +150,13 @@ std::vector<Case> cases() {
   channel.p.flow.turbulence = flow::Turbulence::vreman;
   channel.p.sheet.law.no_slip = true;
   channel.p.sheet.delta = DeltaFunction::ib4;
+  // In the core of a stretched grid, of which some ranks hold nothing.
+  Case& core = all.emplace_back(sheet_in("core", {16, 20, 19}));
+  set_stream(core);
+  for (const std::size_t side : {2U, 3U, 4U, 5U}) core.p.flow.boundary[side].kind = BoundaryKind::slip;
+  for (const auto& [axis, cells] : {std::pair{0U, 10}, {1U, 12}, {2U, 11}})
+    drogue::testing::set_graded_widths(core.p.flow, axis, cells, 1.1, 1.5);
+  core.p.sheet.edge_inset = 0.55;
   // At rest, as a body.
   Case& rigid = all.emplace_back(sheet_in("rigid", {10, 8, 17}));
   set_stream(rigid);
@@ -256,7 +264,7 @@ TEST_F(CoupledRanks, ContinueBitForBitOnAsManyRanksAndNearlyOnOthers) {
 TEST_F(CoupledRanks, FollowAVertexAsOneRank) {
   Case each = sheet_in("moving frame", {12, 9, 8});
   set_stream(each);
-  each.p.follow = {24, {true, false, true}, each.x[24], 0.2};
+  each.p.follow = {{{24, 1.0}}, {true, false, true}, each.x[24], 0.2};
   each.p.fabric.gravity = {0.0, 0.0, -9.81};
   SharedRun single(each, {}), shared(each, linear::RankGroup::world());
   single.start(each);

@@ -508,7 +508,11 @@ void expect_failure_of_a_replay(Integrator integrator, Driver driver) {
   solver.upload(start.x, start.v);
   graph.launch();
   EXPECT_EQ(solver.failure().value_or(StepFailure{}).step, 21);
-  // After a change of the time the graph is invalid, and the solver takes checkpoints of its own.
+  // After a change of lines or of the time the graph is invalid, and the solver takes checkpoints of its own.
+  solver.set_line_stiffness(std::vector<double>(p.mesh.lines.size(), 40.0));
+  solver.upload(start.x, start.v);
+  EXPECT_TRUE(solver.enqueue_steps(6));
+  EXPECT_EQ(solver.time_state().step, 20);
   solver.set_time_state({0, p.dt, 0, -1.0});
   solver.upload(start.x, start.v);
   EXPECT_TRUE(solver.enqueue_steps(300));

@@ -25,7 +25,7 @@ double rate(const FlowDomain& domain, const StaggeredField& u) {
   double most = 0.0;
   domain.for_each_cell([&](const reference::GridIndex& cell) {
     double sum = 0.0;
-    for (std::size_t c = 0; c < 3; ++c) sum += std::abs(u[c][domain.at(c, cell)]) / domain.spacing(c);
+    for (std::size_t c = 0; c < 3; ++c) sum += std::abs(u[c][domain.at(c, cell)]) / domain.width(c, cell[c]);
     most = std::max(most, sum);
   });
   return most;

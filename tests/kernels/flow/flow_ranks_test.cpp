@@ -9,7 +9,7 @@
 
 #include "kernels/flow/halo/decomposition.hpp"
 #include "tests/support/flow_case.hpp"
-#include "tests/support/ranks.hpp"
+#include "tests/support/flow_ranks.hpp"
 
 // The flow solver on several ranks against itself on one.
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -101,16 +102,26 @@ std::vector<Case> cases() {
           {{7, 6, 6}, {1, 1, 2}, {walls, walls, walls}}};
 }
 
+/// Gives each axis cells of widths that differ by a factor up to 20.
+void stretch(PoissonProblem& problem) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int cells = problem.cells[axis] + (problem.axes[axis].on_inner_faces() ? 1 : 0);
+    problem.widths[axis] = random_values(static_cast<std::size_t>(cells));
+    for (double& width : problem.widths[axis]) width = 0.2 * std::pow(20.0, 0.5 * width);
+  }
+}
+
 /// Expects `solve(problem, group, ranks, right-hand side)`, which returns the solution of a rank's cells, to
 /// give the solution on one rank.
 template <class Solve>
-void expect_solutions_of_one_rank(double tolerance, const Solve& solve) {
+void expect_solutions_of_one_rank(double tolerance, bool stretched, const Solve& solve) {
   const ExecutionSpace space;
   for (const Case& each : cases()) {
     const int size = each.parts[1] * each.parts[2];
     const RankGroup group = first_ranks(size);
     if (!belongs_to_first(size)) continue;
-    const PoissonProblem problem{each.cells, {0.3, 0.2, 0.5}, each.axes};
+    PoissonProblem problem{each.cells, {0.3, 0.2, 0.5}, each.axes};
+    if (stretched) stretch(problem);
     const std::vector<double> right = random_values(CellBox{{0, 0, 0}, each.cells}.size());
     const List single("single", right.size());
     const DiagonalizationSolver<ExecutionSpace> reference(space, problem);
@@ -125,17 +136,19 @@ void expect_solutions_of_one_rank(double tolerance, const Solve& solve) {
 }
 
 TEST_F(LinearRanks, PencilsSolveAsOneRank) {
-  for (const AxisMethod method : {AxisMethod::fourier, AxisMethod::diagonalization}) {
-    if (method == AxisMethod::fourier && !device::is_host<ExecutionSpace>) continue;
-    expect_solutions_of_one_rank(1e-13, [&](const PoissonProblem& problem, const RankGroup& group,
-                                            const PencilRanks& ranks, const std::vector<double>& right) {
-      PencilSolver<ExecutionSpace> solver(ExecutionSpace(), problem, group, ranks, method);
-      const List given = on_device(right), solution("solution", right.size());
-      solver.enqueue_solve(given, solution);
-      EXPECT_EQ(right, on_host(given));
-      return on_host(solution);
-    });
-  }
+  for (const AxisMethod method : {AxisMethod::fourier, AxisMethod::diagonalization})
+    for (const bool stretched : {false, true}) {
+      if (method == AxisMethod::fourier && (stretched || !device::is_host<ExecutionSpace>)) continue;
+      const auto solve_pencils = [&](const PoissonProblem& problem, const RankGroup& group,
+                                     const PencilRanks& ranks, const std::vector<double>& right) {
+        PencilSolver<ExecutionSpace> solver(ExecutionSpace(), problem, group, ranks, method);
+        const List given = on_device(right), solution("solution", right.size());
+        solver.enqueue_solve(given, solution);
+        EXPECT_EQ(right, on_host(given));
+        return on_host(solution);
+      };
+      expect_solutions_of_one_rank(1e-13, stretched, solve_pencils);
+    }
 }
 
 /// An implicit step of diffusion of velocities on faces, of which a rank has those of its cells.
@@ -146,40 +159,45 @@ TEST_F(LinearRanks, PencilsDiffuseValuesOnFacesAsOneRank) {
   const List dt = on_device(std::vector<double>{0.4});
   for (const std::array<int, 3>& parts : {std::array<int, 3>{1, 2, 2}, {1, 4, 1}, {1, 1, 4}})
     for (const std::size_t component : {0U, 1U, 2U})
-      for (const AxisMethod method : {AxisMethod::fourier, AxisMethod::diagonalization}) {
-        if (method == AxisMethod::fourier && !device::is_host<ExecutionSpace>) continue;
-        PoissonProblem problem{{6, 13, 14}, {0.3, 0.2, 0.5}, {}};
-        for (AxisConditions& axis : problem.axes) axis = {false, d, n};
-        problem.axes[component] = {false, d, d, true};
-        --problem.cells[component];
-        const SpectralOperator implicit{dt.data(), 0.7};
-        const std::vector<double> right = random_values(problem.size());
-        const List single("single", right.size());
-        DiagonalizationSolver<ExecutionSpace>(space, problem)
-            .enqueue_solve(on_device(right), single, implicit);
-        space.fence();
-        const PencilRanks ranks{parts, {0, group.rank() % parts[1], group.rank() / parts[1]}};
-        const CellBox box = unknowns_of(ranks, problem);
-        PencilSolver<ExecutionSpace> solver(space, problem, group, ranks, method);
-        const List solution("solution", box.size());
-        solver.enqueue_solve(on_device(testing::cut(right, problem.cells, box)), solution, implicit);
-        EXPECT_LT(largest_difference(on_host(single),
-                                     testing::joined(group, on_host(solution), problem.cells, box)),
-                  1e-13)
-            << "component " << component << ", " << parts[1] << " x " << parts[2] << " ranks";
-      }
+      for (const bool stretched : {false, true})
+        for (const AxisMethod method : {AxisMethod::fourier, AxisMethod::diagonalization}) {
+          if (method == AxisMethod::fourier && (stretched || !device::is_host<ExecutionSpace>)) continue;
+          PoissonProblem problem{{6, 13, 14}, {0.3, 0.2, 0.5}, {}};
+          for (AxisConditions& axis : problem.axes) axis = {false, d, n};
+          problem.axes[component] = {false, d, d, true};
+          --problem.cells[component];
+          if (stretched) stretch(problem);
+          const SpectralOperator implicit{dt.data(), 0.7};
+          const std::vector<double> right = random_values(problem.size());
+          const List single("single", right.size());
+          DiagonalizationSolver<ExecutionSpace>(space, problem)
+              .enqueue_solve(on_device(right), single, implicit);
+          space.fence();
+          const PencilRanks ranks{parts, {0, group.rank() % parts[1], group.rank() / parts[1]}};
+          const CellBox box = unknowns_of(ranks, problem);
+          PencilSolver<ExecutionSpace> solver(space, problem, group, ranks, method);
+          const List solution("solution", box.size());
+          solver.enqueue_solve(on_device(testing::cut(right, problem.cells, box)), solution, implicit);
+          EXPECT_LT(largest_difference(on_host(single),
+                                       testing::joined(group, on_host(solution), problem.cells, box)),
+                    1e-13)
+              << "component " << component << ", " << parts[1] << " x " << parts[2] << " ranks";
+        }
 }
 
 #if defined(DROGUE_HAVE_HYPRE)
 TEST_F(LinearRanks, HypreSolvesAsOneRank) {
-  expect_solutions_of_one_rank(1e-10, [](const PoissonProblem& problem, const RankGroup& group,
-                                         const PencilRanks& ranks, const std::vector<double>& right) {
-    HyprePfmgSolver<ExecutionSpace> solver(ExecutionSpace(), problem, group, ranks, 1e-13);
-    const List solution("solution", right.size());
-    solver.enqueue_solve(on_device(right), solution);
-    EXPECT_TRUE(solver.converged());
-    return on_host(solution);
-  });
+  for (const bool stretched : {false, true})
+    expect_solutions_of_one_rank(1e-10, stretched,
+                                 [](const PoissonProblem& problem, const RankGroup& group,
+                                    const PencilRanks& ranks, const std::vector<double>& right) {
+                                   HyprePfmgSolver<ExecutionSpace> solver(ExecutionSpace(), problem, group,
+                                                                          ranks, 1e-13);
+                                   const List solution("solution", right.size());
+                                   solver.enqueue_solve(on_device(right), solution);
+                                   EXPECT_TRUE(solver.converged());
+                                   return on_host(solution);
+                                 });
 }
 #endif
 

@@ -28,8 +28,26 @@ TEST(Lattice, ComponentsLieOnTheFacesNormalToTheirAxis) {
   EXPECT_EQ(lattice_of(channel(), 2).place(0), (std::array<double, 3>{1.25, -0.8, 0.25}));
 }
 
+TEST(Lattice, PointsStandForTheVolumesBetweenThem) {
+  flow::Parameters p = channel();
+  p.faces[1] = {-1.0, -0.7, -0.3, 0.2, 0.6, 1.0};
+  const Lattice cells = lattice_of(p), y = lattice_of(p, 1);
+  EXPECT_EQ(cells.place(4)[1], 0.5 * (-0.7 - 0.3));
+  EXPECT_EQ(y.place(8)[1], -0.3);
+  const std::vector<double> widths = {0.0, 0.3, 0.4, 0.5, 0.4, 0.4, 0.0};
+  for (std::size_t j = 0; j < 6; ++j)
+    EXPECT_NEAR(y.volume(4 * j), 0.5 * (widths[j] + widths[j + 1]) / 0.4, 1e-15);
+  for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(cells.volume(4 * j), widths[j + 1] / 0.4, 1e-15);
+  // On axes of one width they have those of a cell, and half of it at sides, exactly.
+  EXPECT_EQ(lattice_of(channel(), 1).volume(0), 0.5);
+  EXPECT_EQ(lattice_of(channel(), 1).volume(4), 1.0);
+  EXPECT_EQ(lattice_of(channel(), 0).volume(0), 1.0);
+}
+
 TEST(Evaluate, ThreadsFillEveryPoint) {
-  const Lattice lattice{{97, 61, 41}, {0.0, 1.0, 2.0}, {0.1, 0.2, 0.3}};
+  flow::Parameters p;
+  p.cells = {97, 61, 41};
+  const Lattice lattice = lattice_of(p);
   const std::vector<double> values = evaluate(SpaceTimeFunction("x + 10*y*z + t"), lattice, 3.0);
   ASSERT_EQ(values.size(), lattice.size());
   for (std::size_t entry = 0; entry < values.size(); ++entry) {

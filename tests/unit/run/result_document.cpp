@@ -165,7 +165,8 @@ TEST(ResultDocument, ChecksReportTheirMeasurements) {
   EXPECT_EQ(result.checks[0].measured(), "2.5 in [1, 3]");
   EXPECT_EQ(result.checks[1].measured(), "");
   result.add_check("speed", 1.5, 1.0, Measurement{0.5, 1.0, 3.0});
-  EXPECT_EQ(result.failed_check(), "speed is 0.5 not in [1, 3]: its deviation is 1.5, above its tolerance 1");
+  EXPECT_EQ(result.failed_check(),
+            "speed is 0.5, not in [1, 3]: its deviation is 1.5, above its tolerance 1");
   result.add_check("narrow", 0.0, 1e-9, Measurement{19.2, 19.2 - 1.92e-8, 19.2 + 1.92e-8});
   EXPECT_EQ(result.checks[3].measured(), "19.2 in [19.199999981, 19.200000019]");
   result.add_check("drag", std::nan(""), 1.0, Measurement{std::nan(""), 1.0, 3.0});
@@ -181,9 +182,9 @@ TEST(ResultDocument, DeviationsAreRelativeUnlessFromZero) {
   EXPECT_NEAR(result.checks[0].value, 0.02 / 0.3, 1e-15);
   EXPECT_EQ(result.checks[0].tolerance, 0.1);
   EXPECT_EQ(result.checks[0].measured(), "-0.32 in [-0.33, -0.27]");
-  EXPECT_EQ(result.checks[1].measured(), "0.5 not in [0.27, 0.33]");
+  EXPECT_EQ(result.checks[1].measured(), "0.5, not in [0.27, 0.33]");
   EXPECT_EQ(result.checks[2].value, 0.5);
-  EXPECT_EQ(result.checks[2].measured(), "-0.5 not in [-0.1, 0.1]");
+  EXPECT_EQ(result.checks[2].measured(), "-0.5, not in [-0.1, 0.1]");
   EXPECT_EQ(result.checks[3].value, 0.5);
   EXPECT_EQ(result.checks[3].measured(), "2.5 in [1, 3]");
   const Json json = Json::parse(to_json(result));

@@ -235,6 +235,9 @@ TEST(Schema, ConditionsNameTheirKeys) {
   EXPECT_TRUE(both.applies());
   kind = 0;
   EXPECT_FALSE(both.applies());
+  kind = 1, contact = false;
+  EXPECT_FALSE(both.applies());
+  EXPECT_TRUE((Condition{} && Condition{}).applies()) << "one without a condition applies everywhere";
 }
 
 TEST(Place, RefusesAKeyByItsOriginItsPathAndASentence) {

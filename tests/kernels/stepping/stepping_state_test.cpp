@@ -4,14 +4,17 @@
 #include <stdexcept>
 #include <vector>
 
-#include "kernels/coupling/sheet/state_list.hpp"
+#include "kernels/stepping/state_list.hpp"
 
 // List of the arrays of a state.
 
-namespace drogue::coupling {
+namespace drogue::stepping {
 namespace {
 
 using Space = DROGUE_TEST_SPACE;
+struct Peak {
+  double force, time;
+};
 using Vectors = Kokkos::View<double* [3], Kokkos::LayoutLeft, Space::memory_space>;
 
 TEST(StateList, SavesRollsBackAndRestoresAMemberThatIsAdded) {
@@ -19,18 +22,21 @@ TEST(StateList, SavesRollsBackAndRestoresAMemberThatIsAdded) {
   const Space space;
   // The columns of one member have gaps, as those of padded vertices.
   const Vectors padded("padded", 8), vectors("vectors", rows);
-  const StateView<Space> list("list", 7, 1), scratch("scratch", rows, 2);
-  StateList<Space> state(rows);
-  state.add("position", "m", Kokkos::subview(padded, Kokkos::make_pair(0, rows), Kokkos::ALL));
-  state.add("at_faces", "m/s", list, {.saved = false});
-  state.add("scratch", "N", scratch, {.restarted = false});
+  const Kokkos::View<double* [1], Space::memory_space> list("list", 7);
+  const Kokkos::View<double* [2], Space::memory_space> scratch("scratch", rows);
+  const Kokkos::View<Peak*, Space::memory_space> peaks("peaks", 2);
+  StateList<Space> state;
+  state.add("position", "m", padded, rows);
+  state.add("at_faces", "m/s", list, 7, {.saved = false});
+  state.add("scratch", "N", scratch, rows, {.restarted = false});
+  state.add("peak_time", "s", peaks, &Peak::time, {.saved = false, .restarted = false});
   const auto names = [&] {
     std::vector<std::string> all;
-    for (const stepping::StateArray& array : state.arrays()) all.push_back(array.name);
+    for (const StateArray& array : state.arrays()) all.push_back(array.name);
     return all;
   };
   EXPECT_EQ(names(), (std::vector<std::string>{"position", "at_faces"}));
-  state.add("added", "m/s^2", vectors);
+  state.add("added", "m/s^2", vectors, rows);
   EXPECT_EQ(names(), (std::vector<std::string>{"position", "at_faces", "added"}));
   EXPECT_EQ(state.arrays()[1].extent, (std::vector<std::size_t>{7}));
   EXPECT_EQ(state.arrays()[2].extent, (std::vector<std::size_t>{rows, 3}));
@@ -51,10 +57,14 @@ TEST(StateList, SavesRollsBackAndRestoresAMemberThatIsAdded) {
              others = fill("scratch", 10, 200.0);
   const auto mirror = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), vectors);
   EXPECT_EQ(mirror(1, 2), added[5]) << "the last index varies fastest on the host";
-  device::launch_each(space, "save", rows, state.save());
+  const StateList<Space>::Packed saved("saved", state.size());
+  const auto copy = [&](bool packs) {
+    device::launch_each(space, "copy", state.most_rows(), CopyStateFunctor<Space>{state, saved, packs});
+  };
+  copy(true);
   fill("position", 15, -1.0), fill("added", 15, -1.0), fill("scratch", 10, -1.0);
   const auto faces = fill("at_faces", 7, 300.0);
-  state.roll_back(space);
+  copy(false);
   EXPECT_TRUE(holds("position", position));
   EXPECT_TRUE(holds("added", added));
   EXPECT_TRUE(holds("scratch", others));
@@ -62,20 +72,28 @@ TEST(StateList, SavesRollsBackAndRestoresAMemberThatIsAdded) {
   state.clear(space);
   EXPECT_TRUE(holds("added", std::vector<double>(15, 0.0)));
   EXPECT_TRUE(holds("scratch", others)) << "it is not a part of restarts";
+  const auto force = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), peaks);
+  force(1).force = 7.0;
+  Kokkos::deep_copy(peaks, force);
+  const auto times = fill("peak_time", 2, 3.0);
+  EXPECT_TRUE(holds("peak_time", times));
+  Kokkos::deep_copy(force, peaks);
+  EXPECT_EQ(force(1).force, 7.0) << "other members of the structs stay";
 }
 
 TEST(StateList, RejectsUnknownNamesWrongLengthsAndTooManyMembers) {
   const Space space;
-  StateList<Space> state(2);
-  state.add("force", "N", Vectors("force", 2));
+  const Vectors force("force", 2);
+  StateList<Space> state;
+  state.add("force", "N", force, 2);
   std::vector<double> values(6), few(5);
   EXPECT_NO_THROW(state.download(space, "force", values));
   EXPECT_THROW(state.download(space, "forces", values), std::invalid_argument);
   EXPECT_THROW(state.download(space, "force", few), std::invalid_argument);
   EXPECT_THROW(state.upload(space, "force", few), std::invalid_argument);
-  for (int k = 1; k < CopyRowsFunctor<Space>::most; ++k) state.add("more", "N", Vectors("more", 2));
-  EXPECT_THROW(state.add("one too many", "N", Vectors("more", 2)), std::logic_error);
+  for (int k = 1; k < StateList<Space>::most; ++k) state.add("more", "N", force, 2);
+  EXPECT_THROW(state.add("one too many", "N", force, 2), std::length_error);
 }
 
 }  // namespace
-}  // namespace drogue::coupling
+}  // namespace drogue::stepping

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using flow::BoundaryKind;
+using scene::element, scene::joined, scene::Place, scene::rough_text, scene::sentence;
+
+constexpr double pi = std::numbers::pi;
+/// Least number of cells across an open canopy whose forces hardly depend on them.
+constexpr double least_cells = 12.0;
+/// Largest part of a section that an open canopy may cover in free air.
+constexpr double most_blockage = 0.02;
+
+/// Diameter of an open canopy, m: two thirds of the nominal one, as of flat circular canopies (0.64 to 0.70,
+/// Knacke, Parachute Recovery Systems Design Manual, 1992).
+double inflated_diameter(const Canopy& canopy) { return 0.67 * std::sqrt(4.0 / pi * canopy.nominal_area()); }
+
+/// Cells across an open canopy.
+double cells_across(const flow::Parameters& p, const Canopy& canopy) {
+  double width = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) width = std::max(width, core_width(p, axis));
+  return inflated_diameter(canopy) / width;
+}
+
+void note_blockage(FlowScene& scene) {
+  const flow::Parameters& p = scene.parameters;
+  double area = 0.0;
+  for (const Canopy& canopy : scene.canopies)
+    if (canopy.has_lines()) area += pi / 4.0 * std::pow(inflated_diameter(canopy), 2);
+  const double section = (p.high[0] - p.low[0]) * (p.high[1] - p.low[1]);
+  if (area <= most_blockage * section) return;
+  scene.notices.push_back(sentence(
+      "grid.domain: ", scene.canopies.size() > 1 ? "open canopies cover " : "the open canopy covers ",
+      rough_text(100.0 * area / section),
+      " % of its section across z, so that drag and speed are those in "
+      "a duct and not in free air; a square section of ",
+      rough_text(std::ceil(std::sqrt(area / most_blockage))), " m has at most ",
+      rough_text(100.0 * most_blockage), " %"));
+}
+
+/// Notes the canopy with the fewest cells across.
+void note_coarse_cells(FlowScene& scene, std::size_t i) {
+  const double diameter = inflated_diameter(scene.canopies[i]),
+               cells = cells_across(scene.parameters, scene.canopies[i]);
+  if (cells >= least_cells) return;
+  scene.notices.push_back(sentence(
+      "grid: ", rough_text(cells), " cells across the ", rough_text(diameter), " m of ", element("canopy", i),
+      " once it is open are too few for forces that hardly depend on them; cells of ",
+      rough_text(diameter / least_cells), " m would be ", rough_text(least_cells)));
+}
+
+/// Notes free edges that act beyond the cloth, by 0.55 cells: docs/coupling.md, inset of free edges.
+void note_wide_edges(FlowScene& scene, double cells) {
+  constexpr double width = 0.55;
+  if (scene.coupling.edge_inset > 0.0) return;
+  scene.notices.push_back(sentence("coupling.edge_inset = 0: skirt and vent act on the air ", width,
+                                   " cells beyond the cloth, so that drag is some ",
+                                   std::lround(100.0 * (std::pow(1.0 + 2.0 * width / cells, 2) - 1.0)),
+                                   " % too large; coupling.edge_inset = ", width, " makes up for it"));
+}
+
+/// Notes a domain that ends within two open diameters behind a canopy, where its wake still acts on it.
+void note_short_wake(FlowScene& scene, std::size_t i) {
+  constexpr double least_diameters = 2.0;
+  const Canopy& canopy = scene.canopies[i];
+  const flow::Parameters& p = scene.parameters;
+  const bool flows_down = constant_value(scene.velocity[2]).value_or(0.0) < 0.0;
+  const double behind = flows_down ? canopy.centre[2] - p.low[2] : p.high[2] - canopy.centre[2],
+               least = least_diameters * inflated_diameter(canopy);
+  if (behind >= least) return;
+  scene.notices.push_back(sentence("grid.domain ends ", rough_text(behind), " m behind the skirt of ",
+                                   element("canopy", i), ", in a wake that still acts on it; at least ",
+                                   rough_text(least), " m are two open diameters"));
+}
+
+/// Notes sides that hold the stream up or the air together.
+void note_sides(FlowScene& scene) {
+  const flow::Parameters& p = scene.parameters;
+  std::vector<std::string> closed, walls;
+  for (std::size_t side = 0; side < 6; ++side) {
+    const BoundaryKind kind = p.boundary[side].kind;
+    if (kind == BoundaryKind::wall)
+      walls.emplace_back(side_names[side]);
+    else if (side >= 4 && !is_open(kind))
+      closed.emplace_back(side_names[side]);
+  }
+  if (!walls.empty())
+    scene.notices.push_back(sentence("grid.boundary: walls at ", joined(walls, " and "),
+                                     " hold the air back, so that drag and speed are not those in free air; "
+                                     "\"slip\" sides, far away, do not"));
+  if (!closed.empty())
+    scene.notices.push_back(sentence(
+        "grid.boundary: no air passes ", joined(closed, " and "),
+        ", so that a canopy drives the air of the domain along and its drag and speed are not those in "
+        "free air; z = [\"inflow\", \"outflow\"] lets it pass"));
+}
+
+/// Notes dimensions of a C-9 that a canopy of another diameter has by default.
+void note_defaults_of_another_canopy(const Place& root, FlowScene& scene, std::size_t i) {
+  const Canopy &canopy = scene.canopies[i], standard;
+  const double ratio = canopy.diameter / standard.diameter;
+  if (std::abs(ratio - 1.0) < 0.05) return;
+  const Place at = root.at("canopy", i);
+  std::vector<std::string> defaults, own;
+  const auto compare = [&](const char* key, double value, double scaled, const char* unit) {
+    if (at.given(key)) return;
+    defaults.push_back(sentence(key, " = ", rough_text(value), unit));
+    own.push_back(sentence(key, " = ", rough_text(scaled)));
+  };
+  compare("vent", canopy.vent, ratio * standard.vent, " m");
+  compare("gores", canopy.gores, std::max(3.0, std::round(ratio * standard.gores)), "");
+  compare("lines.length", canopy.lines.length, ratio * standard.lines.length, " m");
+  if (defaults.empty()) return;
+  scene.notices.push_back(sentence(at.path(), " is ", rough_text(canopy.diameter),
+                                   " m wide, but has by default ", joined(defaults, ", "), " of a C-9 of ",
+                                   standard.diameter, " m; in proportion it has ", joined(own, ", ")));
+}
+
+}  // namespace
+
+void note_unfit_canopies(const Place& root, FlowScene& scene) {
+  std::vector<std::size_t> flying;
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
+    if (scene.canopies[i].has_lines()) flying.push_back(i);
+  if (flying.empty()) return;
+  const auto cells = [&](std::size_t i) { return cells_across(scene.parameters, scene.canopies[i]); };
+  const std::size_t coarsest = *std::ranges::min_element(flying, {}, cells);
+  note_blockage(scene);
+  note_sides(scene);
+  note_coarse_cells(scene, coarsest);
+  for (const std::size_t i : flying) {
+    note_short_wake(scene, i);
+    note_defaults_of_another_canopy(root, scene, i);
+  }
+  note_wide_edges(scene, cells(coarsest));
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "common/grid/stretched_axis.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using scene::Place, scene::rough_text;
+
+constexpr double most_cells_per_axis = 16384.0;
+
+/// Sets an axis by its faces; cells of one width need none.
+void set_faces(flow::Parameters& p, std::size_t axis, std::vector<double> faces) {
+  p.cells[axis] = static_cast<int>(faces.size()) - 1;
+  p.low[axis] = faces.front();
+  p.high[axis] = faces.back();
+  const double length = p.high[axis] - p.low[axis];
+  bool is_uniform = true;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const double equidistant = p.low[axis] + static_cast<double>(i) * (length / p.cells[axis]);
+    is_uniform = is_uniform && std::abs(faces[i] - equidistant) <= 1e-12 * length;
+  }
+  p.faces[axis] = is_uniform ? std::vector<double>() : std::move(faces);
+}
+
+void complete_core(const Place& root, FlowScene& scene) {
+  flow::Parameters& p = scene.parameters;
+  const GridCore& core = *scene.core;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    root.refuse_if(core.low[axis] < p.low[axis] || core.high[axis] > p.high[axis], "grid.core", ": along ",
+                   axis_names[axis], ", it reaches from ", core.low[axis], " to ", core.high[axis],
+                   " m, beyond grid.domain, ", p.low[axis], " to ", p.high[axis], " m");
+    root.refuse_if((core.high[axis] - core.low[axis]) / scene.spacing[axis] > most_cells_per_axis,
+                   "grid.spacing", ": ", rough_text(scene.spacing[axis]), " m are more than ",
+                   most_cells_per_axis, " cells along ", axis_names[axis]);
+    set_faces(p, axis,
+              grid::stretched_faces({.low = p.low[axis],
+                                     .high = p.high[axis],
+                                     .core_low = core.low[axis],
+                                     .core_high = core.high[axis],
+                                     .spacing = scene.spacing[axis],
+                                     .growth = scene.growth}));
+  }
+}
+
+/// Numbers of a file, one a line.
+std::vector<double> read_faces(const Place& root, const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  root.refuse_if(!stream, "grid.faces", ": there is no file ", file.string());
+  std::vector<double> faces;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    std::size_t end = 0;
+    try {
+      faces.push_back(std::stod(line, &end));
+    } catch (const std::exception&) {
+      end = std::string::npos;
+    }
+    if (end == std::string::npos || line.find_first_not_of(" \t\r", end) != std::string::npos)
+      root.refuse("grid.faces", ": ", file.string(), ":", number, " is not one number");
+  }
+  return faces;
+}
+
+void complete_faces(const Place& root, FlowScene& scene) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    AxisFaces& given = (*scene.faces)[axis];
+    if (!given.file.empty())
+      given = {read_faces(root, std::filesystem::absolute(scene.file).parent_path() / given.file), ""};
+    const std::vector<double>& faces = given.values;
+    root.refuse_if(faces.size() < 2, "grid.faces", "[", axis, "] has ", faces.size(),
+                   " numbers; an axis has two faces at least");
+    root.refuse_if(static_cast<double>(faces.size()) > most_cells_per_axis + 1.0, "grid.faces", "[", axis,
+                   "] has ", faces.size(), " numbers, for more than ", most_cells_per_axis, " cells");
+    const auto bad = std::ranges::adjacent_find(faces, [](double a, double b) { return !(a < b); });
+    if (bad != faces.end())
+      root.refuse("grid.faces", "[", axis, "]: ", bad[1], " follows ", bad[0],
+                  "; the faces of an axis ascend");
+    set_faces(scene.parameters, axis, faces);
+  }
+}
+
+}  // namespace
+
+void complete_and_check_grid(const Place& root, FlowScene& scene) {
+  if (scene.core) complete_core(root, scene);
+  if (scene.faces) complete_faces(root, scene);
+  const flow::Parameters& p = scene.parameters;
+  const bool is_by_cells = !scene.core && !scene.faces;
+  const std::string key = scene.core ? "grid.spacing" : scene.faces ? "grid.faces" : "grid.cells";
+  constexpr int least_cells = 4;
+  constexpr double most_cells = 2147483647.0;
+  double cells = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (p.cells[axis] > 1 && p.cells[axis] < least_cells) {
+      const char* const rule = "an axis has 1 cell, or at least 4";
+      if (is_by_cells) root.refuse(key, "[", axis, "] = ", p.cells[axis], " is out of range: ", rule);
+      root.refuse(key, ": ", p.cells[axis], " cells along ", axis_names[axis], "; ", rule);
+    }
+    cells *= p.cells[axis];
+    const double length = p.high[axis] - p.low[axis], h = core_width(p, axis);
+    const double rounding =
+        std::numeric_limits<double>::epsilon() * std::max(std::abs(p.low[axis]), std::abs(p.high[axis]));
+    root.refuse_if(!std::isfinite(length) || h < 16.0 * rounding, scene.faces ? "grid.faces" : "grid.domain",
+                   ": along ", axis_names[axis], ", ", p.cells[axis], " cells between ", p.low[axis], " and ",
+                   p.high[axis], " have faces that do not differ in FP64");
+  }
+  root.refuse_if(cells > most_cells, key, ": ", static_cast<std::int64_t>(cells),
+                 " cells are more than 2^31 - 1");
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "miniapps/parachute/scene/scene.hpp"
+
+namespace drogue::parachute_app {
+
+/// Size of a run before it is made.
+struct RunSize {
+  double cells = 0.0;
+  double bytes = 0.0;        ///< of the arrays of the flow and of its outputs
+  double steps = 0.0;        ///< of the flow; 0 where the speed of the fluid at the start is not known
+  double cloth_steps = 0.0;  ///< of the cloth, of all canopies, in each of them
+};
+
+/// Size of the run of a checked scene with a fluid. The steps are those of the speed at the start. Throws
+/// only std::bad_alloc.
+[[nodiscard]] RunSize run_size(const FlowScene& scene);
+
+/// Lines of `--check` on grid, memory and time of a scene with a fluid. Throws only std::bad_alloc.
+[[nodiscard]] std::string run_size_report(const FlowScene& scene);
+
+}  // namespace drogue::parachute_app

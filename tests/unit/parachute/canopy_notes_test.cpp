@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "miniapps/parachute/scene/scene.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+/// A C-9 in a box of 36 m with 14 cells across once it is open: nothing to note.
+const char* const fit = R"(app = "parachute"
+[fluid]
+velocity = [0, 0, 10]
+[grid]
+cells = [90, 90, 90]
+domain = [[-18, 18], [-18, 18], [-18, 18]]
+boundary = { x = "slip", y = "slip", z = ["inflow", "outflow"] }
+[[canopy]]
+kind = "flat-circular"
+edge_length = 0.2
+payload = { fixed = true }
+[coupling]
+edge_inset = 0.55
+[run]
+end_time = 1
+)";
+
+std::vector<std::string> notes(const std::vector<std::string>& sets) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("notes" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(file) << fit;
+  std::vector<std::string> found = read_flow_scene(file, sets).notices;
+  std::filesystem::remove(file);
+  return found;
+}
+
+/// Asserts that a scene has this note alone.
+void expect_note(const std::vector<std::string>& sets, const std::string& note) {
+  EXPECT_EQ(notes(sets), std::vector{note}) << sets.front();
+}
+
+TEST(CanopyNotes, ACanopyInFreeAirHasNone) { EXPECT_TRUE(notes({"run.end_time=1"}).empty()); }
+
+TEST(CanopyNotes, NameWhatADuctTakesAndTheSectionThatIsFreeAir) {
+  expect_note(
+      {"grid.domain=[[-12,12],[-12,12],[-18,18]]", "canopy[0].edge_length=0.18"},
+      "grid.domain: the open canopy covers 4.46 % of its section across z, so that drag and speed are "
+      "those in a duct and not in free air; a square section of 36 m has at most 2 %");
+}
+
+TEST(CanopyNotes, NameTheWidthOfCellsThatACanopyNeeds) {
+  expect_note({"grid.cells=[60,60,60]"},
+              "grid: 9.53 cells across the 5.72 m of canopy[0] once it is open are too few for forces that "
+              "hardly depend on them; cells of 0.476 m would be 12");
+}
+
+TEST(CanopyNotes, NameSidesThatHoldTheAir) {
+  expect_note(
+      {"grid.boundary.x=\"wall\""},
+      "grid.boundary: walls at x_low and x_high hold the air back, so that drag and speed are not those "
+      "in free air; \"slip\" sides, far away, do not");
+  expect_note({"grid.boundary.z=\"periodic\""},
+              "grid.boundary: no air passes z_low and z_high, so that a canopy drives the air of the domain "
+              "along and its drag and speed are not those in free air; z = [\"inflow\", \"outflow\"] lets it "
+              "pass");
+}
+
+TEST(CanopyNotes, NameAWakeThatTheDomainCutsOff) {
+  const std::string note =
+      "grid.domain ends 10 m behind the skirt of canopy[0], in a wake that still acts on it; at least 11.4 m "
+      "are two open diameters";
+  expect_note({"canopy[0].centre=[0,0,8]"}, note);
+  expect_note(
+      {"canopy[0].centre=[0,0,-8]", "fluid.velocity=[0,0,-10]", "grid.boundary.z=[\"outflow\",\"inflow\"]"},
+      note);
+}
+
+TEST(CanopyNotes, NameDefaultsOfAC9OfAnotherDiameter) {
+  const std::vector<std::string> small = {"canopy[0].diameter=3", "grid.domain=[[-7,8],[-8,7],[-8,7]]",
+                                          "canopy[0].edge_length=0.1"};
+  expect_note(
+      small,
+      "canopy[0] is 3 m wide, but has by default vent = 0.457 m, gores = 28, lines.length = 7 m of a C-9 "
+      "of 8.534 m; in proportion it has vent = 0.161, gores = 10, lines.length = 2.46");
+  std::vector<std::string> own = small;
+  own.insert(own.end(), {"canopy[0].vent=0.1", "canopy[0].gores=12"});
+  expect_note(
+      own,
+      "canopy[0] is 3 m wide, but has by default lines.length = 7 m of a C-9 of 8.534 m; in proportion "
+      "it has lines.length = 2.46");
+  own.emplace_back("canopy[0].lines.length=7");
+  EXPECT_TRUE(notes(own).empty());
+}
+
+TEST(CanopyNotes, NameEdgesThatActBeyondTheCloth) {
+  expect_note(
+      {"coupling.edge_inset=0"},
+      "coupling.edge_inset = 0: skirt and vent act on the air 0.55 cells beyond the cloth, so that drag "
+      "is some 16 % too large; coupling.edge_inset = 0.55 makes up for it");
+}
+
+TEST(CanopyNotes, SheetsWithoutLinesHaveNone) {
+  EXPECT_TRUE(notes({"canopy=[{kind=\"sheet\",diameter=3,vent=0,edge_length=0.2}]", "coupling.edge_inset=0"})
+                  .empty());
+}
+
+}  // namespace
+}  // namespace drogue::parachute_app
