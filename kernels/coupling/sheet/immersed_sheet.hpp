@@ -32,7 +32,7 @@ struct FilteredAcceleration {
   fabric::ListView<ExecutionSpace, AirFilter> filter;  ///< of each vertex
   Vectors mean;                                        ///< of the air without the force of the sheet
   Vectors trend;                                       ///< of the mean, per step; empty if no vertex has one
-  SurfaceNumbers<ExecutionSpace>
+  VertexValues<ExecutionSpace>
       defect;   ///< along the normal; `SheetParameters::leak_filter`, empty without it
   Vectors sum;  ///< of all: `LocalAir::acceleration`; `mean` without the others
 
@@ -149,9 +149,8 @@ struct EndSheetStepFunctor {
   FilteredAcceleration<ExecutionSpace> filtered;
   typename LocalAir<ExecutionSpace>::Vectors after;  ///< velocity at the end of the step, m/s
   typename LocalAir<ExecutionSpace>::Vectors
-      interpolated_force;  ///< interpolated force of the sheet per volume, N/m^3
-  SurfaceNumbers<ExecutionSpace>
-      defect;  ///< of this step along the normal, m/s^2; empty if it is not filtered
+      interpolated_force;               ///< interpolated force of the sheet per volume, N/m^3
+  VertexValues<ExecutionSpace> defect;  ///< of this step along the normal, m/s^2; empty if it is not filtered
   ClosingSheetViews<ExecutionSpace> closing;
   double inverse_dt, inverse_density;
   bool is_first;
@@ -184,7 +183,7 @@ template <class ExecutionSpace>
 struct SmoothDefectFunctor {
   fabric::SurfaceViews<ExecutionSpace> surface;
   fabric::ListView<ExecutionSpace, double> triangle_area;
-  SurfaceNumbers<ExecutionSpace> from, to;
+  VertexValues<ExecutionSpace> from, to;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     to(i, 0) = surface_mean(surface, triangle_area, from, i);
@@ -241,8 +240,8 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
     _sweeps = smoothing_sweeps(cloth.mesh, grid);
     _triangle_area = fabric::ListView<ExecutionSpace, double>("drogue::coupling::triangle_area",
                                                               static_cast<std::size_t>(_surface.triangles()));
-    for (SurfaceNumbers<ExecutionSpace>* values : {&_defect, &_present_defect, &_smoothed_defect})
-      *values = SurfaceNumbers<ExecutionSpace>("drogue::coupling::defect", Base::rows());
+    for (VertexValues<ExecutionSpace>* values : {&_defect, &_present_defect, &_smoothed_defect})
+      *values = VertexValues<ExecutionSpace>("drogue::coupling::defect", Base::rows(), 1);
     _state.add("defect", "m/s^2", _defect, _surface.vertices());
   }
 
@@ -332,7 +331,7 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
   Vectors _trend;                                       ///< of the acceleration; empty if no vertex has one
   /// Along the normal, m/s^2: filtered, of a step, and smoothed; empty without
   /// `SheetParameters::leak_filter`.
-  SurfaceNumbers<ExecutionSpace> _defect, _present_defect, _smoothed_defect;
+  VertexValues<ExecutionSpace> _defect, _present_defect, _smoothed_defect;
   fabric::ListView<ExecutionSpace, double> _triangle_area;  ///< doubled, m^2; with a defect
   int _sweeps = 0;                                          ///< that smooth the defect
 };

@@ -8,14 +8,14 @@
 
 namespace drogue::coupling {
 
-/// A number for each vertex of a surface on a device, as an array of a state.
-template <class ExecutionSpace>
-using SurfaceNumbers = Kokkos::View<double* [1], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
-
 /// Number of means along a surface that smooth values over half a cell, the root of their mean square
 /// distance along each tangent, on equilateral triangles of the mean area of those at rest: 0.32 over that
 /// area in cells, at least 1. Does not throw.
 [[nodiscard]] int smoothing_sweeps(const mesh::Mesh& mesh, const StaggeredGrid& grid);
+
+/// A value at each vertex, (vertices, 1), as an array of the state.
+template <class ExecutionSpace>
+using VertexValues = Kokkos::View<double**, Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
 
 template <class ExecutionSpace>
 struct TriangleAreaFunctor {
@@ -29,13 +29,13 @@ struct TriangleAreaFunctor {
   }
 };
 
-/// Mean along a surface at vertex i of `values`: of the corners of each triangle, then of
+/// Mean along a surface at vertex i of the first column of `values`: of the corners of each triangle, then of
 /// the triangles around the vertex, weighted by `area`. It keeps the integral over the surface, is symmetric
 /// in the inner product of areas, and its factors are 0 to 1. Zero where there is no area.
 template <class ExecutionSpace>
 KOKKOS_FUNCTION double surface_mean(const fabric::SurfaceViews<ExecutionSpace>& surface,
                                     const fabric::ListView<ExecutionSpace, double>& area,
-                                    const SurfaceNumbers<ExecutionSpace>& values, int i) {
+                                    const VertexValues<ExecutionSpace>& values, int i) {
   double sum = 0.0, weight = 0.0;
   for (int k = surface.first(i); k < surface.first(i + 1); ++k) {
     const int t = surface.around(k);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
 
@@ -58,7 +59,7 @@ void note_coarse_cells(FlowScene& scene, std::size_t i) {
 /// Notes free edges that act beyond the cloth, by 0.55 cells: docs/coupling.md, inset of free edges.
 void note_wide_edges(FlowScene& scene, double cells) {
   constexpr double width = 0.55;
-  if (scene.coupling.edge_inset > 0.0) return;
+  if (scene.coupling.method != coupling::CouplingMethod::spread) return;
   scene.notices.push_back(sentence("coupling.edge_inset = 0: skirt and vent act on the air ", width,
                                    " cells beyond the cloth, so that drag is some ",
                                    std::lround(100.0 * (std::pow(1.0 + 2.0 * width / cells, 2) - 1.0)),
@@ -124,7 +125,7 @@ void note_defaults_of_another_canopy(const Place& root, FlowScene& scene, std::s
 
 }  // namespace
 
-void note_unfit_canopies(const Place& root, FlowScene& scene) {
+void note_unfit_canopies(const Place& root, FlowScene& scene, const Sheets& sheets) {
   std::vector<std::size_t> flying;
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
     if (scene.canopies[i].has_lines()) flying.push_back(i);
@@ -138,7 +139,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
     note_short_wake(scene, i);
     note_defaults_of_another_canopy(root, scene, i);
   }
-  note_wide_edges(scene, cells(coarsest));
+  if (!(exchange_parameters(scene, sheets).edge_inset > 0.0)) note_wide_edges(scene, cells(coarsest));
 }
 
 }  // namespace drogue::parachute_app

@@ -423,7 +423,7 @@ void complete_and_check(const Place& root, FlowScene& scene) {
     if (!scene.flags.empty()) sheets = make_all_sheets({}, {}, p.density, p.viscosity, scene.flags);
     check_images(root, scene, sheets);
     note_narrow_channels(root, scene, sheets);
-    note_unfit_canopies(root, scene);
+    note_unfit_canopies(root, scene, sheets);
   } else {
     check_steps(root, scene);
   }

@@ -45,8 +45,8 @@ std::vector<double> smoothed(const Mesh& mesh, const std::vector<Vector>& x,
   const fabric::ListView<E, double> area("area", mesh.triangles.size());
   device::launch_each(space, "area", surface.triangles(),
                       TriangleAreaFunctor<E>{surface, on_device<E>(x), area});
-  SmoothDefectFunctor<E> smooth{surface, area, SurfaceNumbers<E>("from", x.size()),
-                                SurfaceNumbers<E>("to", x.size())};
+  SmoothDefectFunctor<E> smooth{surface, area, VertexValues<E>("from", x.size(), 1),
+                                VertexValues<E>("to", x.size(), 1)};
   device::copy_in(space, smooth.from, values.data(), values.size());
   for (int k = 0; k < times; ++k) {
     device::launch_each(space, "smooth", surface.vertices(), smooth);

@@ -424,10 +424,11 @@ TEST(Chute, InflatesIfImpermeable) {
     EXPECT_NEAR(found.drag / expected.drag, 1.0, 0.03) << expected.speed << ' ' << expected.leak_filter;
     EXPECT_LT(found.noise, 1.1 * expected.noise) << expected.speed << ' ' << expected.leak_filter;
     EXPECT_GT(found.drag, 1.2 * std::pow(expected.speed / 10.0, 2) * porous);
-    if (expected.leak_filter > 0.0)
+    if (expected.leak_filter > 0.0) {
       EXPECT_LT(std::abs(found.leak), 1.5e-3) << expected.speed;
-    else if (expected.speed == 10.0)
+    } else if (expected.speed == 10.0) {
       EXPECT_GT(found.leak, 4e-3);
+    }
   }
 }
 
