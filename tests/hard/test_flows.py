@@ -16,7 +16,7 @@ MANY_SMALL_STEPS = {
 OTHER_PARACHUTES = set(parachute_program.CANOPIES) - {"c9-flat", "reefed", "sphere-drop", "membrane-drum-in-air", "cloth-drop"}
 
 # A minute or more on one core.
-MINUTES_SERIALLY = {"taylor-green-3d", "c9-flat"}
+MINUTES_SERIALLY = {"taylor-green-3d", "c9-flat", "disk-free-air"}
 
 
 class Shipped(parachute_program.FlowTest):

@@ -14,7 +14,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 import gas_program
 import parachute_program
 import small_disk
-from parachute_program import CANOPY, DRIFT, GUST, PLATE, PROGRAM, VORTICES
+from parachute_program import CANOPY, CORE, DRIFT, GROWING, GUST, PLATE, PROGRAM, VORTICES
 from rank_processes import LAUNCHER, RANK_ENVIRONMENT, processes_of
 
 QUIET = ("--quiet", "--backend", "serial")
@@ -88,6 +88,11 @@ class Results(RanksTest):
         for ranks in (2, 4):
             self.assert_same_runs("1", str(ranks))
 
+    def test_stretched_grids_are_divided_too(self):
+        for ranks in (1, 4):
+            self.run_on(0, ranks, self.write(GROWING), *QUIET, "--out", ranks)
+        self.assert_same_runs("1", "4")
+
     def test_verifies_against_the_exact_solution(self):
         output = self.run_on(0, 4, self.write(VORTICES), "--backend", "serial", "--out", "out")
         self.assertEqual(1, output.count("l2_velocity"), output)
@@ -146,6 +151,11 @@ class Sheets(RanksTest):
         self.assertGreater(max(map(abs, rows["canopy_0_force_z"])), 1)
         self.assertGreater(max(rows["cloth_elastic_energy"]), 0)
         self.assertLess(max(rows["force_balance"]), 1e-14)
+
+    def test_canopies_open_in_a_core_as_on_one_rank(self):
+        self.compare(CORE, 1e-8, several=(4,))
+        self.assertGreater(max(map(abs, self.history("4")["canopy_0_force_z"])), 1)
+        self.assertLess(max(self.history("4")["force_balance"]), 1e-14)
 
     def test_grid_follows_a_payload_as_on_one_rank(self):
         free = CANOPY.replace("fixed = true", "fixed = false").replace("cells", 'frame = "follow"\ncells')

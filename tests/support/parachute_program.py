@@ -139,6 +139,15 @@ history_every = 2
 force_balance = 1e-14
 """
 
+# The gust on a stretched grid that is given by its faces.
+GROWING = GUST.replace("cells = [12, 10, 8]\ndomain = [[0, 2], [0, 1], [0, 1]]\n",
+                       "faces = [[0, 0.1, 0.2, 0.32, 0.46, 0.62, 0.8, 1, 1.2, 1.4, 1.6, 1.8, 2], "
+                       "[0, 0.06, 0.14, 0.24, 0.36, 0.5, 0.64, 0.76, 0.86, 0.94, 1], [0, 0.2, 0.35, 0.5, 0.65, 0.8, 1]]\n")
+
+# The canopy in the same cells, as the core of a grid of six times the section.
+CORE = CANOPY.replace("cells = [20, 20, 30]\ndomain = [[-2, 2], [-2, 2], [-2.6, 3.4]]\n",
+                      "core = [[-2, 2], [-2, 2], [-2.6, 3.4]]\nspacing = 0.2\ngrowth = 1.1\ndomain = [[-5, 5], [-5, 5], [-5, 8]]\n")
+
 # A sheet that the air carries through a periodic side to the image of a disk.
 DRIFT = """\
 app = "parachute"
