@@ -19,7 +19,7 @@ class Documenter {
   static void sections(const Table& table, const Key* self, std::string& text) {
     text += self == nullptr ? "## Top level\n\n" : "## `" + heading(*self, table._path) + "`\n\n";
     if (self != nullptr) text += self->_help + "." + remark(*self) + "\n\n";
-    if (!table._alternatives.empty()) text += "Exactly one of its keys is given.\n\n";
+    if (!table._alternatives.empty()) text += alternatives(table) + "\n\n";
     std::string rows;
     for (const auto& key : table._keys) {
       if (key->_kind == Key::Kind::value) rows += row(*key);
@@ -49,6 +49,13 @@ class Documenter {
         visit(*key->_tables.front(), *key);
       }
     }
+  }
+
+  static std::string alternatives(const Table& table) {
+    if (table._alternatives.size() == table._keys.size()) return "Exactly one of its keys is given.";
+    std::string names;
+    for (const std::string& name : table._alternatives) names += (names.empty() ? "" : ", ") + code(name);
+    return "Exactly one of " + names + " is given.";
   }
 
   static std::string remark(const Key& key) {

@@ -120,7 +120,11 @@ class Reader {
       const bool replaced = set_alternative != table._alternatives.end() &&
                             std::find(table._alternatives.begin(), table._alternatives.end(), key->_name) !=
                                 table._alternatives.end();
-      const bool meaningless = is_set(table.find(key->_rules.when.decided_by)) && !key->applies();
+      const std::string& decides = key->_rules.when.decided_by;
+      const bool is_decided = is_set(table.find(decides)) ||
+                              (set_alternative != table._alternatives.end() &&
+                               std::ranges::find(table._alternatives, decides) != table._alternatives.end());
+      const bool meaningless = is_decided && !key->applies();
       if (from_file && (replaced || meaningless)) drop(*key);
       for (const auto& child : key->_tables) drop_overridden(*child);
     }

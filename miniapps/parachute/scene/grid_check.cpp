@@ -48,23 +48,48 @@ void complete_core(const Place& root, FlowScene& scene) {
   }
 }
 
-/// Numbers of a file, one a line.
+/// Numbers of a file, one a line; blank lines do not count.
 std::vector<double> read_faces(const Place& root, const std::filesystem::path& file) {
+  std::error_code unreadable;
+  root.refuse_if(!std::filesystem::exists(file, unreadable), "grid.faces", ": there is no file ",
+                 file.string());
+  root.refuse_if(!std::filesystem::is_regular_file(file, unreadable), "grid.faces", ": ", file.string(),
+                 " is no file but a directory or device");
   std::ifstream stream(file);
-  root.refuse_if(!stream, "grid.faces", ": there is no file ", file.string());
   std::vector<double> faces;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
+    constexpr const char* blanks = " \t\r";
+    if (line.find_first_not_of(blanks) == std::string::npos) continue;
     std::size_t end = 0;
     try {
       faces.push_back(std::stod(line, &end));
     } catch (const std::exception&) {
       end = std::string::npos;
     }
-    if (end == std::string::npos || line.find_first_not_of(" \t\r", end) != std::string::npos)
-      root.refuse("grid.faces", ": ", file.string(), ":", number, " is not one number");
+    if (end == std::string::npos || line.find_first_not_of(blanks, end) != std::string::npos ||
+        !std::isfinite(faces.back()))
+      root.refuse("grid.faces", ": ", file.string(), ":", number, " is not one finite number");
   }
   return faces;
+}
+
+/// Notes given faces whose cells grow faster than those beside a core may.
+void note_jumps(FlowScene& scene, std::size_t axis) {
+  constexpr double most = 1.1;
+  const flow::Parameters& p = scene.parameters;
+  double largest = 1.0;
+  int at = 0;
+  for (int i = 1; i < p.cells[axis]; ++i) {
+    const double ratio = flow::cell_width(p, axis, i) / flow::cell_width(p, axis, i - 1),
+                 growth = std::max(ratio, 1.0 / ratio);
+    if (growth > largest) largest = growth, at = i;
+  }
+  if (largest <= most * (1.0 + 1e-6)) return;
+  scene.notices.push_back(scene::sentence("grid.faces[", axis, "]: the cells beside ",
+                                          rough_text(flow::face_coordinate(p, axis, at)),
+                                          " m differ in width by a factor of ", rough_text(largest),
+                                          ", which costs accuracy there; at most ", most, " keeps it"));
 }
 
 void complete_faces(const Place& root, FlowScene& scene) {
@@ -73,8 +98,8 @@ void complete_faces(const Place& root, FlowScene& scene) {
     if (!given.file.empty())
       given = {read_faces(root, std::filesystem::absolute(scene.file).parent_path() / given.file), ""};
     const std::vector<double>& faces = given.values;
-    root.refuse_if(faces.size() < 2, "grid.faces", "[", axis, "] has ", faces.size(),
-                   " numbers; an axis has two faces at least");
+    root.refuse_if(faces.size() < 2, "grid.faces", "[", axis, "]: an axis has two faces at least, not ",
+                   faces.size());
     root.refuse_if(static_cast<double>(faces.size()) > most_cells_per_axis + 1.0, "grid.faces", "[", axis,
                    "] has ", faces.size(), " numbers, for more than ", most_cells_per_axis, " cells");
     const auto bad = std::ranges::adjacent_find(faces, [](double a, double b) { return !(a < b); });
@@ -82,6 +107,7 @@ void complete_faces(const Place& root, FlowScene& scene) {
       root.refuse("grid.faces", "[", axis, "]: ", bad[1], " follows ", bad[0],
                   "; the faces of an axis ascend");
     set_faces(scene.parameters, axis, faces);
+    note_jumps(scene, axis);
   }
 }
 

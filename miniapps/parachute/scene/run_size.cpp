@@ -105,14 +105,13 @@ std::string run_size_report(const FlowScene& scene) {
   const RunSize size = run_size(scene);
   std::string text = sentence("grid         ", p.cells[0], " x ", p.cells[1], " x ", p.cells[2], " cells, ",
                               static_cast<std::int64_t>(size.cells), " in all");
-  if (scene.has_stretched_axes()) {
-    const flow::Core core = flow::core_of(p);
+  const flow::Core core = flow::core_of(p);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!flow::is_stretched(p, axis)) continue;
     double widest = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (int i = 0; i < p.cells[axis]; ++i) widest = std::max(widest, flow::cell_width(p, axis, i));
-    text += sentence("; core ", core.cells[0], " x ", core.cells[1], " x ", core.cells[2], " of ",
-                     rough_text(core.spacing[0]), " x ", rough_text(core.spacing[1]), " x ",
-                     rough_text(core.spacing[2]), " m, widest ", rough_text(widest), " m");
+    for (int i = 0; i < p.cells[axis]; ++i) widest = std::max(widest, flow::cell_width(p, axis, i));
+    text += sentence("\n             along ", axis_names[axis], " a core of ", core.cells[axis], " of ",
+                     rough_text(core.spacing[axis]), " m, others up to ", rough_text(widest), " m");
   }
   text += sentence("\nmemory       ", rough_text(size.bytes / 1048576.0), " MiB for its arrays\n");
   if (size.steps == 0.0) return text + "time         not known: it depends on the speed of the fluid\n";

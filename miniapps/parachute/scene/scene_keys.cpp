@@ -54,7 +54,7 @@ void declare_fluid(Table& table, FlowScene& scene) {
 
 void declare_grid(Table& table, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  const Condition core = {[&scene] { return scene.core.has_value(); }, "with core", "cells"};
+  const Condition core = {[&scene] { return scene.core.has_value(); }, "with core", "core"};
   table.value("cells", p.cells, "Cells of one width along x, y, z; 1 for an axis along which nothing varies",
               {.range = between(1, most_cells_per_axis),
                .when = {[&scene] { return !scene.core && !scene.faces; }, "without core and faces", "core"}});

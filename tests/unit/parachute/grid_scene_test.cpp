@@ -109,6 +109,13 @@ TEST_F(GridScene, FacesOfOneWidthAreAUniformGrid) {
   EXPECT_EQ(p.faces[1], (std::vector<double>{0.0, 1.0, 2.5, 3.0, 4.0}));
   EXPECT_EQ(p.high, (std::array<double, 3>{2.0, 4.0, 1.0}));
   EXPECT_FALSE(read({cells}).has_stretched_axes());
+  EXPECT_EQ(read({"grid.faces=[[0,0.5,1,1.5,2],[0,1,2.5,3,4],[-1,1]]"}).parameters.faces, p.faces);
+  // Cells that differ by much are noted.
+  ASSERT_EQ(scene.notices.size(), 1U);
+  EXPECT_EQ(
+      scene.notices[0],
+      "grid.faces[1]: the cells beside 2.5 m differ in width by a factor of 3, which costs accuracy there; "
+      "at most 1.1 keeps it");
   // A core that is the whole domain is one, too.
   const FlowScene whole = read({"grid.core=[[-5,9],[-6,6],[-1,1]]"});
   EXPECT_FALSE(whole.has_stretched_axes());
@@ -116,14 +123,14 @@ TEST_F(GridScene, FacesOfOneWidthAreAUniformGrid) {
 }
 
 TEST_F(GridScene, FacesComeFromFilesToo) {
-  write("y.txt", "0\n1\n 2.5 \n3\n4");
+  write("y.txt", "0\n1\n 2.5 \n3\n4\n\n");
   const FlowScene by_file = read({}, with_grid("faces = [[0, 1, 2, 3, 4], \"y.txt\", [0, 1]]\n")),
                   by_list = read({}, with_grid("faces = [[0, 1, 2, 3, 4], [0, 1, 2.5, 3, 4], [0, 1]]\n"));
   EXPECT_EQ(by_file.parameters.faces, by_list.parameters.faces);
   EXPECT_EQ(print_flow_scene(by_file), print_flow_scene(by_list));
   write("y.txt", "0\n1\ntwo\n");
   const std::string grid = with_grid("faces = [[0, 1, 2, 3, 4], \"y.txt\", [0, 1]]\n");
-  EXPECT_TRUE(refusal({}, grid).ends_with("y.txt:3 is not one number")) << refusal({}, grid);
+  EXPECT_TRUE(refusal({}, grid).ends_with("y.txt:3 is not one finite number")) << refusal({}, grid);
   EXPECT_NE(refusal({}, with_grid("faces = [[0, 1, 2, 3, 4], \"z.txt\", [0, 1]]\n")).find("there is no file"),
             std::string::npos);
 }
@@ -158,7 +165,7 @@ TEST_F(GridScene, RefusesWhatContradictsOrIsNoGrid) {
        "7: grid.growth = 1.2 is out of range"},
       {"faces = [[0, 1, 2, 3, 4], [0, 1, 1, 3, 4], [0, 1]]\n",
        "5: grid.faces[1]: 1.0 follows 1.0; the faces of an axis ascend"},
-      {"faces = [[0, 1, 2, 3, 4], [0], [0, 1]]\n", "5: grid.faces[1] has 1 numbers"},
+      {"faces = [[0, 1, 2, 3, 4], [0], [0, 1]]\n", "5: grid.faces[1]: an axis has two faces at least, not 1"},
       {"faces = [[0, 1, 2, 3, 4], [0, 1, 2, 3, 4], [0, 1]]\ndomain = [[0, 4], [0, 4], [0, 1]]\n",
        "6: grid.domain applies only without faces"}};
   for (const auto& [lines, sentence] : bad) {
@@ -187,7 +194,8 @@ TEST_F(GridScene, CheckStatesItsSize) {
   EXPECT_GT(size.bytes, 8.0 * 12.0 * size.cells);
   EXPECT_LT(size.bytes, 8.0 * 60.0 * size.cells);
   const std::string report = run_size_report(read());
-  for (const char* words : {"cells, ", "core 16 x 8 x 8 of 0.25 x 0.25 x 0.25 m", "MiB", "an estimate: "})
+  for (const char* words : {"cells, ", "along x a core of 16 of 0.25 m, others up to ",
+                            "along y a core of 8 of 0.25 m", "MiB", "an estimate: "})
     EXPECT_NE(report.find(words), std::string::npos) << report;
 }
 
