@@ -80,6 +80,29 @@ void note_short_wake(FlowScene& scene, std::size_t i) {
                                    rough_text(least), " m are two open diameters"));
 }
 
+/// Notes a core that a canopy leaves once it leans by 30 degrees about its payload, or about the middle
+/// between both where the grid follows that.
+void note_narrow_core(FlowScene& scene, std::size_t i) {
+  const Canopy& canopy = scene.canopies[i];
+  const flow::Parameters& p = scene.parameters;
+  const double lean = pi / 6.0, radius = 0.5 * inflated_diameter(canopy),
+               along = std::sqrt(std::max(0.0, std::pow(canopy.lines.length, 2) - radius * radius)) +
+                       (canopy.riser ? canopy.riser->length : 0.0);
+  for (const std::size_t axis : {0U, 1U}) {
+    if (!flow::is_stretched(p, axis)) continue;
+    const bool follows = scene.frame == Frame::follow && scene.open_axes()[axis];
+    const auto [low, high] = sheet_extent(p, axis);
+    const double room = std::min(canopy.centre[axis] - low, high - canopy.centre[axis]) - core_width(p, axis),
+                 needed = (follows ? 0.5 : 1.0) * along * std::sin(lean) + radius * std::cos(lean);
+    if (room >= needed) continue;
+    scene.notices.push_back(
+        sentence(scene.faces ? "grid.faces leave " : "grid.core leaves ", element("canopy", i), " ",
+                 rough_text(room), " m along ", axis_names[axis], ", and one that leans by 30 degrees needs ",
+                 rough_text(needed), " m to each side: it may leave the core, which ends the run"));
+    return;
+  }
+}
+
 /// Notes sides that hold the stream up or the air together.
 void note_sides(FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
@@ -137,6 +160,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene, const Sheets& shee
   note_coarse_cells(scene, coarsest);
   for (const std::size_t i : flying) {
     note_short_wake(scene, i);
+    note_narrow_core(scene, i);
     note_defaults_of_another_canopy(root, scene, i);
   }
   if (!(exchange_parameters(scene, sheets).edge_inset > 0.0)) note_wide_edges(scene, cells(coarsest));

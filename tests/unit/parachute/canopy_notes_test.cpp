@@ -103,6 +103,17 @@ TEST(CanopyNotes, NameEdgesThatActBeyondTheCloth) {
       "is some 16 % too large; coupling.edge_inset = 0.55 makes up for it");
 }
 
+TEST(CanopyNotes, NameTheRoomThatACanopyNeedsInACore) {
+  const std::vector<std::string> narrow = {"grid.core=[[-5.2,5.2],[-5.2,5.2],[-8,8]]", "grid.spacing=0.4"};
+  expect_note(
+      narrow,
+      "grid.core leaves canopy[0] 4.4 m along x, and one that leans by 30 degrees needs 5.67 m to each "
+      "side: it may leave the core, which ends the run");
+  std::vector<std::string> wide = narrow;
+  wide[0] = "grid.core=[[-7.2,7.2],[-7.2,7.2],[-8,8]]";
+  EXPECT_TRUE(notes(wide).empty());
+}
+
 TEST(CanopyNotes, SheetsWithoutLinesHaveNone) {
   EXPECT_TRUE(notes({"canopy=[{kind=\"sheet\",diameter=3,vent=0,edge_length=0.2}]", "coupling.edge_inset=0"})
                   .empty());
