@@ -178,4 +178,20 @@ struct UniformWidths {
   [[nodiscard]] KOKKOS_FUNCTION double relative_volume(int, int, int) const { return 1.0; }
 };
 
+/// The grid, or its `UniformWidths` if it has no stretched axis. Does not throw.
+template <bool is_stretched>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION decltype(auto) widths_of(const MacGrid& grid) {
+  if constexpr (is_stretched)
+    return (grid);
+  else
+    return UniformWidths{grid};
+}
+
+/// Calls `launch.template operator()<is_stretched>()` for a grid with stretched axes, or without: they have
+/// kernels of their own.
+template <class Launch>
+void launch_for_widths(const MacGrid& grid, const Launch& launch) {
+  grid.is_stretched() ? launch.template operator()<true>() : launch.template operator()<false>();
+}
+
 }  // namespace drogue::flow

@@ -125,25 +125,29 @@ struct Step {
   void evaluate_eddy_viscosity(const ExecutionSpace& space, const Values& velocity) {
     if (parameters.turbulence == Turbulence::none) return;
     finish_ghosts(space, velocity);
-    launch_cells(space, "drogue::flow::eddy_viscosity", eddy_cells.extent,
-                 EddyViscosityFunctor<ExecutionSpace>{.grid = grid,
-                                                      .model = eddy_model,
-                                                      .velocity = velocity,
-                                                      .cells = eddy_cells,
-                                                      .viscosity = fields.eddy_viscosity,
-                                                      .control = control});
+    launch_for_widths(grid, [&]<bool is_stretched>() {
+      launch_cells(space, "drogue::flow::eddy_viscosity", eddy_cells.extent,
+                   EddyViscosityFunctor<ExecutionSpace, is_stretched>{.grid = grid,
+                                                                      .model = eddy_model,
+                                                                      .velocity = velocity,
+                                                                      .cells = eddy_cells,
+                                                                      .viscosity = fields.eddy_viscosity,
+                                                                      .control = control});
+    });
   }
 
   /// Acceleration of a velocity field by the eddy viscosity, if there is a model.
   void enqueue_eddy_stress(const ExecutionSpace& space, const Values& velocity) const {
     if (parameters.turbulence == Turbulence::none) return;
-    launch_cells(space, "drogue::flow::eddy_stress", grid.n,
-                 EddyStressFunctor<ExecutionSpace>{.grid = grid,
-                                                   .velocity = velocity,
-                                                   .cells = eddy_cells,
-                                                   .viscosity = fields.eddy_viscosity,
-                                                   .acceleration = fields.eddy_acceleration,
-                                                   .control = control});
+    launch_for_widths(grid, [&]<bool is_stretched>() {
+      launch_cells(space, "drogue::flow::eddy_stress", grid.n,
+                   EddyStressFunctor<ExecutionSpace, is_stretched>{.grid = grid,
+                                                                   .velocity = velocity,
+                                                                   .cells = eddy_cells,
+                                                                   .viscosity = fields.eddy_viscosity,
+                                                                   .acceleration = fields.eddy_acceleration,
+                                                                   .control = control});
+    });
   }
 
   /// Advection, viscosity and forces. Cells that need no other rank come first, while the messages are under

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "kernels/flow/advection/momentum.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
 
@@ -18,7 +20,7 @@ namespace drogue::flow {
 /// Kinetic energy, with half of a cell at each face on a side, does not grow between outflows of fluid at
 /// rest: with the outward velocities a inside and u on the face, central advection adds nothing where fluid
 /// enters, and -u ((a - u)^2 + 2 u^2) / 4 per area where it leaves.
-template <class ExecutionSpace>
+template <class ExecutionSpace, bool is_stretched>
 struct BoundaryFacesFunctor {
   MomentumSetup<ExecutionSpace> setup;
   BoundaryConditions<ExecutionSpace> boundary;
@@ -27,10 +29,7 @@ struct BoundaryFacesFunctor {
 
   KOKKOS_FUNCTION void operator()(int face) const {
     if (setup.control().trial.stop != stepping::Stop::running) return;
-    if (setup.grid.is_stretched())
-      predict(setup.grid, face);
-    else
-      predict(UniformWidths{setup.grid}, face);
+    predict(widths_of<is_stretched>(setup.grid), face);
   }
 
  private:
@@ -166,16 +165,20 @@ struct BoundaryFacesFunctor {
 template <class ExecutionSpace>
 void launch_boundary_faces(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                            const BoundaryConditions<ExecutionSpace>& boundary, Advection advection) {
-  BoundaryFacesFunctor<ExecutionSpace> functor{setup, boundary, is_upwind(advection), {}};
   const MacGrid& g = setup.grid;
-  int total = 0;
+  int total = 0, side_faces[6] = {};
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
     if (g.periodic[axis] || g.n[axis] == 1 || boundary.kind[side] == BoundaryKind::neighbour) continue;
-    functor.side_faces[side] = g.n[(axis + 1) % 3] * g.n[(axis + 2) % 3];
-    total += functor.side_faces[side];
+    side_faces[side] = g.n[(axis + 1) % 3] * g.n[(axis + 2) % 3];
+    total += side_faces[side];
   }
-  if (total > 0) device::launch_each(space, "drogue::flow::boundary_faces", total, functor);
+  if (total == 0) return;
+  launch_for_widths(g, [&]<bool is_stretched>() {
+    BoundaryFacesFunctor<ExecutionSpace, is_stretched> functor{setup, boundary, is_upwind(advection), {}};
+    std::copy_n(side_faces, 6, functor.side_faces);
+    device::launch_each(space, "drogue::flow::boundary_faces", total, functor);
+  });
 }
 
 }  // namespace drogue::flow

@@ -92,7 +92,7 @@ void launch_march(const ExecutionSpace& space, const char* label, const Functor&
 /// viscosity and pressure gradient at the beginning of the step, and the known changes on the sides. Adds the
 /// pressure gradient to the predicted velocity on outflows. The component is known to the compiler, so that
 /// indices of the axes stay in registers.
-template <class ExecutionSpace, int component>
+template <class ExecutionSpace, int component, bool is_stretched>
 struct DiffusionSourceFunctor {
   DiffusionSetup<ExecutionSpace> setup;
   DiffusionMarch march;
@@ -107,11 +107,9 @@ struct DiffusionSourceFunctor {
     Control& control = setup.control();
     if (control.trial.stop != stepping::Stop::running) return;
     Maxima maxima;
-    const MacGrid& g = setup.grid;
     for (int k = march.begin(part); k < march.end(part); ++k)
-      source[march.offset(i, j, k)] = g.is_stretched()
-                                          ? source_at(g, {i, j, k}, control.trial.dt, maxima)
-                                          : source_at(UniformWidths{g}, {i, j, k}, control.trial.dt, maxima);
+      source[march.offset(i, j, k)] =
+          source_at(widths_of<is_stretched>(setup.grid), {i, j, k}, control.trial.dt, maxima);
     raise(control.viscous_acceleration, maxima.viscous_acceleration);
     raise(control.highest[component], maxima.highest);
     raise(control.lowest[component], maxima.lowest);
@@ -287,8 +285,11 @@ class ImplicitDiffusion {
         .extent = {nx, ny, nz},
         .planes = device::is_host<ExecutionSpace> ? 1 : march_planes(tiles, nz, 16, 4096)};
     const Values from(source.data(), unknowns.size()), to(change.data(), unknowns.size());
-    launch_march(space, "drogue::flow::diffusion_source",
-                 DiffusionSourceFunctor<ExecutionSpace, component>{setup, march, from.data()});
+    launch_for_widths(setup.grid, [&]<bool is_stretched>() {
+      launch_march(
+          space, "drogue::flow::diffusion_source",
+          DiffusionSourceFunctor<ExecutionSpace, component, is_stretched>{setup, march, from.data()});
+    });
     std::visit(
         [&](auto& solver) {
           solver.enqueue_solve(from, to, {dt, 0.5 * setup.nu});

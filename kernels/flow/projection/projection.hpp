@@ -43,7 +43,7 @@ struct ProjectionSetup {
 
 /// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that all components of the
 /// predicted velocity are finite.
-template <class ExecutionSpace>
+template <class ExecutionSpace, bool is_stretched>
 struct DivergenceFunctor {
   ProjectionSetup<ExecutionSpace> setup;
 
@@ -63,7 +63,7 @@ struct DivergenceFunctor {
       const std::int64_t next = g.periodic[axis] && index[axis] + 1 == g.n[axis]
                                     ? (1 - g.n[axis]) * g.stride[axis]
                                     : g.stride[axis];
-      divergence += g.inverse_width(axis, index[axis]) * (low[next] - low[0]);
+      divergence += widths_of<is_stretched>(g).inverse_width(axis, index[axis]) * (low[next] - low[0]);
     }
     const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
     if (!(Kokkos::fabs(divergence) < 1e100))
@@ -75,7 +75,7 @@ struct DivergenceFunctor {
 /// Subtracts the pressure gradient; reduces the maximum of |u|/hx + |v|/hy + |w|/hz, without axes of one
 /// cell. The velocities are those on the low faces of a cell, and on the larger of both faces beside a high
 /// side, so that each face counts. The width is the lesser one of the cells on both sides of a face.
-template <class ExecutionSpace>
+template <class ExecutionSpace, bool is_stretched>
 struct CorrectionFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
   using Member = typename Policy::member_type;
@@ -142,11 +142,12 @@ struct CorrectionFunctor {
           below = setup.pressure_below[axis][axis == 1 ? i + g.n[0] * k : i + g.n[0] * j];
         else if (setup.is_outflow(2 * axis))
           below = -p;
-        value -= dt * g.inverse_gap(axis, index[axis]) * (p - below);
+        value -= dt * widths_of<is_stretched>(g).inverse_gap(axis, index[axis]) * (p - below);
         if (index[axis] + 1 == g.n[axis] && !g.periodic[axis]) {
           const std::int64_t high = place + g.stride[axis];
           double last = setup.predicted(high);
-          if (setup.is_outflow(2 * axis + 1)) last += 2.0 * dt * g.inverse_gap(axis, g.n[axis]) * p;
+          if (setup.is_outflow(2 * axis + 1))
+            last += 2.0 * dt * widths_of<is_stretched>(g).inverse_gap(axis, g.n[axis]) * p;
           setup.velocity(high) = last;
           if (!setup.is_neighbour(2 * axis + 1)) beyond = Kokkos::fabs(last);
         }
@@ -154,7 +155,7 @@ struct CorrectionFunctor {
       setup.velocity(place) = value;
       const double speed = Kokkos::fabs(value);
       // A factor of zero keeps a NaN.
-      if (g.is_stretched(axis))
+      if (is_stretched && g.is_stretched(axis))
         rate += g.inverse_least_width(axis, index[axis]) * (beyond > speed ? beyond : speed);
       else
         rate += (g.n[axis] > 1 ? g.inverse_h[axis] : 0.0) * (beyond > speed ? beyond : speed);
@@ -166,13 +167,15 @@ struct CorrectionFunctor {
 /// Enqueues the right-hand side of the pressure equation. Asynchronous.
 template <class ExecutionSpace>
 void launch_divergence(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) {
-  launch_cells(space, "drogue::flow::divergence", setup.grid.n, DivergenceFunctor<ExecutionSpace>{setup});
+  launch_for_widths(setup.grid, [&]<bool is_stretched>() {
+    launch_cells(space, "drogue::flow::divergence", setup.grid.n,
+                 DivergenceFunctor<ExecutionSpace, is_stretched>{setup});
+  });
 }
 
 /// Enqueues the subtraction of the pressure gradient. Asynchronous.
 template <class ExecutionSpace>
 void launch_correction(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) {
-  using Functor = CorrectionFunctor<ExecutionSpace>;
   const int* n = setup.grid.n;
   const auto parts = [](int count, int size) { return (count + size - 1) / size; };
   const bool on_host = device::is_host<ExecutionSpace>;
@@ -180,15 +183,18 @@ void launch_correction(const ExecutionSpace& space, const ProjectionSetup<Execut
   const int width = on_host ? n[0] : tile_x, height = on_host ? 1 : setup.rows;
   const int tiles_x = parts(n[0], width), tiles_y = parts(n[1], height);
   const int planes = on_host ? 1 : march_planes(tiles_x * tiles_y, n[2], 16);
-  const typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes),
-                                        on_host ? 1 : width * height);
-  device::launch_teams("drogue::flow::correction", policy,
-                       Functor{.setup = setup,
-                               .tile_width = width,
-                               .tile_height = height,
-                               .tiles_x = tiles_x,
-                               .tiles_y = tiles_y,
-                               .planes = planes});
+  launch_for_widths(setup.grid, [&]<bool is_stretched>() {
+    using Functor = CorrectionFunctor<ExecutionSpace, is_stretched>;
+    const typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes),
+                                          on_host ? 1 : width * height);
+    device::launch_teams("drogue::flow::correction", policy,
+                         Functor{.setup = setup,
+                                 .tile_width = width,
+                                 .tile_height = height,
+                                 .tiles_x = tiles_x,
+                                 .tiles_y = tiles_y,
+                                 .planes = planes});
+  });
 }
 
 }  // namespace drogue::flow

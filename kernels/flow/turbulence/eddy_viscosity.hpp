@@ -105,7 +105,7 @@ inline EddyCells make_eddy_cells(const MacGrid& grid, const BoundaryKind kind[6]
 }
 
 /// Evaluates the eddy viscosity at the centres of `cells` and its maximum, which limits dt.
-template <class ExecutionSpace>
+template <class ExecutionSpace, bool is_stretched>
 struct EddyViscosityFunctor {
   MacGrid grid;
   EddyModel model;
@@ -118,26 +118,20 @@ struct EddyViscosityFunctor {
     Control& c = control();
     if (c.trial.stop != stepping::Stop::running) return;
     const int cell[3] = {i + cells.first[0], j + cells.first[1], k + cells.first[2]};
-    const double value = grid.is_stretched() ? viscosity_at(grid, model_in_cell(model, grid, cell), cell)
-                                             : viscosity_at(UniformWidths{grid}, model, cell);
+    double gradient[3][3];
+    gradient_of_widths(grid, widths_of<is_stretched>(grid),
+                       velocity.data() + grid.offset(cell[0], cell[1], cell[2]), cell, gradient);
+    EddyModel of_cell = model;
+    if constexpr (is_stretched) of_cell = model_in_cell(model, grid, cell);
+    const double value = eddy_viscosity(of_cell, gradient);
     viscosity(cells.nearest(cell)) = value;
     raise(c.eddy_viscosity, Kokkos::bit_cast<std::uint64_t>(value));
-  }
-
- private:
-  template <class Widths>
-  [[nodiscard]] KOKKOS_FUNCTION double viscosity_at(const Widths& widths, const EddyModel& of_cell,
-                                                    const int (&cell)[3]) const {
-    double gradient[3][3];
-    gradient_of_widths(grid, widths, velocity.data() + grid.offset(cell[0], cell[1], cell[2]), cell,
-                       gradient);
-    return eddy_viscosity(of_cell, gradient);
   }
 };
 
 /// Acceleration by the eddy viscosity, div(2 nu_t S), at the low faces of each cell, m/s^2. The eddy
 /// viscosity outside of a side is that of the cell inside.
-template <class ExecutionSpace>
+template <class ExecutionSpace, bool is_stretched>
 struct EddyStressFunctor {
   MacGrid grid;
   List<ExecutionSpace> velocity;  ///< m/s, with ghost cells
@@ -148,10 +142,7 @@ struct EddyStressFunctor {
 
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
     if (control().trial.stop != stepping::Stop::running) return;
-    if (grid.is_stretched())
-      accelerate(grid, {i, j, k});
-    else
-      accelerate(UniformWidths{grid}, {i, j, k});
+    accelerate(widths_of<is_stretched>(grid), {i, j, k});
   }
 
  private:
