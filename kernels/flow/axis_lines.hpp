@@ -54,7 +54,7 @@ struct Core {
 
 /// Part of the core whose faces may bear forces: their control volumes are those of a grid of one width. Of a
 /// uniform axis all cells, else those of the core without the first and the last one, unless they lie at a
-/// side of the domain. Does not throw.
+/// side of the domain that is not periodic. Does not throw.
 [[nodiscard]] Core force_box(const Parameters& p);
 
 }  // namespace drogue::flow

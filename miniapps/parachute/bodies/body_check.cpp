@@ -51,8 +51,9 @@ void check_extent(const Place& at, const FlowScene& scene, const Body& body, con
   }
   const auto [begin, end] = sheet_extent(p, axis);
   if (low >= begin + margin - rounding && high <= end - margin + rounding) return;
-  const bool can_be_sharp =
-      margin > 0.0 && !is_sharp(scene) && !body.mount && scene.canopies.empty() && scene.flags.empty();
+  refuse_without_core(at, p, key, at.path(), axis);
+  const bool can_be_sharp = !flow::is_stretched(p, axis) && margin > 0.0 && !is_sharp(scene) && !body.mount &&
+                            scene.canopies.empty() && scene.flags.empty();
   at.contradict(key, reaches, ", beyond ",
                 margin > 0.0 || flow::is_stretched(p, axis) ? beyond_sides_text(p, axis) : "the domain",
                 ": it must lie between ", rounded_text(begin + margin), " and ", rounded_text(end - margin),

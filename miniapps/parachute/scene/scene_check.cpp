@@ -385,9 +385,20 @@ std::string beyond_sides_text(const flow::Parameters& p, std::size_t axis) {
                                      : "the cells beside the sides of the domain";
 }
 
+void refuse_without_core(const Place& at, const flow::Parameters& p, const std::string& key,
+                         const std::string& name, std::size_t axis) {
+  const auto [begin, end] = sheet_extent(p, axis);
+  const double width = core_width(p, axis);
+  if (!flow::is_stretched(p, axis) || begin + width < end - width) return;
+  at.contradict(key, name, " has no room in the core of the grid, which has ", flow::core_of(p).cells[axis],
+                " cells along ", axis_names[axis],
+                ": cells of the core have widths that agree to 1e-9 of them");
+}
+
 void refuse_beyond_sides(const Place& root, const flow::Parameters& p, const std::string& key,
                          const std::string& name, std::size_t axis, std::array<double, 2> extent,
                          std::array<double, 2> allowed, const char* remedy) {
+  refuse_without_core(root, p, key, name, axis);
   root.contradict(key, name, " reaches from ", rounded_text(extent[0]), " to ", rounded_text(extent[1]),
                   " m along ", axis_names[axis], ", beyond ", beyond_sides_text(p, axis),
                   ": it must lie between ", rounded_text(allowed[0]), " and ", rounded_text(allowed[1]), " m",

@@ -68,6 +68,10 @@ void note_narrow_channels(const scene::Place& root, FlowScene& scene, const Shee
 /// only std::bad_alloc.
 std::string beyond_sides_text(const flow::Parameters& p, std::size_t axis);
 
+/// Refuses `name` as a fault of a key if the core of a stretched axis is too small for any sheet.
+void refuse_without_core(const scene::Place& at, const flow::Parameters& p, const std::string& key,
+                         const std::string& name, std::size_t axis);
+
 /// Refuses `name`, which reaches from `low` to `high` along an axis, m, beyond the cells beside the sides of
 /// the domain or out of the core, as a fault of a key. `remedy`: the end of the sentence.
 [[noreturn]] void refuse_beyond_sides(const scene::Place& root, const flow::Parameters& p,

@@ -183,6 +183,10 @@ TEST_F(GridScene, BodiesLieInTheCore) {
                 "each end: it must lie between -0.5 and 2.5 m"),
       std::string::npos)
       << refusal({plate, "body[0].centre=[2.6,0,0]"});
+  EXPECT_NE(refusal({plate, "body[0].edge_length=0.07",
+                     "grid.faces=[[-2,-1,-0.1,0.1,1,2],[-1,-0.9,0,0.9,1],[-1,-0.9,0,0.9,1]]"})
+                .find("body[0] has no room in the core of the grid, which has 1 cells along x"),
+            std::string::npos);
   // A side of the domain that the core reaches is a side as of other grids.
   EXPECT_EQ(refusal({plate, "grid.domain=[[-1,9],[-6,6],[-1,1]]", "body[0].centre=[-0.7,0,0]"}), "");
 }
