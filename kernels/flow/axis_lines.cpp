@@ -35,9 +35,11 @@ Core core_of(const Parameters& p) {
 Core force_box(const Parameters& p) {
   Core box = core_of(p);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int begin = box.begin[axis] + (box.begin[axis] > 0 ? 1 : 0),
+    // Beyond a periodic side lies the cell at the other end.
+    const bool repeats = is_stretched(p, axis) && p.boundary[2 * axis].kind == BoundaryKind::periodic;
+    const int begin = box.begin[axis] + (repeats || box.begin[axis] > 0 ? 1 : 0),
               core_end = box.begin[axis] + box.cells[axis],
-              end = core_end - (core_end < p.cells[axis] ? 1 : 0);
+              end = core_end - (repeats || core_end < p.cells[axis] ? 1 : 0);
     if (end - begin == box.cells[axis]) continue;
     box.begin[axis] = begin;
     box.cells[axis] = end - begin;

@@ -880,7 +880,7 @@ class Canopies(parachute_program.FlowTest):
     def test_payload_that_leaves_before_the_grid_follows_ends_the_run(self):
         free = CANOPY.replace("fixed = true", "fixed = false").replace("cells", 'frame = "follow"\ncells').replace(
             "max_dt = 0.01\ncfl = 0.25\n", "")
-        sets = ["fluid.velocity=[0,0,1]", "coupling.gravity=[0,0,-9.81]", "run.end_time=2", "output={}", "verify={}"]
+        sets = ["fluid.velocity=[0,0,1]", "coupling.gravity=[0,0,-9.81]", "run.end_time=1.5", "output={}", "verify={}"]
         process = self.expect(4, self.write(free), *QUIET, sets=sets)
         self.assertRegex(process.stderr, r"its payload at .* side z_low after step \d, .*; a smaller run\.max_dt, with which the grid "
                                          r"follows sooner, a larger grid\.domain or a shorter run\.end_time may save the run")

@@ -29,6 +29,10 @@ TEST(ForceBox, IsTheCoreWithoutCellsBesideWiderOnes) {
   p.faces[0] = {0.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0};
   p.faces[1] = {-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0};
   p.faces[1][6] = p.high[1] = 2.5;
+  // Periodic sides are none: beyond them lies the cell at the other end.
+  EXPECT_EQ(flow::force_box(p).begin[1], 1);
+  EXPECT_EQ(flow::force_box(p).cells[1], 3);
+  for (flow::Boundary& side : p.boundary) side.kind = BoundaryKind::slip;
   const flow::Core box = flow::force_box(p);
   EXPECT_EQ(box.begin, (std::array<int, 3>{2, 0, 0}));
   EXPECT_EQ(box.cells, (std::array<int, 3>{4, 4, 1}));
