@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernels/coupling/sheet/corrections.hpp"
 #include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
@@ -56,14 +57,15 @@ void note_coarse_cells(FlowScene& scene, std::size_t i) {
       rough_text(diameter / least_cells), " m would be ", rough_text(least_cells)));
 }
 
-/// Notes free edges that act beyond the cloth, by 0.55 cells: docs/coupling.md, inset of free edges.
-void note_wide_edges(FlowScene& scene, double cells) {
-  constexpr double width = 0.55;
-  if (scene.coupling.method != coupling::CouplingMethod::spread) return;
-  scene.notices.push_back(sentence("coupling.edge_inset = 0: skirt and vent act on the air ", width,
-                                   " cells beyond the cloth, so that drag is some ",
+/// Notes free edges that act beyond the cloth: docs/coupling.md, inset of free edges.
+void note_wide_edges(FlowScene& scene, const coupling::SheetParameters& exchange, double cells) {
+  if (exchange.method != coupling::CouplingMethod::spread || exchange.edge_inset > 0.0) return;
+  const double width = coupling::standard_edge_inset(exchange.delta, courant_number(scene));
+  scene.notices.push_back(sentence("coupling.edge_inset = 0: skirt and vent act on the air ",
+                                   rough_text(width), " cells beyond the cloth, so that drag is some ",
                                    std::lround(100.0 * (std::pow(1.0 + 2.0 * width / cells, 2) - 1.0)),
-                                   " % too large; coupling.edge_inset = ", width, " makes up for it"));
+                                   " % too large; coupling.edge_inset = ", rough_text(width),
+                                   " makes up for it"));
 }
 
 /// Notes a domain that ends within two open diameters behind a canopy, where its wake still acts on it.
@@ -163,7 +165,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene, const Sheets& shee
     note_narrow_core(scene, i);
     note_defaults_of_another_canopy(root, scene, i);
   }
-  if (!(exchange_parameters(scene, sheets).edge_inset > 0.0)) note_wide_edges(scene, cells(coarsest));
+  note_wide_edges(scene, exchange_parameters(scene, sheets), cells(coarsest));
 }
 
 }  // namespace drogue::parachute_app
