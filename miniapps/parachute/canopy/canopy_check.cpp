@@ -13,7 +13,7 @@ namespace drogue::parachute_app {
 namespace {
 
 using fabric::Vector;
-using scene::element, scene::Place, scene::rough_text, scene::rounded_text;
+using scene::element, scene::Place, scene::rough_text, scene::rounded_text, scene::sentence;
 
 constexpr double most_canopy_vertices = 1048576.0;  // 2^20
 
@@ -121,9 +121,9 @@ void check_stiffness(const Place& at, const FlowScene& scene, const Canopy& cano
       ", a larger edge_length or a smaller ", scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.max_dt");
 }
 
-/// The forces of cloth act up to one cell beyond it.
+/// The forces of cloth act up to one cell beyond it. `remedy`: the end of the sentence.
 void check_inside(const Place& root, const flow::Parameters& p, const std::vector<Vector>& positions,
-                  const std::string& key, const std::string& name) {
+                  const std::string& key, const std::string& name, const std::string& remedy) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic && !flow::is_stretched(p, axis)) continue;
     const auto [low, high] = std::ranges::minmax(positions, {}, [axis](const Vector& x) { return x[axis]; });
@@ -132,7 +132,7 @@ void check_inside(const Place& root, const flow::Parameters& p, const std::vecto
     const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
     if (low[axis] >= least - rounding && high[axis] <= most + rounding) continue;
     refuse_beyond_sides(root, p, key, name + " with its payload", axis, {low[axis], high[axis]},
-                        {least, most});
+                        {least, most}, remedy.c_str());
   }
 }
 
@@ -285,7 +285,8 @@ void check_canopies(const Place& root, const FlowScene& scene) {
     CanopyMesh mesh = make_canopy(canopy);
     if (scene.has_fluid()) {
       check_stiffness(at, scene, canopy, mesh);
-      check_inside(root, p, mesh.positions, at.path(place_key(canopy)), at.path());
+      check_inside(root, p, mesh.positions, at.path(place_key(canopy)), at.path(),
+                   canopy.has_lines() ? sentence("; its lines.length is ", canopy.lines.length, " m") : "");
     }
     mesh.positions.resize(mesh.cloth_vertices);
     cloths.push_back(sorted_by_x(std::move(mesh.positions)));

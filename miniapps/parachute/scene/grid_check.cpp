@@ -28,6 +28,29 @@ void set_faces(flow::Parameters& p, std::size_t axis, std::vector<double> faces)
   p.faces[axis] = is_uniform ? std::vector<double>() : std::move(faces);
 }
 
+/// Notes cells that grow faster than those beside a core may, also from the last to the first of a periodic
+/// axis.
+void note_jumps(FlowScene& scene, const std::string& key, std::size_t axis) {
+  constexpr double most = 1.1;
+  const flow::Parameters& p = scene.parameters;
+  const std::optional<SidePair>& sides = scene.sides[axis];
+  const int n = p.cells[axis];
+  const bool is_periodic = !sides || sides->front() == flow::BoundaryKind::periodic;
+  double largest = 1.0;
+  int at = 0;
+  for (int i = is_periodic ? 0 : 1; i < n; ++i) {
+    const double ratio = flow::cell_width(p, axis, i) / flow::cell_width(p, axis, (i + n - 1) % n),
+                 growth = std::max(ratio, 1.0 / ratio);
+    if (growth > largest) largest = growth, at = i;
+  }
+  if (largest <= most * (1.0 + 1e-6)) return;
+  const std::string place =
+      at == 0 ? std::string("the periodic sides") : rough_text(flow::face_coordinate(p, axis, at)) + " m";
+  scene.notices.push_back(scene::sentence(key, ": the cells beside ", place,
+                                          " differ in width by a factor of ", rough_text(largest),
+                                          ", which costs accuracy there; at most ", most, " keeps it"));
+}
+
 void complete_core(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   const GridCore& core = *scene.core;
@@ -45,6 +68,7 @@ void complete_core(const Place& root, FlowScene& scene) {
                                      .core_high = core.high[axis],
                                      .spacing = scene.spacing[axis],
                                      .growth = scene.growth}));
+    note_jumps(scene, "grid.core", axis);
   }
 }
 
@@ -74,24 +98,6 @@ std::vector<double> read_faces(const Place& root, const std::filesystem::path& f
   return faces;
 }
 
-/// Notes given faces whose cells grow faster than those beside a core may.
-void note_jumps(FlowScene& scene, std::size_t axis) {
-  constexpr double most = 1.1;
-  const flow::Parameters& p = scene.parameters;
-  double largest = 1.0;
-  int at = 0;
-  for (int i = 1; i < p.cells[axis]; ++i) {
-    const double ratio = flow::cell_width(p, axis, i) / flow::cell_width(p, axis, i - 1),
-                 growth = std::max(ratio, 1.0 / ratio);
-    if (growth > largest) largest = growth, at = i;
-  }
-  if (largest <= most * (1.0 + 1e-6)) return;
-  scene.notices.push_back(scene::sentence("grid.faces[", axis, "]: the cells beside ",
-                                          rough_text(flow::face_coordinate(p, axis, at)),
-                                          " m differ in width by a factor of ", rough_text(largest),
-                                          ", which costs accuracy there; at most ", most, " keeps it"));
-}
-
 void complete_faces(const Place& root, FlowScene& scene) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     AxisFaces& given = (*scene.faces)[axis];
@@ -107,7 +113,7 @@ void complete_faces(const Place& root, FlowScene& scene) {
       root.refuse("grid.faces", "[", axis, "]: ", bad[1], " follows ", bad[0],
                   "; the faces of an axis ascend");
     set_faces(scene.parameters, axis, faces);
-    note_jumps(scene, axis);
+    note_jumps(scene, scene::sentence("grid.faces[", axis, "]"), axis);
   }
 }
 
