@@ -58,9 +58,10 @@ void note_coarse_cells(FlowScene& scene, std::size_t i) {
 }
 
 /// Notes free edges that act beyond the cloth: docs/coupling.md, inset of free edges.
-void note_wide_edges(FlowScene& scene, const coupling::SheetParameters& exchange, double cells) {
-  if (exchange.method != coupling::CouplingMethod::spread || exchange.edge_inset > 0.0) return;
-  const double width = coupling::standard_edge_inset(exchange.delta, courant_number(scene));
+void note_wide_edges(FlowScene& scene, double cells) {
+  if (scene.coupling.method != coupling::CouplingMethod::spread || edge_inset(scene) > 0.0) return;
+  const double width =
+      coupling::standard_edge_inset(coupling::SheetParameters().delta, courant_number(scene));
   scene.notices.push_back(sentence("coupling.edge_inset = 0: skirt and vent act on the air ",
                                    rough_text(width), " cells beyond the cloth, so that drag is some ",
                                    std::lround(100.0 * (std::pow(1.0 + 2.0 * width / cells, 2) - 1.0)),
@@ -150,7 +151,7 @@ void note_defaults_of_another_canopy(const Place& root, FlowScene& scene, std::s
 
 }  // namespace
 
-void note_unfit_canopies(const Place& root, FlowScene& scene, const Sheets& sheets) {
+void note_unfit_canopies(const Place& root, FlowScene& scene) {
   std::vector<std::size_t> flying;
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
     if (scene.canopies[i].has_lines()) flying.push_back(i);
@@ -165,7 +166,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene, const Sheets& shee
     note_narrow_core(scene, i);
     note_defaults_of_another_canopy(root, scene, i);
   }
-  note_wide_edges(scene, exchange_parameters(scene, sheets), cells(coarsest));
+  note_wide_edges(scene, cells(coarsest));
 }
 
 }  // namespace drogue::parachute_app

@@ -21,6 +21,10 @@ std::vector<coupling::AirFilter> filters_by_law(const FlowScene& scene, const Sh
   return filters;
 }
 
+bool is_corrected(const Exchange& exchange) {
+  return exchange.corrections == Corrections::all && exchange.method == coupling::CouplingMethod::spread;
+}
+
 bool has_retraction(const FlowScene& scene) {
   return std::ranges::any_of(scene.bodies, [](const Body& body) { return body.retraction > 0.0; });
 }
@@ -36,22 +40,29 @@ double courant_number(const FlowScene& scene) {
   return passed > 0.0 ? std::min(given, faster_beside_edges * passed) : given;
 }
 
+double edge_inset(const FlowScene& scene) {
+  // A retraction moves the edges of a cup inwards, too.
+  const bool is_wide = is_corrected(scene.coupling) && !has_retraction(scene);
+  return scene.coupling.edge_inset.value_or(
+      is_wide ? coupling::standard_edge_inset(coupling::SheetParameters().delta, courant_number(scene))
+              : 0.0);
+}
+
+double leak_filter(const FlowScene& scene) {
+  // Flags enclose no air, and their amplitude is nearer to its limit with the leak.
+  const bool can_leak = is_corrected(scene.coupling) && scene.flags.empty();
+  return scene.coupling.leak_filter.value_or(can_leak ? coupling::standard_leak_filter : 0.0);
+}
+
 coupling::SheetParameters exchange_parameters(const FlowScene& scene, const Sheets& sheets) {
   const Exchange& exchange = scene.coupling;
-  const bool is_corrected =
-      exchange.corrections == Corrections::all && exchange.method == coupling::CouplingMethod::spread;
   coupling::SheetParameters p;
   p.method = exchange.method;
   p.law_of_vertex = sheets.laws;
   p.filter = exchange.filter.value_or(standard_filter);
-  if (is_corrected && !exchange.filter) p.filter_of_vertex = filters_by_law(scene, sheets);
-  // Flags enclose no air, and their amplitude is nearer to its limit with the leak.
-  const bool can_leak = is_corrected && scene.flags.empty();
-  p.leak_filter = exchange.leak_filter.value_or(can_leak ? coupling::standard_leak_filter : 0.0);
-  // A retraction moves the edges of a cup inwards, too.
-  const bool is_wide = is_corrected && !has_retraction(scene);
-  p.edge_inset = exchange.edge_inset.value_or(
-      is_wide ? coupling::standard_edge_inset(p.delta, courant_number(scene)) : 0.0);
+  if (is_corrected(exchange) && !exchange.filter) p.filter_of_vertex = filters_by_law(scene, sheets);
+  p.leak_filter = leak_filter(scene);
+  p.edge_inset = edge_inset(scene);
   return p;
 }
 

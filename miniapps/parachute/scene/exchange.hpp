@@ -12,6 +12,11 @@ inline constexpr double standard_filter = coupling::SheetParameters().filter;
 /// Courant number of the longest steps in the stream of a scene, at most that of the run. Does not throw.
 [[nodiscard]] double courant_number(const FlowScene& scene);
 
+/// Inset of free edges, cells, and weight of the smoothed defect in its mean: of the scene, or by default. Do
+/// not throw.
+[[nodiscard]] double edge_inset(const FlowScene& scene);
+[[nodiscard]] double leak_filter(const FlowScene& scene);
+
 /// Parameters of the exchange of sheets with the fluid: those of the scene, and of its corrections where it
 /// has none. Throws only std::bad_alloc.
 [[nodiscard]] coupling::SheetParameters exchange_parameters(const FlowScene& scene, const Sheets& sheets);

@@ -68,7 +68,7 @@ void complete_core(const Place& root, FlowScene& scene) {
                                      .core_high = core.high[axis],
                                      .spacing = scene.spacing[axis],
                                      .growth = scene.growth}));
-    note_jumps(scene, "grid.core", axis);
+    note_jumps(scene, scene::sentence("grid.core along ", axis_names[axis]), axis);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "kernels/flow/axis_lines.hpp"
 #include "kernels/flow/diffusive_step.hpp"
 #include "miniapps/parachute/canopy/stiffness.hpp"
+#include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -113,6 +114,9 @@ std::string run_size_report(const FlowScene& scene) {
     text += sentence("\n             along ", axis_names[axis], " a core of ", core.cells[axis], " of ",
                      rough_text(core.spacing[axis]), " m, others up to ", rough_text(widest), " m");
   }
+  if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::spread)
+    text += sentence("\ncoupling     edge_inset = ", rough_text(edge_inset(scene)),
+                     ", leak_filter = ", rough_text(leak_filter(scene)));
   text += sentence("\nmemory       ", rough_text(size.bytes / 1048576.0), " MiB for its arrays\n");
   if (size.steps == 0.0) return text + "time         not known: it depends on the speed of the fluid\n";
   return text + sentence("time         about ", duration_text(time_of(scene, size, two_cores)),

@@ -405,15 +405,6 @@ void refuse_beyond_sides(const Place& root, const flow::Parameters& p, const std
                   remedy);
 }
 
-/// Sets what the exchange of sheets takes by default, so that scenes are printed with it. The filter of the
-/// law has no single value.
-void complete_exchange(FlowScene& scene, const Sheets& sheets) {
-  if (!scene.has_sheets() || scene.coupling.method != coupling::CouplingMethod::spread) return;
-  const coupling::SheetParameters exchange = exchange_parameters(scene, sheets);
-  scene.coupling.edge_inset = exchange.edge_inset;
-  scene.coupling.leak_filter = exchange.leak_filter;
-}
-
 void complete_and_check(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   if (scene.has_fluid()) {
@@ -442,9 +433,8 @@ void complete_and_check(const Place& root, FlowScene& scene) {
     complete_and_check_flags(root, scene);
     if (!scene.flags.empty()) sheets = make_all_sheets({}, {}, p.density, p.viscosity, scene.flags);
     check_images(root, scene, sheets);
-    complete_exchange(scene, sheets);
     note_narrow_channels(root, scene, sheets);
-    note_unfit_canopies(root, scene, sheets);
+    note_unfit_canopies(root, scene);
   } else {
     check_steps(root, scene);
   }

@@ -48,7 +48,7 @@ void check_method(const scene::Place& root, const FlowScene& scene);
 
 /// Notes canopies with lines whose drag and speed are not those in free air, or depend on the cells: a narrow
 /// or short domain, its sides, coarse cells, edges that act beyond the cloth, dimensions of another canopy.
-void note_unfit_canopies(const scene::Place& root, FlowScene& scene, const Sheets& sheets);
+void note_unfit_canopies(const scene::Place& root, FlowScene& scene);
 
 /// Refuses canopies that cross a body at the start, with their cloth or their lines. `sheets`: of the scene.
 void check_canopies_beside_bodies(const scene::Place& root, const FlowScene& scene, const Sheets& sheets);

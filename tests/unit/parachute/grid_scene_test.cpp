@@ -118,8 +118,9 @@ TEST_F(GridScene, FacesOfOneWidthAreAUniformGrid) {
       "at most 1.1 keeps it");
   const FlowScene beside_a_side = read({"grid.core=[[-5,-1],[-6,6],[-1,1]]", "grid.boundary.x=\"periodic\""});
   ASSERT_EQ(beside_a_side.notices.size(), 1U);
-  EXPECT_NE(beside_a_side.notices[0].find("grid.core: the cells beside the periodic sides differ in width"),
-            std::string::npos)
+  EXPECT_NE(
+      beside_a_side.notices[0].find("grid.core along x: the cells beside the periodic sides differ in width"),
+      std::string::npos)
       << beside_a_side.notices[0];
   // A core that is the whole domain is one, too.
   const FlowScene whole = read({"grid.core=[[-5,9],[-6,6],[-1,1]]"});
