@@ -14,7 +14,7 @@ class Images(parachute_program.FlowTest):
         scene = self.write(DRIFT)
         sentence = self.expect(4, scene, *QUIET, "--out", "whole").stderr
         self.assertRegex(sentence, r"canopy\[0\] meets the image of body\[0\] beyond the periodic sides at "
-                                   r"\(\S+, \S+, 1\.7\d+\) m after step \d+, t = 0\.5\d* s; ")
+                                   r"\(\S+, \S+, 1\.7\d+\) m after step \d+, t = 0\.4\d* s; ")
         self.assertEqual("numerical-failure", self.result("whole")["status"])
         last = self.history("whole")["time"][-1]
         self.assertIn(f"t = {last:.9g} s", sentence)
