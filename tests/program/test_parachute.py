@@ -924,6 +924,12 @@ class Canopies(parachute_program.FlowTest):
         self.expect(0, self.write(free), *QUIET, "--overwrite", sets=sets)
         self.assert_continues(self.history("out"), self.write(free), [*sets, "run.end_time=0.5", "output.times=[0.5]"], sets)
 
+    def test_steps_may_become_shorter_at_a_restart(self):
+        """The default inset of edges, which follows from the Courant number, is that of the new steps."""
+        scene, output = self.write(CANOPY), "output={restart_every=5,fields=[],history_every=2}"
+        self.expect(0, scene, *QUIET, sets=[output, "run.end_time=0.05"])
+        self.expect(0, scene, *QUIET, "--restart", "auto", sets=[output, "run.end_time=0.08", "run.cfl=0.1"])
+
     def test_gravity_pulls_a_free_payload(self):
         still = CANOPY.replace("velocity = [0, 0, 8]", "velocity = [0, 0, 0]").replace("fixed = true", "fixed = false")
         self.expect(0, self.write(still), *QUIET, sets=["coupling.gravity=[0, 0, -9.81]", "output.history_every=1"])
