@@ -12,8 +12,6 @@ namespace {
 
 using scene::Place, scene::rough_text;
 
-constexpr double most_cells_per_axis = 16384.0;
-
 /// Sets an axis by its faces; cells of one width need none.
 void set_faces(flow::Parameters& p, std::size_t axis, std::vector<double> faces) {
   p.cells[axis] = static_cast<int>(faces.size()) - 1;

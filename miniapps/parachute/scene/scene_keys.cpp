@@ -9,8 +9,6 @@ using coupling::CouplingMethod;
 using scene::between, scene::Choices, scene::Condition, scene::not_negative, scene::positive, scene::Table,
     scene::with_choice, scene::with_true;
 
-constexpr double most_cells_per_axis = 16384;
-
 const Choices<Frame> frame_choices = {{"fixed", Frame::fixed}, {"follow", Frame::follow}};
 const Choices<AdvectionScheme> advection_choices = {{"central", AdvectionScheme::central},
                                                     {"weno5", AdvectionScheme::weno5}};
