@@ -12,8 +12,8 @@ namespace {
 
 using flow::BoundaryKind;
 using scene::element, scene::joined, scene::Place, scene::rough_text, scene::sentence;
+using std::numbers::pi;
 
-constexpr double pi = std::numbers::pi;
 /// Least number of cells across an open canopy whose forces hardly depend on them.
 constexpr double least_cells = 12.0;
 /// Largest part of a section that an open canopy may cover in free air.
