@@ -6,8 +6,7 @@ namespace drogue::reference {
 
 /// Value at the face between q[2] and q[3] from five cells q[0] .. q[4], with the upwind side at the low end,
 /// in the unit of q. Jiang and Shu 1996, eq. (2.16) ff.; weights Z of Borges, Carmona, Costa and Don 2008,
-/// eq. (28). Throws std::invalid_argument for central
-/// fluxes.
+/// eq. (28). Throws std::invalid_argument for central fluxes.
 [[nodiscard]] double upwind_value(const std::array<double, 5>& q, flow::Advection scheme);
 
 /// Flux of momentum component c through the low face along d of its control volume at `face`, per density,

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernels/coupling/sheet/corrections.hpp"
 #include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
@@ -60,8 +59,7 @@ void note_coarse_cells(FlowScene& scene, std::size_t i) {
 /// Notes free edges that act beyond the cloth: docs/coupling.md, inset of free edges.
 void note_wide_edges(FlowScene& scene, double cells) {
   if (scene.coupling.method != coupling::CouplingMethod::spread || edge_inset(scene) > 0.0) return;
-  const double width =
-      coupling::standard_edge_inset(coupling::SheetParameters().delta, courant_number(scene));
+  const double width = standard_edge_inset(scene);
   scene.notices.push_back(sentence("coupling.edge_inset = 0: skirt and vent act on the air ",
                                    rough_text(width), " cells beyond the cloth, so that drag is some ",
                                    std::lround(100.0 * (std::pow(1.0 + 2.0 * width / cells, 2) - 1.0)),

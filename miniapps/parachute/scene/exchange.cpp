@@ -40,12 +40,14 @@ double courant_number(const FlowScene& scene) {
   return passed > 0.0 ? std::min(given, faster_beside_edges * passed) : given;
 }
 
+double standard_edge_inset(const FlowScene& scene) {
+  return coupling::standard_edge_inset(coupling::SheetParameters().delta, courant_number(scene));
+}
+
 double edge_inset(const FlowScene& scene) {
   // A retraction moves the edges of a cup inwards, too.
   const bool is_wide = is_corrected(scene.coupling) && !has_retraction(scene);
-  return scene.coupling.edge_inset.value_or(
-      is_wide ? coupling::standard_edge_inset(coupling::SheetParameters().delta, courant_number(scene))
-              : 0.0);
+  return scene.coupling.edge_inset.value_or(is_wide ? standard_edge_inset(scene) : 0.0);
 }
 
 double leak_filter(const FlowScene& scene) {

@@ -12,6 +12,9 @@ inline constexpr double standard_filter = coupling::SheetParameters().filter;
 /// Courant number of the longest steps in the stream of a scene, at most that of the run. Does not throw.
 [[nodiscard]] double courant_number(const FlowScene& scene);
 
+/// Inset of free edges, cells, by the Courant number. Does not throw.
+[[nodiscard]] double standard_edge_inset(const FlowScene& scene);
+
 /// Inset of free edges, cells, and weight of the smoothed defect in its mean: of the scene, or by default. Do
 /// not throw.
 [[nodiscard]] double edge_inset(const FlowScene& scene);
