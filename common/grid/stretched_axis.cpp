@@ -30,7 +30,10 @@ std::optional<Series> series_of(double length, double growth) {
   if (length <= rounding) return Series{};
   Series series;
   double most = 0.0;
-  for (double width = 1.0; most < length * (1.0 - rounding); ++series.cells) most += width *= growth;
+  for (double width = 1.0; most < length * (1.0 - rounding); ++series.cells) {
+    if (series.cells >= most_cells) throw std::invalid_argument("more than 2^20 cells lie beside the core");
+    most += width *= growth;
+  }
   if (length < series.cells * (1.0 - rounding)) return std::nullopt;
   double low = 1.0, high = growth;
   for (int i = 0; i < 100; ++i) {

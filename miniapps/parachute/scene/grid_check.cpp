@@ -59,13 +59,20 @@ void complete_core(const Place& root, FlowScene& scene) {
     root.refuse_if((core.high[axis] - core.low[axis]) / scene.spacing[axis] > most_cells_per_axis,
                    "grid.spacing", ": ", rough_text(scene.spacing[axis]), " m are more than ",
                    most_cells_per_axis, " cells along ", axis_names[axis]);
-    set_faces(p, axis,
-              grid::stretched_faces({.low = p.low[axis],
+    std::vector<double> faces;
+    try {
+      faces = grid::stretched_faces({.low = p.low[axis],
                                      .high = p.high[axis],
                                      .core_low = core.low[axis],
                                      .core_high = core.high[axis],
                                      .spacing = scene.spacing[axis],
-                                     .growth = scene.growth}));
+                                     .growth = scene.growth});
+    } catch (const std::invalid_argument& fault) {
+      root.refuse("grid.growth", ": along ", axis_names[axis], ", ", fault.what());
+    }
+    root.refuse_if(static_cast<double>(faces.size()) > most_cells_per_axis + 1.0, "grid.growth", ": along ",
+                   axis_names[axis], ", core and growth give more than ", most_cells_per_axis, " cells");
+    set_faces(p, axis, std::move(faces));
     note_jumps(scene, scene::sentence("grid.core along ", axis_names[axis]), axis);
   }
 }

@@ -197,6 +197,15 @@ TEST_F(GridScene, BodiesLieInTheCore) {
   EXPECT_EQ(refusal({plate, "grid.domain=[[-1,9],[-6,6],[-1,1]]", "body[0].centre=[-0.7,0,0]"}), "");
 }
 
+TEST_F(GridScene, CellsBesideTheCoreAreNotTooMany) {
+  for (const char* low : {"-5e4", "-5e8"})
+    EXPECT_NE(
+        refusal({"grid.growth=1.0000000001", std::string("grid.domain=[[") + low + ",9],[-6,6],[-1,1]]"})
+            .find("grid.growth: along x, "),
+        std::string::npos)
+        << low;
+}
+
 TEST_F(GridScene, CheckStatesItsSize) {
   const RunSize size = run_size(read({"run.dt=0.01"}));
   EXPECT_EQ(size.cells, read().cells());
