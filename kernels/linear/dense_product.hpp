@@ -9,6 +9,7 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/launch.hpp"
+#include "kernels/device/pack.hpp"
 
 #if defined(KOKKOS_ENABLE_CUDA) && !defined(DROGUE_EXACT)
 #include <cublas_v2.h>
@@ -32,20 +33,99 @@ struct AxisProduct {
   }
 };
 
-/// Row `line` of a product, all of its entries along the faster axes: for hosts, whose compilers vectorise
-/// it.
-struct DenseProductFunctor {
+/// Rows of a host's tile: with two packs across, its sums and their factors fit the vector registers.
+inline constexpr int tile_rows = 4;
+
+/// Product of `n` scalars per row with `n` rows of packs: sums of `rows` times `packs` packs in registers,
+/// each in the order of k, on top of those in `to` if `adds`. Strides are in numbers.
+template <class Pack, int rows, int packs>
+void multiply_tile(int n, const double* scalars, std::int64_t scalar_row, std::int64_t scalar_k,
+                   const double* vectors, std::int64_t vector_k, double* to, std::int64_t to_row, bool adds) {
+  using Access = device::Access<Pack>;
+  Pack sum[rows][packs];
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < packs; ++c)
+      sum[r][c] = adds ? Access::load(to + r * to_row + c * Access::lanes) : Pack(0.0);
+  for (int k = 0; k < n; ++k)
+    for (int r = 0; r < rows; ++r) {
+      const Pack scalar(scalars[r * scalar_row + k * scalar_k]);
+      for (int c = 0; c < packs; ++c)
+        sum[r][c] += scalar * Access::load(vectors + k * vector_k + c * Access::lanes);
+    }
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < packs; ++c) Access::store(to + r * to_row + c * Access::lanes, sum[r][c]);
+}
+
+/// Product along a slow axis on a host: a strip of `strip` numbers along the faster axes of one array of `n`
+/// rows of `inner` numbers.
+struct SlowAxisProductFunctor {
+  static constexpr int strip = 64;
   AxisProduct product;
 
-  KOKKOS_FUNCTION void operator()(const int line) const {
+  /// Strips of a row. Does not throw.
+  [[nodiscard]] static int strips(int inner) { return (inner + strip - 1) / strip; }
+
+  void operator()(const int item) const {
     const AxisProduct& p = product;
-    const int row = line % p.n;
-    const double* source = p.from + static_cast<std::int64_t>(line - row) * p.inner;
-    double* target = p.to + static_cast<std::int64_t>(line) * p.inner;
-    for (int x = 0; x < p.inner; ++x) target[x] = 0.0;
-    for (int k = 0; k < p.n; ++k, source += p.inner) {
-      const double factor = p.factor(row, k);
-      for (int x = 0; x < p.inner; ++x) target[x] += factor * source[x];
+    const std::int64_t array = static_cast<std::int64_t>(item / strips(p.inner)) * p.n * p.inner;
+    const int begin = item % strips(p.inner) * strip, end = begin + strip < p.inner ? begin + strip : p.inner;
+    using Pack = device::HostPack<double>;
+    constexpr int lanes = device::Access<Pack>::lanes;
+    int x = begin;
+    for (; x + 2 * lanes <= end; x += 2 * lanes) multiply_columns<Pack, 2>(array + x);
+    for (; x + lanes <= end; x += lanes) multiply_columns<Pack, 1>(array + x);
+    for (; x < end; ++x) multiply_columns<double, 1>(array + x);
+  }
+
+  /// All rows of some packs from `first` on.
+  template <class Pack, int packs>
+  void multiply_columns(std::int64_t first) const {
+    const AxisProduct& p = product;
+    const std::int64_t row_stride = p.transposed ? p.n : 1, k_stride = p.transposed ? 1 : p.n;
+    const auto multiply = [&]<int rows>(int row) {
+      multiply_tile<Pack, rows, packs>(p.n, p.matrix + row * row_stride, row_stride, k_stride, p.from + first,
+                                       p.inner, p.to + first + row * std::int64_t{p.inner}, p.inner, false);
+    };
+    int row = 0;
+    for (; row + tile_rows <= p.n; row += tile_rows) multiply.template operator()<tile_rows>(row);
+    for (; row < p.n; ++row) multiply.template operator()<1>(row);
+  }
+};
+
+/// Product along the fastest axis on a host: some lines of `n` numbers.
+struct FastAxisProductFunctor {
+  static constexpr int batch = 64;
+  AxisProduct product;
+  int lines;
+
+  void operator()(const int item) const {
+    using Pack = device::HostPack<double>;
+    constexpr int lanes = device::Access<Pack>::lanes;
+    int row = 0;
+    for (; row + 2 * lanes <= product.n; row += 2 * lanes) multiply_rows<Pack, 2>(item * batch, row);
+    for (; row + lanes <= product.n; row += lanes) multiply_rows<Pack, 1>(item * batch, row);
+    for (; row < product.n; ++row) multiply_rows<double, 1>(item * batch, row);
+  }
+
+  /// Entries from `row` on of the lines of a batch. Their factors are copied so that they are contiguous.
+  template <class Pack, int packs>
+  void multiply_rows(int first, int row) const {
+    const AxisProduct& p = product;
+    constexpr int width = packs * device::Access<Pack>::lanes, most = 128;
+    double factors[most * width];
+    const int end = first + batch < lines ? first + batch : lines;
+    for (int begin = 0; begin < p.n; begin += most) {
+      const int count = begin + most < p.n ? most : p.n - begin;
+      for (int k = 0; k < count; ++k)
+        for (int i = 0; i < width; ++i) factors[k * width + i] = p.factor(row + i, begin + k);
+      const auto multiply = [&]<int rows>(int line) {
+        const std::int64_t place = static_cast<std::int64_t>(line) * p.n;
+        multiply_tile<Pack, rows, packs>(count, p.from + place + begin, p.n, 1, factors, width,
+                                         p.to + place + row, p.n, begin > 0);
+      };
+      int line = first;
+      for (; line + tile_rows <= end; line += tile_rows) multiply.template operator()<tile_rows>(line);
+      for (; line < end; ++line) multiply.template operator()<1>(line);
     }
   }
 };
@@ -85,11 +165,17 @@ class DenseProduct {
                               .matrix = matrix.data(),
                               .from = from.data(),
                               .to = to.data()};
-    if constexpr (device::is_host<ExecutionSpace>)
-      device::launch_each(_space, "drogue::linear::dense_product", lines, DenseProductFunctor{product});
-    else
+    constexpr int batch = FastAxisProductFunctor::batch;
+    if constexpr (!device::is_host<ExecutionSpace>)
       device::launch_each(_space, "drogue::linear::dense_product", inner * lines,
                           DenseProductEntryFunctor{product});
+    else if (inner == 1)
+      device::launch_each(_space, "drogue::linear::dense_product", (lines / product.n + batch - 1) / batch,
+                          FastAxisProductFunctor{product, lines / product.n});
+    else
+      device::launch_each(_space, "drogue::linear::dense_product",
+                          lines / product.n * SlowAxisProductFunctor::strips(inner),
+                          SlowAxisProductFunctor{product});
   }
 
  private:
