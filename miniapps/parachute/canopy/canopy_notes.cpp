@@ -45,6 +45,23 @@ void note_blockage(FlowScene& scene) {
       rough_text(100.0 * most_blockage), " %"));
 }
 
+/// Notes sides across the stream along which a grid does not follow a canopy that glides.
+void note_unfollowed_glide(FlowScene& scene) {
+  const CanopyPayload& payload = scene.canopies.front().payload;
+  if (scene.frame != Frame::follow || payload.fixed || payload.guided) return;
+  std::vector<std::string> axes, sides;
+  for (const std::size_t axis : {0U, 1U}) {
+    if (scene.open_axes()[axis]) continue;
+    axes.emplace_back(axis_names[axis]);
+    sides.push_back(sentence(axis_names[axis], " = \"outflow\""));
+  }
+  if (axes.empty()) return;
+  scene.notices.push_back(sentence("grid.boundary: the grid does not follow canopy[0] along ",
+                                   joined(axes, " and "),
+                                   ", and a free canopy glides: it may leave the grid, which ends the run; ",
+                                   joined(sides, ", "), " lets the grid follow"));
+}
+
 /// Notes the canopy with the fewest cells across.
 void note_coarse_cells(FlowScene& scene, std::size_t i) {
   const double diameter = inflated_diameter(scene.canopies[i]),
@@ -158,6 +175,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
   const std::size_t coarsest = *std::ranges::min_element(flying, {}, cells);
   note_blockage(scene);
   note_sides(scene);
+  note_unfollowed_glide(scene);
   note_coarse_cells(scene, coarsest);
   for (const std::size_t i : flying) {
     note_short_wake(scene, i);

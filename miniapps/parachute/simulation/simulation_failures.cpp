@@ -202,18 +202,21 @@ std::string Simulation::leaving_vertex_text() {
       if (distance < least) least = distance, vertex = i, closest = side;
     }
   const bool is_sharp = _scene.coupling.method == coupling::CouplingMethod::sharp;
-  // The grid takes over the velocity of the payload at the beginning of each block of steps.
-  const std::string lag = _scene.frame != Frame::follow
-                              ? ""
-                              : std::string("a smaller ") + (p.fixed_dt > 0.0 ? "run.dt" : "run.max_dt") +
-                                    ", with which the grid follows sooner, ";
   const std::size_t axis = closest / 2;
+  std::string remedy;
+  if (_scene.frame == Frame::follow)
+    // A grid that follows takes over the velocity of the payload at the beginning of each block of steps.
+    remedy = _scene.open_axes()[axis]
+                 ? scene::sentence("a smaller ", p.fixed_dt > 0.0 ? "run.dt" : "run.max_dt",
+                                   ", with which the grid follows sooner, ")
+                 : scene::sentence("grid.boundary.", axis_names[axis],
+                                   " = \"outflow\", with which it follows along ", axis_names[axis], ", ");
   const bool leaves_core = closest % 2 == 0 ? box.low[axis] > p.low[axis] : box.high[axis] < p.high[axis];
   const char* const beside = leaves_core ? (is_sharp ? "lies beyond" : "comes closer than two cells to")
                                          : (is_sharp ? "lies beyond" : "comes closer than a cell to");
   return leaving_part_text(vertex, leaves_core) + " at " + place_text(positions[vertex]) + " m " + beside +
          (leaves_core ? " its end towards " : " the side ") + side_names[closest] + " after " + now_text() +
-         "; " + lag + "a larger " +
+         "; " + remedy + "a larger " +
          (leaves_core ? (_scene.faces ? "grid.faces" : "grid.core") : "grid.domain") +
          " or a shorter run.end_time may save the run";
 }

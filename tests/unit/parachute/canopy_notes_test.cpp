@@ -114,6 +114,17 @@ TEST(CanopyNotes, NameTheRoomThatACanopyNeedsInACore) {
   EXPECT_TRUE(notes(wide).empty());
 }
 
+TEST(CanopyNotes, NameSidesAlongWhichTheGridDoesNotFollowAGlide) {
+  std::vector<std::string> free = {"grid.frame=\"follow\"", "canopy[0].payload={mass=90}",
+                                   "grid.boundary.x=\"outflow\""};
+  expect_note(free,
+              "grid.boundary: the grid does not follow canopy[0] along y, and a free canopy glides: it may "
+              "leave the grid, which ends the run; y = \"outflow\" lets the grid follow");
+  free.emplace_back("grid.boundary.y=\"outflow\"");
+  EXPECT_TRUE(notes(free).empty());
+  EXPECT_TRUE(notes({free[0], "canopy[0].payload={mass=90,guided=true}"}).empty());
+}
+
 TEST(CanopyNotes, SheetsWithoutLinesHaveNone) {
   EXPECT_TRUE(notes({"canopy=[{kind=\"sheet\",diameter=3,vent=0,edge_length=0.2}]", "coupling.edge_inset=0"})
                   .empty());
