@@ -89,7 +89,7 @@ class Grid(parachute_program.FlowTest):
         self.assertRegex(report, r"grid +\d+ x \d+ x \d+ cells, \d+ in all\n +along x a core of 20 of 0\.2 m, others up to \S+ m\n"
                                  r" +along y a core of 20 of 0\.2 m, others up to \S+ m\n +along z a core of 30 of 0\.2 m, others up to \S+ m\n"
                                  r"coupling +edge_inset = 0\.66, leak_filter = 0\.5\nmemory +\S+ MiB for its arrays\ntime +about \S+ \S+ on two cores, \S+ \S+ on one H200, an estimate: "
-                                 r"\S+ steps at the speed of the start, each with \S+ of the cloth\n")
+                                 r"\S+ steps at 2\.5 times the speed of the start, each with \S+ of the cloth\n")
         memory = float(report.split("memory")[1].split()[0])
         self.expect(0, self.write(CORE), *QUIET, "--out", "out", sets=["run.end_time=0.02", "output.times=[0.02]", "verify={}"])
         views = self.result("out")["peak_bytes"]["device"] / 2**20
