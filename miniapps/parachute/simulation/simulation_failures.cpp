@@ -204,7 +204,9 @@ std::string Simulation::leaving_vertex_text() {
   const bool is_sharp = _scene.coupling.method == coupling::CouplingMethod::sharp;
   const std::size_t axis = closest / 2;
   std::string remedy;
-  if (_scene.frame == Frame::follow)
+  const bool may_open = std::ranges::none_of(
+      _scene.canopies, [](const Canopy& canopy) { return canopy.payload.guided || canopy.payload.fixed; });
+  if (_scene.frame == Frame::follow && (_scene.open_axes()[axis] || may_open))
     // A grid that follows takes over the velocity of the payload at the beginning of each block of steps.
     remedy = _scene.open_axes()[axis]
                  ? scene::sentence("a smaller ", p.fixed_dt > 0.0 ? "run.dt" : "run.max_dt",
