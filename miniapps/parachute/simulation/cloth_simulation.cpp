@@ -53,7 +53,7 @@ ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::Simula
 
 void ClothSimulation::start() {
   const ScopedStopwatch stopwatch(_h2d_s);
-  _solver->upload(_sheets.positions, std::vector<Vector>(_sheets.positions.size()));
+  _solver->upload(_sheets.positions, _sheets.velocities);
   _peaks.watch(*_solver, _sheets);
   allocate_buffers();
 }
