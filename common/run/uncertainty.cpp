@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -122,6 +123,22 @@ ErrorBar error_bar(const Distribution& coarse, const Distribution& fine, double 
   const double difference = std::hypot(fine.mean - coarse.mean, fine.half_width, coarse.half_width),
                grid = grid_safety * difference / (std::pow(ratio, assumed_order) - 1.0);
   return {fine.mean, std::hypot(fine.half_width, grid), fine.half_width, grid};
+}
+
+std::string bar_text(double value, double half_width) {
+  char text[64];
+  if (!std::isfinite(half_width) || !(half_width > 0.0)) {
+    std::snprintf(text, sizeof text, half_width == 0.0 ? "%.4g +- 0" : "%.4g", value);
+    return text;
+  }
+  const int digits = 1 - static_cast<int>(std::floor(std::log10(half_width)));
+  const double unit = std::pow(10.0, digits);
+  if (digits < 0)
+    std::snprintf(text, sizeof text, "%.0f +- %.0f", std::round(value * unit) / unit,
+                  std::round(half_width * unit) / unit);
+  else
+    std::snprintf(text, sizeof text, "%.*f +- %.*f", digits, value, digits, half_width);
+  return text;
 }
 
 }  // namespace drogue::run

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 /// Error bars of 95 % of means over time, of means over runs, and of limits of fine grids.
@@ -67,5 +68,9 @@ struct ErrorBar {
 /// grid is `grid_safety` sqrt(d^2 + s^2) / (ratio^`assumed_order` - 1), where d is the difference of the
 /// means and s that of its 95 % interval: a difference that scatter may hide does not count as none.
 [[nodiscard]] ErrorBar error_bar(const Distribution& coarse, const Distribution& fine, double ratio);
+
+/// "0.790 +- 0.012": a value and the half width of its interval to two digits of the latter; the value alone,
+/// to four digits, if that is not finite. Throws only std::bad_alloc.
+[[nodiscard]] std::string bar_text(double value, double half_width);
 
 }  // namespace drogue::run

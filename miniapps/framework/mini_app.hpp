@@ -35,6 +35,9 @@ struct MiniApp {
   /// Text behind the printed line on the steps; may be empty.
   std::function<std::string(const run::ResultDocument&)> summary = {};
 
+  /// Lines behind those of the checks; may be empty.
+  std::function<std::string(const run::ResultDocument&)> report = {};
+
   [[nodiscard]] std::string program() const { return "drogue-" + name; }
 };
 

@@ -177,5 +177,14 @@ TEST(Uncertainty, BatchesOfAFunctionAreOfEqualDuration) {
   EXPECT_TRUE(std::isnan(batch_half_width(std::vector{1.0, 2.0}))) << "too few";
 }
 
+TEST(Uncertainty, TextHasTwoDigitsOfTheError) {
+  EXPECT_EQ(bar_text(0.79012, 0.0123), "0.790 +- 0.012");
+  EXPECT_EQ(bar_text(5.4567, 0.5), "5.46 +- 0.50");
+  EXPECT_EQ(bar_text(9461.0, 523.0), "9460 +- 520");
+  EXPECT_EQ(bar_text(9461.0, 23.4), "9461 +- 23");
+  EXPECT_EQ(bar_text(1.5, 0.0), "1.5 +- 0");
+  EXPECT_EQ(bar_text(1.23456, NAN), "1.235");
+}
+
 }  // namespace
 }  // namespace drogue::run
