@@ -33,6 +33,7 @@ Json checks_json(const std::vector<Check>& checks) {
                     {"passed", check.passed}});
     if (check.measurement) json.back()["measured"] = number(check.measurement->value);
     if (check.rows) json.back()["rows"] = *check.rows;
+    if (check.error) json.back()["error"] = number(*check.error);
   }
   return json;
 }

@@ -29,6 +29,8 @@ struct Check {
   /// Quantity whose deviation from a target is `value`.
   std::optional<Measurement> measurement = {};
   std::optional<std::int64_t> rows = {};  ///< of history.csv from which it is computed, if from some
+  /// Half width of the 95 % interval of a quantity that is a mean over time, by its scatter, in its unit.
+  std::optional<double> error = {};
 
   /// Measurement as text: "3327.1 in [2670, 3560]", "1551.2, not in [2670, 3560]" or "not measured", if it is
   /// not a number; empty without one.

@@ -60,8 +60,9 @@ void remove_file(const std::filesystem::path& file) {
 }  // namespace
 
 const std::vector<std::string>& run_file_names() {
-  static const std::vector<std::string> names = {"scene.toml",  "result.json", "history.csv", "fields.h5",
-                                                 "fields.xdmf", "restart.h5",  "study.csv",   "study.json"};
+  static const std::vector<std::string> names = {"scene.toml", "result.json", "history.csv",
+                                                 "fields.h5",  "fields.xdmf", "restart.h5",
+                                                 "study.csv",  "study.json",  "runs.csv"};
   return names;
 }
 

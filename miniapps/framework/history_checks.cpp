@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "common/run/uncertainty.hpp"
 #include "common/scene/codec.hpp"
 #include "common/scene/nearest.hpp"
 #include "common/scene/node.hpp"
@@ -85,6 +86,11 @@ void add_history_checks(const std::vector<HistoryCheck>& checks, const run::Hist
     std::string name = check.column + "_" + scene::choice_name(statistic_choices, check.statistic);
     if (const int count = earlier[name]++; count > 0) name += "_" + std::to_string(count);
     result.add_deviation(name, statistic / check.reference, check.value, check.tolerance);
+    if (check.statistic == Statistic::mean && rows.time.size() > 1)
+      result.checks.back().error =
+          run::batch_half_width([&](double from, double to) { return run::mean_between(all, from, to); },
+                                check.from, rows.time.back()) /
+          check.reference;
     const double period = check.statistic == Statistic::frequency || check.statistic == Statistic::amplitude
                               ? run::rows_in_period(rows, run::frequency_of(rows))
                               : 0.0;

@@ -64,6 +64,7 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
     if (options.check && !options.quiet) {
       for (const std::string& notice : scene->notices()) print_notice(app.program(), notice);
       std::cout << scene->check_report();
+      if (app.study_report && !options.study.empty()) std::cout << app.study_report(options, file);
     }
     return ExitCode::ok;
   }

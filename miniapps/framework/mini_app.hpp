@@ -27,6 +27,10 @@ struct MiniApp {
   /// Runs `--study` on a scene file; empty: the program has no studies.
   std::function<ExitCode(const MiniAppOptions& options, const std::filesystem::path& file)> study = {};
 
+  /// Text that `--check` prints on a `--study`; empty: none.
+  std::function<std::string(const MiniAppOptions& options, const std::filesystem::path& file)> study_report =
+      {};
+
   bool runs_on_ranks = false;  ///< scenes run on several ranks of MPI, without studies
 
   /// Groups of result.json that exist however the run ends.
@@ -34,6 +38,9 @@ struct MiniApp {
 
   /// Text behind the printed line on the steps; may be empty.
   std::function<std::string(const run::ResultDocument&)> summary = {};
+
+  /// Lines behind those of the checks; may be empty.
+  std::function<std::string(const run::ResultDocument&)> report = {};
 
   [[nodiscard]] std::string program() const { return "drogue-" + name; }
 };

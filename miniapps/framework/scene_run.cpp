@@ -231,6 +231,7 @@ class SceneRun {
                   check.measurement ? (": " + check.measured()).c_str() : "");
     if (_result.checks.empty() && _result.exit_code == ExitCode::ok)
       std::printf("  nothing verified: the scene has no checks in [verify]\n");
+    if (_app.report) std::printf("%s", _app.report(_result).c_str());
     std::printf("files in %s\n", _out.string().c_str());
   }
 

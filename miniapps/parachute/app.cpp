@@ -13,6 +13,8 @@
 #include "miniapps/parachute/scene/scene_keys.hpp"
 #include "miniapps/parachute/simulation/cloth_simulation.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/ensemble.hpp"
+#include "miniapps/parachute/verify/flight.hpp"
 #include "miniapps/parachute/verify/study.hpp"
 
 namespace drogue::parachute_app {
@@ -75,6 +77,8 @@ framework::MiniApp mini_app() {
   app.has_baseline = true;
   app.read = read;
   app.study = run_study;
+  app.study_report = ensemble_report;
+  app.report = flight_report;
   app.runs_on_ranks = true;
   framework::set_no_limiter(app.metrics);
   return app;

@@ -475,6 +475,11 @@ void append_canopy(const Canopy& canopy, const coupling::PorousLaw& law, Sheets&
   append(p.mesh.line_stiffness, one.fabric.mesh.line_stiffness);
   append(p.mesh.line_length, one.fabric.mesh.line_length);
   append(sheets.positions, one.positions);
+  for (const std::uint8_t fixed_axes : one.fabric.pinned) {
+    Vector& velocity = sheets.velocities.emplace_back(canopy.start_velocity);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if ((fixed_axes >> axis & 1U) != 0U) velocity[axis] = 0.0;
+  }
   for (const auto& t : one.fabric.mesh.triangles)
     p.mesh.triangles.push_back({t[0] + begin, t[1] + begin, t[2] + begin});
   for (const auto& ends : one.fabric.mesh.lines) p.mesh.lines.push_back({ends[0] + begin, ends[1] + begin});
@@ -519,9 +524,11 @@ Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy
   }
   sheets.laws.resize(sheets.positions.size());  // fixed ends of springs have no area
   set_offsets(bodies, sheets.positions);
+  sheets.velocities.resize(sheets.positions.size());
   for (const Canopy& canopy : canopies)
     append_canopy(canopy, law_of(canopy.porosity, density, viscosity), sheets);
   sheets.flags = append_flags(flags, p, sheets.positions);
+  sheets.velocities.resize(sheets.positions.size());
   coupling::PorousLaw of_flags;
   of_flags.impermeable = of_flags.no_slip = true;
   sheets.laws.resize(sheets.positions.size(), of_flags);

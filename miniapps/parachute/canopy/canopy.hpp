@@ -45,11 +45,12 @@ struct SuspensionLines {
 
 /// Point mass below the lines.
 struct CanopyPayload {
-  double mass = 100.0;            ///< kg
-  bool fixed = false;             ///< it does not move
-  bool guided = false;            ///< it moves along z alone
-  std::optional<double> release;  ///< s, at which the lines, or the riser, are cut
-  std::optional<int> shared;      ///< number of the canopy that has the payload
+  double mass = 100.0;               ///< kg
+  bool fixed = false;                ///< it does not move
+  bool guided = false;               ///< it moves along z alone
+  std::array<double, 3> velocity{};  ///< m/s, at the start
+  std::optional<double> release;     ///< s, at which the lines, or the riser, are cut
+  std::optional<int> shared;         ///< number of the canopy that has the payload
 };
 
 /// Strap from the point where the lines meet to the payload.
@@ -115,6 +116,8 @@ struct Canopy {
   double deflection = 0.0;  ///< m, of the centre of a drum at the start, along its axis
   Reinforcement reinforcement;
   Perturbation perturbation;
+  std::array<double, 3>
+      start_velocity{};  ///< of cloth, lines and payload, m/s: complete once the scene is read
   Porosity porosity = {PorosityLaw::forchheimer, 254.4, 37.6};
 
   /// Angle of the axis from z, degrees. Does not throw.
@@ -167,8 +170,9 @@ struct CanopyRows {
 /// All sheets of a scene as one fabric.
 struct Sheets {
   fabric::Parameters fabric;
-  std::vector<fabric::Vector> positions;  ///< at the start, m
-  std::vector<coupling::PorousLaw> laws;  ///< one per vertex
+  std::vector<fabric::Vector> positions;   ///< at the start, m
+  std::vector<fabric::Vector> velocities;  ///< at the start, m/s
+  std::vector<coupling::PorousLaw> laws;   ///< one per vertex
   std::vector<CanopyRows> canopies;
   std::vector<FlagRows> flags;
   std::vector<coupling::LineCut> cuts;  ///< of reefing lines, and of lines to payloads

@@ -218,6 +218,47 @@ void check_frame(const Place& root, const FlowScene& scene) {
     require_constant(std::string("grid.wall_velocity.") + side_names[side], scene.wall_velocity[side]);
 }
 
+void complete_drop(const Place& root, FlowScene& scene) {
+  if (scene.drop && !root.given("coupling.gravity")) scene.gravity = {0.0, 0.0, -9.81};
+  const Vector& gravity = scene.gravity;
+  const std::optional<Vector> air = scene.has_fluid() ? scene.stream() : Vector{};
+  if (scene.drop) {
+    root.refuse_if(gravity[0] != 0.0 || gravity[1] != 0.0 || gravity[2] == 0.0, "drop",
+                   " needs a coupling.gravity along z");
+    root.refuse_if(!air, "drop",
+                   " needs a fluid.velocity that does not vary: its speed is relative to the air");
+  }
+  bool drops = false;
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
+    Canopy& canopy = scene.canopies[i];
+    const CanopyPayload& payload = canopy.payload;
+    canopy.start_velocity = payload.velocity;
+    if (payload.shared) {
+      // A wrong number is refused later.
+      const auto owner = static_cast<std::size_t>(*payload.shared);
+      if (owner < i) canopy.start_velocity = scene.canopies[owner].start_velocity;
+      continue;
+    }
+    const Place at = root.at("canopy", i);
+    at.refuse_if(payload.guided && (payload.velocity[0] != 0.0 || payload.velocity[1] != 0.0),
+                 "payload.velocity",
+                 " is not along z, and payload.guided keeps the payload from moving otherwise");
+    if (!scene.drop || !canopy.has_lines()) continue;
+    at.refuse_if(payload.fixed, "payload.fixed", " = true: it does not fall, as [drop] wants it");
+    drops = true;
+    const double angle = scene.drop->angle * std::numbers::pi / 180.0, down = gravity[2] < 0.0 ? -1.0 : 1.0,
+                 across = std::abs(scene.drop->angle) == 90.0 ? 0.0 : std::cos(angle);
+    root.refuse_if(payload.guided && scene.drop->speed * across != 0.0, "drop.angle", " = ",
+                   scene.drop->angle, " degrees: ", at.path("payload.guided"),
+                   " keeps the payload on a path of 90 degrees");
+    canopy.start_velocity = *air;
+    canopy.start_velocity[0] += scene.drop->speed * across;
+    canopy.start_velocity[2] += scene.drop->speed * down * std::sin(angle);
+    if (payload.guided) canopy.start_velocity[0] = canopy.start_velocity[1] = 0.0;
+  }
+  root.refuse_if(scene.drop && !drops, "drop", " needs a [[canopy]] with lines and a payload");
+}
+
 void check_contact(const Place& root, const FlowScene& scene, const fabric::Mesh& mesh) {
   if (!scene.contact) return;
   const double height = fabric::shortest_altitude(mesh);

@@ -94,7 +94,7 @@ void declare_lines(Table& table, SuspensionLines& lines, const Condition& fluid)
               {.unit = "N", .range = positive, .when = fluid, .default_text = "none"});
 }
 
-void declare_payload(Table& table, CanopyPayload& payload) {
+void declare_payload(Table& table, CanopyPayload& payload, const std::function<bool()>& drops) {
   const Condition own = {[&payload] { return !payload.shared; }, "without shared", "shared"};
   table.value("shared", payload.shared,
               "Number of the earlier [[canopy]] that has the payload; needs a riser",
@@ -105,6 +105,11 @@ void declare_payload(Table& table, CanopyPayload& payload) {
               "The payload moves along z alone, as on a guide wire without friction",
               {.when = {[&payload] { return !payload.shared && !payload.fixed; }, "without shared and fixed",
                         "fixed"}});
+  table.value("velocity", payload.velocity,
+              "Velocity of the payload with its lines and cloth at the start, in the frame of fluid.velocity",
+              {.unit = "m/s",
+               .when = {[&payload, drops] { return !payload.shared && !payload.fixed && !drops(); },
+                        "without shared, fixed and [drop], which sets it", "fixed"}});
   table.value("release", payload.release, "Time at which the riser, or without one the lines, are cut",
               {.unit = "s", .range = positive, .default_text = "never"});
 }
@@ -143,7 +148,8 @@ void declare_reinforcement(Table& table, Reinforcement& bands) {
 
 }  // namespace
 
-void declare_canopy(Table& table, Canopy& canopy, const Condition& fluid) {
+void declare_canopy(Table& table, Canopy& canopy, const Condition& fluid,
+                    const std::function<bool()>& drops) {
   const auto with_kind = [&canopy](const std::vector<CanopyKind>& kinds) {
     return with_choice("kind", canopy.kind, canopy_choices, kinds);
   };
@@ -169,7 +175,7 @@ void declare_canopy(Table& table, Canopy& canopy, const Condition& fluid) {
               {.unit = "m", .when = with_kind({drum})});
   table.table("lines", [&](Table& keys) { declare_lines(keys, canopy.lines, fluid); },
               "Suspension lines to the skirt, one per gore, without drag", {.when = lines});
-  table.table("payload", canopy.payload, declare_payload,
+  table.table("payload", [&canopy, drops](Table& keys) { declare_payload(keys, canopy.payload, drops); },
               "Point mass where the lines meet, or at the end of the riser", {.when = lines});
   table.optional_table("riser", canopy.riser, declare_riser,
                        "Strap from the point where the lines meet to the payload", {.when = lines});

@@ -73,12 +73,6 @@ struct StepTime {
   double vertex;          ///< of a vertex in a step of the cloth
 };
 
-std::string duration_text(double seconds) {
-  if (seconds < 90.0) return rough_text(std::ceil(seconds)) + " s";
-  if (seconds < 5400.0) return rough_text(std::ceil(seconds / 60.0)) + " min";
-  return rough_text(std::ceil(seconds / 3600.0)) + " h";
-}
-
 /// Time of a run, s.
 double time_of(const FlowScene& scene, const RunSize& size, const StepTime& of) {
   const flow::Parameters& p = scene.parameters;
@@ -105,9 +99,20 @@ RunSize run_size(const FlowScene& scene) {
   return size;
 }
 
-std::string run_size_report(const FlowScene& scene) {
+std::string duration_text(double seconds) {
+  if (seconds < 90.0) return rough_text(std::ceil(seconds)) + " s";
+  if (seconds < 5400.0) return rough_text(std::ceil(seconds / 60.0)) + " min";
+  return rough_text(std::ceil(seconds / 3600.0)) + " h";
+}
+
+RunTime run_time(const FlowScene& scene) {
   // `drogue-perf run --filter '^flow-step'`, 60 x 60 x 120 tunnel (docs/flow-notebook.md), and c9-flat.
   constexpr StepTime two_cores{44e-9, 120e-9, 10e-6, 80e-9}, h200{0.33e-9, 0.4e-9, 25e-6, 0.0};
+  const RunSize size = run_size(scene);
+  return {time_of(scene, size, two_cores), time_of(scene, size, h200)};
+}
+
+std::string run_size_report(const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   const RunSize size = run_size(scene);
   std::string text = sentence("grid         ", p.cells[0], " x ", p.cells[1], " x ", p.cells[2], " cells, ",
@@ -125,10 +130,10 @@ std::string run_size_report(const FlowScene& scene) {
                      ", leak_filter = ", rough_text(leak_filter(scene)));
   text += sentence("\nmemory       ", rough_text(size.bytes / 1048576.0), " MiB for its arrays\n");
   if (size.steps == 0.0) return text + "time         not known: it depends on the speed of the fluid\n";
-  return text + sentence("time         about ", duration_text(time_of(scene, size, two_cores)),
-                         " on two cores, ", duration_text(time_of(scene, size, h200)),
-                         " on one H200, an estimate: ", rough_text(size.steps), " steps at ",
-                         speed_ratio(scene) > 1.0 ? "2.5 times " : "", "the speed of the start",
+  const RunTime time = run_time(scene);
+  return text + sentence("time         about ", duration_text(time.two_cores), " on two cores, ",
+                         duration_text(time.h200), " on one H200, an estimate: ", rough_text(size.steps),
+                         " steps at ", speed_ratio(scene) > 1.0 ? "2.5 times " : "", "the speed of the start",
                          size.cloth_steps > 0.0
                              ? sentence(", each with ", rough_text(size.cloth_steps), " of the cloth")
                              : std::string(),

@@ -18,6 +18,17 @@ struct RunSize {
 /// only std::bad_alloc.
 [[nodiscard]] RunSize run_size(const FlowScene& scene);
 
+/// Expected time of a run on two machines, s; 0 where its steps are not known.
+struct RunTime {
+  double two_cores = 0.0, h200 = 0.0;
+};
+
+/// Expected time of the run of a checked scene with a fluid. Throws only std::bad_alloc.
+[[nodiscard]] RunTime run_time(const FlowScene& scene);
+
+/// A duration in seconds, minutes or hours, for sentences.
+[[nodiscard]] std::string duration_text(double seconds);
+
 /// Lines of `--check` on grid, memory and time of a scene with a fluid. Throws only std::bad_alloc.
 [[nodiscard]] std::string run_size_report(const FlowScene& scene);
 

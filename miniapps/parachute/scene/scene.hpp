@@ -160,6 +160,13 @@ enum class Corrections {
   none,  ///< an acceleration of weight 0.5 in each step alone
 };
 
+/// Start of a drop.
+struct Drop {
+  double speed = 0.0;            ///< of the payload relative to the air, m/s
+  double angle = 90.0;           ///< of its path below the horizontal, degrees; 0 is along +x
+  std::optional<double> height;  ///< of the payload above the ground, m
+};
+
 /// Exchange of sheets with the fluid. What is not given follows from `exchange_parameters`.
 struct Exchange {
   coupling::CouplingMethod method = coupling::CouplingMethod::spread;
@@ -189,6 +196,7 @@ struct FlowScene {
   std::vector<Body> bodies;
   std::vector<Canopy> canopies;
   std::vector<Flag> flags;
+  std::optional<Drop> drop;
   Exchange coupling;
   std::array<double, 3> gravity{};  ///< of canopies, payloads and flags, m/s^2
   bool allow_unstable = false;      ///< explicit coupling runs with cloth lighter than its added mass

@@ -231,12 +231,15 @@ double least_width(const flow::Parameters& p) {
 }
 
 /// Speed with which sheets and fluid will meet, as far as it is known, m/s: that of the stream and the walls,
-/// that of free fall along a cell, and that of plates on springs.
+/// that of canopies at the start, that of free fall along a cell, and that of plates on springs.
 double known_speed(const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   double speed = 0.0, gravity = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    speed = std::max(speed, std::abs(constant_value(scene.velocity[axis]).value_or(0.0)));
+    const double stream = constant_value(scene.velocity[axis]).value_or(0.0);
+    speed = std::max(speed, std::abs(stream));
+    for (const Canopy& canopy : scene.canopies)
+      speed = std::max(speed, std::abs(canopy.start_velocity[axis] - stream));
     for (const flow::Boundary& side : p.boundary) speed = std::max(speed, std::abs(side.velocity[axis]));
     if (!scene.canopies.empty() || !scene.flags.empty()) gravity = std::hypot(gravity, scene.gravity[axis]);
   }
@@ -407,6 +410,7 @@ void refuse_beyond_sides(const Place& root, const flow::Parameters& p, const std
 
 void complete_and_check(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
+  complete_drop(root, scene);
   if (scene.has_fluid()) {
     complete_and_check_grid(root, scene);
     complete_sides(root, scene);

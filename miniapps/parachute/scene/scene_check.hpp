@@ -33,6 +33,10 @@ void check_porosity(const scene::Place& at, const flow::Parameters& p, const Por
 /// Checks which canopies share payloads, and places them.
 void check_and_place_canopies(const scene::Place& root, std::vector<Canopy>& canopies);
 
+/// Sets the velocities at the start of canopies, and the gravity of a drop; checks [drop] and
+/// payload.velocity.
+void complete_drop(const scene::Place& root, FlowScene& scene);
+
 /// Checks every canopy against the grid, the steps, the bodies and the canopies before it.
 void check_canopies(const scene::Place& root, const FlowScene& scene);
 

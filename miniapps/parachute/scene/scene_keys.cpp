@@ -132,6 +132,18 @@ void declare_flow(Table& table, FlowScene& scene) {
               "Fall of the mean pressure from the low to the high side of periodic axes", {.unit = "Pa"});
 }
 
+void declare_drop(Table& table, Drop& drop) {
+  table.value("speed", drop.speed, "Speed of the payload relative to the air at the start",
+              {.unit = "m/s", .range = not_negative, .required = true});
+  table.value("angle", drop.angle,
+              "Angle of its path below the horizontal: 90 straight down, 0 along +x as from an aircraft",
+              {.unit = "degrees", .range = between(-90.0, 90.0)});
+  table.value(
+      "height", drop.height,
+      "Height of the payload above the ground, the fall through which gives time and speed of its touch-down",
+      {.unit = "m", .range = positive, .default_text = "none"});
+}
+
 void declare_coupling(Table& table, FlowScene& scene) {
   Exchange& coupling = scene.coupling;
   const Condition fluid = with_fluid(scene);
@@ -261,9 +273,15 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
              },
              "The state at the start; the gradient part of its velocity is removed", {.when = fluid});
   root.table("flow", scene, declare_flow, "The numerical scheme and the forces", {.when = fluid});
+  root.optional_table(
+      "drop", scene.drop, declare_drop,
+      "A drop: all canopies with their payloads start with one velocity, and coupling.gravity is "
+      "[0, 0, -9.81] unless given");
   root.tables(
       "canopy", scene.canopies,
-      [fluid](Table& table, Canopy& canopy) { declare_canopy(table, canopy, fluid); },
+      [fluid, &scene](Table& table, Canopy& canopy) {
+        declare_canopy(table, canopy, fluid, [&scene] { return scene.drop.has_value(); });
+      },
       "Parachutes: cloth, suspension lines and a payload");
   root.tables("flag", scene.flags, declare_flag,
               "Elastic rectangles that are hinged at their leading edge, along z; strips in two dimensions",

@@ -18,8 +18,9 @@ void declare_flow_scene(scene::Table& root, FlowScene& scene);
 /// Declares the keys of a `[[body]]`.
 void declare_body(scene::Table& table, Body& body);
 
-/// Declares the keys of a `[[canopy]]`, some of which apply only with `fluid`.
-void declare_canopy(scene::Table& table, Canopy& canopy, const scene::Condition& fluid);
+/// Declares the keys of a `[[canopy]]`, some of which apply only with `fluid`. `drops`: true with [drop].
+void declare_canopy(scene::Table& table, Canopy& canopy, const scene::Condition& fluid,
+                    const std::function<bool()>& drops);
 
 /// Declares the keys of a `[[flag]]`.
 void declare_flag(scene::Table& table, Flag& flag);

@@ -53,7 +53,7 @@ ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::Simula
 
 void ClothSimulation::start() {
   const ScopedStopwatch stopwatch(_h2d_s);
-  _solver->upload(_sheets.positions, std::vector<Vector>(_sheets.positions.size()));
+  _solver->upload(_sheets.positions, _sheets.velocities);
   _peaks.watch(*_solver, _sheets);
   allocate_buffers();
 }
@@ -222,7 +222,7 @@ run::ResultDocument::WallTimes ClothSimulation::phases() const {
 
 ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
   _peaks.update(*_solver);
-  const run::History rows = checked_rows(_scene.verify, directory);
+  const run::History rows = rows_of(_scene, directory);
   check_canopies(_scene.verify, _peaks, rows, result);
   check_energy_drift(_scene, rows, result);
   return ExitCode::ok;

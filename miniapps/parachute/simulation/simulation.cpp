@@ -130,7 +130,7 @@ void Simulation::start() {
                     evaluate(SpaceTimeFunction(velocity), _parts.lattice(axis), 0.0));
   }
   if (_coupled != nullptr) {
-    _coupled->fabric().upload(_sheets.positions, std::vector<fabric::Vector>(_sheets.positions.size()));
+    _coupled->fabric().upload(_sheets.positions, _sheets.velocities);
     _coupled->start();
   } else {
     _solver->start();

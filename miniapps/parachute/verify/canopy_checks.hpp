@@ -8,9 +8,9 @@
 
 namespace drogue::parachute_app {
 
-/// The history.csv of a run if one of the checks here and of curves is of its rows, else nothing. Throws
-/// `Failure` (io_error).
-[[nodiscard]] run::History checked_rows(const Verify& wanted, const run::RunDirectory* directory);
+/// The history.csv of a run if one of the checks here and of curves is of its rows, or a flight is described
+/// by them, else nothing. Throws `Failure` (io_error).
+[[nodiscard]] run::History rows_of(const FlowScene& scene, const run::RunDirectory* directory);
 
 /// Checks of canopies. Throws only std::bad_alloc.
 void check_canopies(const Verify& wanted, const PeakPulls& peaks, const run::History& history,

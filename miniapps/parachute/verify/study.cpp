@@ -8,8 +8,10 @@
 #include "common/scene/node.hpp"
 #include "common/study/axes.hpp"
 #include "kernels/flow/host_threads.hpp"
+#include "miniapps/framework/ensemble.hpp"
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/ensemble.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -152,6 +154,8 @@ framework::RepeatedRun repeat_scene(
 }
 
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
+  if (study::is_ensemble(options.study))
+    return framework::run_ensemble(options, file, ensemble_of(options, file));
   const study::Axes axes =
       study::parse_axes(options.study, {"cells", 4, 12},
                         {{"advections", {"central", "weno-js", "weno-z"}},

@@ -11,8 +11,9 @@
 namespace drogue::parachute_app {
 
 /// Runs the scene over the product of the axes of `--study`, and writes study.csv, study.json and their
-/// picture, with observed orders against the row before. Returns `ok` or `interrupted`. Throws `Failure`:
-/// usage for an invalid axis or a scene without exact solution, otherwise like a run.
+/// picture, with observed orders against the row before; or runs an ensemble (`ensemble_of`). Returns `ok` or
+/// `interrupted`. Throws `Failure`: usage for an invalid axis or a scene without exact solution, otherwise
+/// like a run.
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file);
 
 /// Runs a scene repeatedly. `errors_of` returns the errors of the first run from its simulation and result,

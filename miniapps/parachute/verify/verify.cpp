@@ -5,6 +5,7 @@
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 #include "miniapps/parachute/verify/canopy_checks.hpp"
+#include "miniapps/parachute/verify/flight.hpp"
 #include "miniapps/parachute/verify/profile.hpp"
 #include "miniapps/parachute/verify/row_interpolation.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
@@ -171,8 +172,9 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
   if (wanted.divergence || wanted.momentum || wanted.needs_extremes()) check_totals(result);
   if (_coupled != nullptr) _peaks.update(*_coupled);
   _communicator.run_on_root([&] {
-    const run::History rows = checked_rows(wanted, directory);
+    const run::History rows = rows_of(_scene, directory);
     check_canopies(wanted, _peaks, rows, result);
+    describe_flights(_scene, _peaks, rows, result);
     check_curves(wanted, rows, result);
   });
   check_profiles(result);

@@ -1,0 +1,263 @@
+#include "miniapps/parachute/verify/flight.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "common/run/history_statistics.hpp"
+#include "common/run/uncertainty.hpp"
+#include "common/scene/node.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+
+/// Factor of Maskell's relation for a single parachute (Macha and Buffington, SAND89-1485, 1990).
+constexpr double blockage_factor = 1.85;
+
+/// Part of the area in flight that a canopy has at the start if it opens at all.
+constexpr double closed_area = 0.9;
+
+double length_of(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
+
+const Canopy& owner_of(const FlowScene& scene, std::size_t i) {
+  return scene
+      .canopies[static_cast<std::size_t>(scene.canopies[i].payload.shared.value_or(static_cast<int>(i)))];
+}
+
+bool falls(const FlowScene& scene, std::size_t i) {
+  return !owner_of(scene, i).payload.fixed && length_of(scene.gravity) > 0.0;
+}
+
+/// Direction in which the air passes a canopy in steady flight: upwards if its payload falls, else that of
+/// the stream; zero without either.
+Vector direction_of(const FlowScene& scene, std::size_t i) {
+  Vector direction = scene.stream().value_or(Vector{});
+  if (falls(scene, i))
+    for (std::size_t axis = 0; axis < 3; ++axis) direction[axis] = -scene.gravity[axis];
+  const double length = length_of(direction);
+  for (double& component : direction) component = length > 0.0 ? component / length : 0.0;
+  return direction;
+}
+
+/// Area of the domain across a direction, m^2; infinite for one along no axis, whose section varies.
+double section_of(const flow::Parameters& p, const Vector& direction) {
+  double section = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::abs(direction[axis]) < 1.0 - 1e-9) {
+      if (std::abs(direction[axis]) > 1e-9) return run::never;
+      section *= p.high[axis] - p.low[axis];
+    }
+  return section;
+}
+
+/// Begin of the interval of the means, s.
+double begin_of_means(const FlowScene& scene) {
+  double changed = 0.0;
+  for (const Canopy& canopy : scene.canopies)
+    if (canopy.reefing && canopy.reefing->cut) changed = std::max(changed, *canopy.reefing->cut);
+  return 0.5 * (changed + scene.end_time);
+}
+
+/// Rows of one canopy.
+class FlightRows {
+ public:
+  FlightRows(const FlowScene& scene, const run::History& history, std::size_t i)
+      : _history(history), _name("canopy_" + std::to_string(i) + "_"), _time(history.at("time")) {
+    const Vector direction = direction_of(scene, i), stream = scene.stream().value_or(Vector{});
+    const auto vector_at = [&](const std::string& name, std::size_t row) {
+      Vector v{};
+      for (std::size_t axis = 0; axis < 3; ++axis) v[axis] = history.at(name + axis_names[axis])[row];
+      return v;
+    };
+    const auto along = [&](const Vector& v) {
+      return v[0] * direction[0] + v[1] * direction[1] + v[2] * direction[2];
+    };
+    for (std::size_t row = 0; row < _time.size(); ++row) {
+      Vector relative = stream;
+      const Vector payload = vector_at(_name + "payload_velocity_", row);
+      for (std::size_t axis = 0; axis < 3; ++axis) relative[axis] -= payload[axis];
+      _speed.push_back(along(relative));
+      for (std::size_t axis = 0; axis < 3; ++axis) relative[axis] -= _speed.back() * direction[axis];
+      _across.push_back(length_of(relative));
+      _force.push_back(along(vector_at(_name + "force_", row)));
+      _all_forces.push_back(0.0);
+      for (std::size_t k = 0; k < scene.canopies.size(); ++k)
+        _all_forces.back() += along(vector_at("canopy_" + std::to_string(k) + "_force_", row));
+    }
+  }
+
+  [[nodiscard]] double speed(double from, double to) const { return mean(_speed, from, to); }
+  [[nodiscard]] double across(double from, double to) const { return mean(_across, from, to); }
+  [[nodiscard]] double force(double from, double to) const { return mean(_force, from, to); }
+  [[nodiscard]] double all_forces(double from, double to) const { return mean(_all_forces, from, to); }
+  [[nodiscard]] double column(const char* name, double from, double to) const {
+    return mean(_history.at(_name + name), from, to);
+  }
+
+  /// Time, s, at which the payload has come down by `height`, m, through the air, and its speed down then,
+  /// m/s; NaN if it has not.
+  [[nodiscard]] std::array<double, 2> touch_down(double height) const {
+    double fallen = 0.0;
+    for (std::size_t k = 1; k < _time.size(); ++k) {
+      const double part = 0.5 * (_speed[k - 1] + _speed[k]) * (_time[k] - _time[k - 1]);
+      if (fallen + part >= height) {
+        const double share = (height - fallen) / part;
+        return {std::lerp(_time[k - 1], _time[k], share), std::lerp(_speed[k - 1], _speed[k], share)};
+      }
+      fallen += part;
+    }
+    return {NAN, NAN};
+  }
+
+  /// Time, s, at which the projected area first reaches `area`, m^2, from one that is closed; NaN if it does
+  /// not.
+  [[nodiscard]] double opening_time(double area) const {
+    const std::vector<double>& areas = _history.at(_name + "projected_area");
+    const auto open = std::ranges::find_if(areas, [&](double value) { return value >= area; });
+    if (open == areas.end() || !(areas.front() < closed_area * area)) return NAN;
+    const auto k = static_cast<std::size_t>(open - areas.begin());
+    return std::lerp(_time[k - 1], _time[k], (area - areas[k - 1]) / (areas[k] - areas[k - 1]));
+  }
+
+ private:
+  [[nodiscard]] double mean(const std::vector<double>& values, double from, double to) const {
+    return run::mean_between({_time, values}, from, to);
+  }
+
+  const run::History& _history;
+  std::string _name;
+  const std::vector<double>& _time;
+  std::vector<double> _speed,
+      _across;  ///< of the air relative to the payload, along and across the direction, m/s
+  std::vector<double> _force, _all_forces;  ///< of the air on this canopy and on all, along it, N
+};
+
+/// Statistic of an interval of time, s.
+using Statistic = std::function<double(double from, double to)>;
+
+/// Means of a flight by their keys.
+std::vector<std::pair<std::string, Statistic>> means_of(const FlowScene& scene, const FlightRows& rows,
+                                                        std::size_t i) {
+  const double density = scene.parameters.density, area = scene.canopies[i].nominal_area();
+  const Vector direction = direction_of(scene, i);
+  const double section = section_of(scene.parameters, direction);
+  const auto drag = [=, &rows](double from, double to) {
+    return 2.0 * rows.force(from, to) / (density * std::pow(rows.speed(from, to), 2) * area);
+  };
+  // Dynamic pressure at the canopies over that of the stream far away: Maskell, R&M 3400, 1963.
+  const auto pressure_ratio = [=, &rows](double from, double to) {
+    return 1.0 + blockage_factor * 2.0 * rows.all_forces(from, to) /
+                     (density * std::pow(rows.speed(from, to), 2) * section);
+  };
+  std::vector<std::pair<std::string, Statistic>> means;
+  if (falls(scene, i)) {
+    means.emplace_back("rate_of_descent", [&rows](double from, double to) { return rows.speed(from, to); });
+    means.emplace_back("rate_of_descent_free_air", [=, &rows](double from, double to) {
+      return rows.speed(from, to) * std::sqrt(pressure_ratio(from, to));
+    });
+    means.emplace_back("drift", [&rows](double from, double to) { return rows.across(from, to); });
+  }
+  means.emplace_back("drag_coefficient", drag);
+  means.emplace_back("drag_coefficient_free_air",
+                     [=](double from, double to) { return drag(from, to) / pressure_ratio(from, to); });
+  if (std::abs(direction[2]) > 1.0 - 1e-9)
+    means.emplace_back("inflated_diameter_ratio", [=, &rows](double from, double to) {
+      return std::sqrt(rows.column("projected_area", from, to) / area);
+    });
+  means.emplace_back("leak", [&rows](double from, double to) {
+    return rows.column("leak", from, to) /
+           (rows.column("airspeed", from, to) * rows.column("projected_area", from, to));
+  });
+  return means;
+}
+
+void describe_means(const FlowScene& scene, const run::History& history, std::size_t i,
+                    run::ResultDocument& result) {
+  if (history.empty() || !scene.lack_of_airspeed(i).empty() || owner_of(scene, i).payload.release ||
+      direction_of(scene, i) == Vector{})
+    return;
+  const FlightRows rows(scene, history, i);
+  const std::string group = "canopy_" + std::to_string(i);
+  const double from = begin_of_means(scene), to = scene.end_time;
+  const auto set = [&](const std::string& name, double value) {
+    if (std::isfinite(value)) result.metrics.set(group, name, value);
+  };
+  set("from", from);
+  for (const auto& [name, statistic] : means_of(scene, rows, i)) {
+    set(name, statistic(from, to));
+    set(name + "_error", run::batch_half_width(statistic, from, to));
+  }
+  if (scene.drop && scene.drop->height && falls(scene, i)) {
+    const auto [time, speed] = rows.touch_down(*scene.drop->height);
+    set("touchdown_time", time);
+    set("touchdown_speed", speed);
+  }
+  set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
+}
+
+/// Keys of a group with their titles, in the order in which they are printed.
+constexpr std::array<std::array<const char*, 2>, 12> titles = {
+    {{"rate_of_descent", "rate of descent, m/s"},
+     {"rate_of_descent_free_air", "rate of descent in free air, m/s"},
+     {"drift", "drift, m/s"},
+     {"drag_coefficient", "C_D0"},
+     {"drag_coefficient_free_air", "C_D0 in free air"},
+     {"inflated_diameter_ratio", "D_p/D_0"},
+     {"leak", "flow through the cloth/(U A)"},
+     {"opening_time", "opening time, s"},
+     {"peak_line_force", "peak line force, N"},
+     {"peak_line_force_time", "peak line force at, s"},
+     {"touchdown_time", "touch-down at, s"},
+     {"touchdown_speed", "rate of descent then, m/s"}}};
+
+std::string canopy_name(const std::string& group) {
+  return "canopy[" + group.substr(group.find('_') + 1) + "]";
+}
+
+}  // namespace
+
+void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run::History& history,
+                      run::ResultDocument& result) {
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
+    if (!scene.canopies[i].has_lines()) continue;
+    describe_means(scene, history, i, result);
+    const auto [force, time] = peaks.values().at(i);
+    if (!(force > 0.0)) continue;
+    const std::string group = "canopy_" + std::to_string(i);
+    result.metrics.set(group, "peak_line_force", force);
+    result.metrics.set(group, "peak_line_force_time", time);
+  }
+}
+
+std::string flight_report(const run::ResultDocument& result) {
+  std::string text;
+  for (const run::Metrics::Group& group : result.metrics.groups()) {
+    if (!group.name.starts_with("canopy_") || group.values.empty()) continue;
+    const auto value = [&](const std::string& name) { return result.metrics.real(group.name, name); };
+    text += canopy_name(group.name);
+    if (const auto from = value("from"))
+      text += ", means from " + scene::rough_text(*from) + " s on; +- is 95 % by the scatter in this run";
+    text += '\n';
+    for (const auto& [key, title] : titles) {
+      const std::string name = key;
+      if (const auto number = value(name))
+        text += "  " + std::string(title) + std::string(34 - std::string(title).size(), ' ') +
+                run::bar_text(*number, value(name + "_error").value_or(NAN)) + '\n';
+    }
+  }
+  return text;
+}
+
+std::string flight_title(const std::string& quantity) {
+  const std::size_t dot = quantity.find('.');
+  if (dot == std::string::npos) return quantity;
+  const std::string key = quantity.substr(dot + 1);
+  const auto found = std::ranges::find_if(titles, [&](const auto& row) { return row[0] == key; });
+  return canopy_name(quantity.substr(0, dot)) + " " + (found == titles.end() ? key : (*found)[1]);
+}
+
+}  // namespace drogue::parachute_app
