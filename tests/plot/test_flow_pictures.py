@@ -73,6 +73,9 @@ class FlowPictures(PictureTest):
         # Values that are linear in space stay so at equidistant places.
         x, y, values = plane.equidistant(pressure)
         np.testing.assert_allclose(np.diff(x), np.diff(x)[0])
+        # They are as near as the narrowest cells, so that streamlines show what these resolve.
+        for places, f in zip((x, y), faces):
+            self.assertLess(np.diff(places)[0], np.diff(f).min() * 1.05)
         np.testing.assert_allclose(values, 100 * x + 10 * y[:, None] + 0.5)
         self.assertEqual(0, cli.main([str(run.path), "--quiet", "--movie", "none"]))
         self.assertEqual({"fields.png", "history.png"}, self.pictures(run.path))

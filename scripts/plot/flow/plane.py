@@ -8,7 +8,7 @@ from ..failure import USAGE, Failure
 from ..run_directory import Run, Snapshot
 
 AXES = "xyz"
-_MOST_PIXELS = 2000  # along an axis of a stretched grid
+_MOST_PLACES = 2000  # along an axis of a stretched grid
 
 
 def is_flow(run: Run) -> bool:
@@ -25,6 +25,11 @@ def is_uniform(faces: np.ndarray) -> bool:
     """Whether the cells between faces have one width."""
     widths = np.diff(faces)
     return bool(np.ptp(widths) <= 1e-9 * widths.max())
+
+
+def _equal_cells(faces: np.ndarray) -> int:
+    """Cells of the least width along an axis."""
+    return min(round(np.ptp(faces) / np.diff(faces).min()), _MOST_PLACES)
 
 
 def dimension(run: Run) -> int:
@@ -85,19 +90,20 @@ class Plane:
         for axis, along in zip(self.across, (1, 0)):
             faces = self.run.mesh[AXES[axis]].values
             if not is_uniform(faces):
-                count = min(round(np.ptp(faces) / np.diff(faces).min()), _MOST_PIXELS)
+                count = _equal_cells(faces)
                 centres = faces[0] + (np.arange(count) + 0.5) / count * np.ptp(faces)
                 rows = np.take(rows, np.searchsorted(faces, centres) - 1, axis=along)
         return rows
 
     def equidistant(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Places right and upwards, m, as many as cells and equidistant, and values there, linear between centres."""
+        """Equidistant places right and upwards, m, as near as cells of the least width, and values there, linear between centres."""
         rows, places = self.cut(values), []
         for axis, along, centres in zip(self.across, (1, 0), self.centres):
-            if is_uniform(self.run.mesh[AXES[axis]].values):
+            faces = self.run.mesh[AXES[axis]].values
+            if is_uniform(faces):
                 places.append(centres)
                 continue
-            places.append(np.linspace(centres[0], centres[-1], len(centres)))
+            places.append(np.linspace(centres[0], centres[-1], _equal_cells(faces)))
             rows = np.apply_along_axis(lambda line, to=places[-1], at=centres: np.interp(to, at, line), along, rows)
         return *places, rows
 
