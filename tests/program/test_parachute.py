@@ -363,6 +363,14 @@ class Orders(parachute_program.FlowTest):
 
 
 class Bodies(parachute_program.FlowTest):
+    def test_check_refuses_what_a_run_would_refuse_beside_a_side(self):
+        """Forces act up to a cell beyond a plate: exactly a cell from a side, round-off would decide."""
+        scene = self.write(bad_bodies.GOOD)
+        for side, inwards in ((0.1, 1), (1.5, -1)):
+            sets = ["verify={}", "body[0].centre=[{},0.4,0.4]"]
+            self.assertIn("strictly between 0.1 and 1.5 m", self.expect(3, scene, "--check", sets=[sets[0], sets[1].format(side)]).stderr)
+            self.expect(0, scene, *QUIET, "--overwrite", sets=[sets[0], sets[1].format(side + inwards * 1e-8)])
+
     def test_force_on_a_porous_plate_follows_its_law(self):
         """A plate across the whole channel, so that the velocity through it is that of the inflow."""
         whole = PLATE.replace("lengths = [0.4, 0.6]", "lengths = [0.8, 0.6]").replace("0.37", "0.4").replace(

@@ -65,7 +65,7 @@ class Grid(parachute_program.FlowTest):
         self.assertLess(rows["canopy_0_payload_z"][-1], 3.4)
         outside = self.expect(3, self.write(CORE), "--check", sets=["canopy[0].centre=[0,0,-0.9]"]).stderr
         self.assertIn("canopy[0] with its payload reaches from -2.39", outside)
-        self.assertIn("beyond the core of the grid less two cells at each end: it must lie between -2.2 and 3.0 m", outside)
+        self.assertIn("beyond the core of the grid less two cells at each end: it must lie strictly between -2.2 and 3.0 m", outside)
 
     def test_grid_follows_the_middle_of_canopy_and_payload(self):
         """A payload that is pushed aside with its canopy stays in the core, across the stream too."""
@@ -88,10 +88,14 @@ class Grid(parachute_program.FlowTest):
         report = self.start(self.write(CORE), "--check").stdout
         self.assertRegex(report, r"grid +\d+ x \d+ x \d+ cells, \d+ in all\n +along x a core of 20 of 0\.2 m, others up to \S+ m\n"
                                  r" +along y a core of 20 of 0\.2 m, others up to \S+ m\n +along z a core of 30 of 0\.2 m, others up to \S+ m\n"
-                                 r"coupling +edge_inset = 0\.66, leak_filter = 0\.5\nmemory +\S+ MiB for its arrays\ntime +about \S+ \S+ on two cores, \S+ \S+ on one H200, an estimate: "
+                                 r"coupling +edge_inset = 0\.66, leak_filter = 0\.5, filter = by the law of the cloth\nmemory +\S+ MiB for its arrays\ntime +about \S+ \S+ on two cores, \S+ \S+ on one H200, an estimate: "
                                  r"\S+ steps at 2\.5 times the speed of the start, each with \S+ of the cloth\n")
         memory = float(report.split("memory")[1].split()[0])
         self.expect(0, self.write(CORE), *QUIET, "--out", "out", sets=["run.end_time=0.02", "output.times=[0.02]", "verify={}"])
+        # What scene.toml leaves to defaults.
+        used = self.result("out")["coupling"]
+        self.assertEqual((0.5, "by the law of the cloth"), (used["leak_filter"], used["filter"]))
+        self.assertAlmostEqual(0.66, used["edge_inset"], delta=0.005)
         views = self.result("out")["peak_bytes"]["device"] / 2**20
         self.assertLess(abs(memory / views - 1), 0.35, (memory, views))
 

@@ -49,15 +49,15 @@ void check_extent(const Place& at, const FlowScene& scene, const Body& body, con
     at.contradict(key, reaches, " and would cross its image beyond the periodic sides: it must be at most ",
                   width, " m long");
   }
-  const auto [begin, end] = sheet_extent(p, axis);
-  if (low >= begin + margin - rounding && high <= end - margin + rounding) return;
+  if (keeps_margin(p, axis, low, high, margin)) return;
   refuse_without_core(at, p, key, at.path(), axis);
+  const auto [begin, end] = sheet_extent(p, axis);
   const bool can_be_sharp = !flow::is_stretched(p, axis) && margin > 0.0 && !is_sharp(scene) && !body.mount &&
                             scene.canopies.empty() && scene.flags.empty();
   at.contradict(key, reaches, ", beyond ",
                 margin > 0.0 || flow::is_stretched(p, axis) ? beyond_sides_text(p, axis) : "the domain",
-                ": it must lie between ", rounded_text(begin + margin), " and ", rounded_text(end - margin),
-                " m",
+                margin > 0.0 ? ": it must lie strictly between " : ": it must lie between ",
+                rounded_text(begin + margin), " and ", rounded_text(end - margin), " m",
                 can_be_sharp ? "; periodic sides it may cross, and with coupling.method = \"sharp\" it may "
                                "touch all sides along which it extends"
                              : "");

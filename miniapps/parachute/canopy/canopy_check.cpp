@@ -7,6 +7,7 @@
 #include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/canopy/stiffness.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/scene/run_size.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
@@ -96,24 +97,11 @@ void check_size(const Place& at, const Canopy& canopy) {
   at.refuse_if(is_too_large, "edge_length", " = ", canopy.edge_length, " m: the vertices are more than 2^20");
 }
 
-/// Duration of the first step of the flow, s; 0 if it is not known.
-double first_dt(const FlowScene& scene) {
-  const flow::Parameters& p = scene.parameters;
-  if (p.fixed_dt > 0.0) return p.fixed_dt;
-  double rate = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::optional<double> speed = constant_value(scene.initial_velocity()[axis]);
-    if (!speed) return 0.0;
-    rate += std::abs(*speed) / core_width(p, axis);
-  }
-  return rate > 0.0 ? std::min(p.max_dt, scene.cfl() / rate) : p.max_dt;
-}
-
 /// Signals are answered between steps of the flow: one must not hold more steps of the cloth than pass within
 /// a second or so.
 void check_stiffness(const Place& at, const FlowScene& scene, const Canopy& canopy, const CanopyMesh& mesh) {
   const StiffPart part = stiffest_part(canopy, mesh);
-  const double dt = first_dt(scene), steps = part.frequency * dt;
+  const double dt = step_length(scene), steps = part.frequency * dt;
   at.refuse_if(
       !(steps <= static_cast<double>(coupling::most_substeps)), part.key, ": ", rough_text(part.value), " ",
       part.unit, " needs some ", rough_text(steps), " steps of the cloth in each step of the flow, of ",
@@ -127,12 +115,11 @@ void check_inside(const Place& root, const flow::Parameters& p, const std::vecto
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic && !flow::is_stretched(p, axis)) continue;
     const auto [low, high] = std::ranges::minmax(positions, {}, [axis](const Vector& x) { return x[axis]; });
+    const double margin = core_width(p, axis);
+    if (keeps_margin(p, axis, low[axis], high[axis], margin)) continue;
     const auto [begin, end] = sheet_extent(p, axis);
-    const double margin = core_width(p, axis), least = begin + margin, most = end - margin;
-    const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
-    if (low[axis] >= least - rounding && high[axis] <= most + rounding) continue;
     refuse_beyond_sides(root, p, key, name + " with its payload", axis, {low[axis], high[axis]},
-                        {least, most}, remedy.c_str());
+                        {begin + margin, end - margin}, remedy.c_str());
   }
 }
 

@@ -75,7 +75,7 @@ void note_coarse_cells(FlowScene& scene, std::size_t i) {
 
 /// Notes free edges that act beyond the cloth: docs/coupling.md, inset of free edges.
 void note_wide_edges(FlowScene& scene, double cells) {
-  if (scene.coupling.method != coupling::CouplingMethod::spread || edge_inset(scene) > 0.0) return;
+  if (edge_inset(scene) > 0.0) return;
   const double width = standard_edge_inset(scene);
   scene.notices.push_back(sentence("coupling.edge_inset = 0: skirt and vent act on the air ",
                                    rough_text(width), " cells beyond the cloth, so that drag is some ",

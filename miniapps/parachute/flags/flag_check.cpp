@@ -35,9 +35,9 @@ void check_flag(const Place& at, const flow::Parameters& p, const Flag& flag) {
     }
     const auto [low, high] =
         std::ranges::minmax(positions, {}, [axis](const fabric::Vector& x) { return x[axis]; });
+    if (keeps_margin(p, axis, low[axis], high[axis], spacing[axis])) continue;
     const auto [begin, end] = sheet_extent(p, axis);
     const double least = begin + spacing[axis], most = end - spacing[axis];
-    if (low[axis] >= least && high[axis] <= most) continue;
     const char* const key = axis < 2 ? "leading_edge" : *flag.width <= most - least ? "middle" : "width";
     refuse_beyond_sides(at, p, key, at.path(), axis, {low[axis], high[axis]}, {least, most},
                         axis == 2 ? ", by its width and middle" : "");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/scene/node.hpp"
 #include "kernels/coupling/sheet/corrections.hpp"
 
 namespace drogue::parachute_app {
@@ -13,11 +14,13 @@ constexpr double faster_beside_edges = 1.8;
 
 /// Canopies take the filter of their law. Modes of bodies, flags and drums, whose periods are longer than a
 /// step, decay with any filter.
+bool takes_filter_of_law(const Canopy& canopy) { return canopy.kind != CanopyKind::drum; }
+
 std::vector<coupling::AirFilter> filters_by_law(const FlowScene& scene, const Sheets& sheets) {
   std::vector<coupling::AirFilter> filters(sheets.positions.size());
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
     for (std::size_t k = sheets.canopies[i].begin; k < sheets.canopies[i].end; ++k)
-      filters[k].by_law = scene.canopies[i].kind != CanopyKind::drum;
+      filters[k].by_law = takes_filter_of_law(scene.canopies[i]);
   return filters;
 }
 
@@ -54,6 +57,13 @@ double leak_filter(const FlowScene& scene) {
   // Flags enclose no air, and their amplitude is nearer to its limit with the leak.
   const bool can_leak = is_corrected(scene.coupling) && scene.flags.empty();
   return scene.coupling.leak_filter.value_or(can_leak ? coupling::standard_leak_filter : 0.0);
+}
+
+std::string filter_text(const FlowScene& scene) {
+  const Exchange& exchange = scene.coupling;
+  const bool is_by_law =
+      is_corrected(exchange) && !exchange.filter && std::ranges::any_of(scene.canopies, takes_filter_of_law);
+  return is_by_law ? "by the law of the cloth" : scene::rough_text(exchange.filter.value_or(standard_filter));
 }
 
 coupling::SheetParameters exchange_parameters(const FlowScene& scene, const Sheets& sheets) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "kernels/coupling/sheet/parameters.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
@@ -19,6 +21,10 @@ inline constexpr double standard_filter = coupling::SheetParameters().filter;
 /// not throw.
 [[nodiscard]] double edge_inset(const FlowScene& scene);
 [[nodiscard]] double leak_filter(const FlowScene& scene);
+
+/// Weight of the present step in the mean of the acceleration of the fluid, or that each canopy takes that of
+/// its law. Throws only std::bad_alloc.
+[[nodiscard]] std::string filter_text(const FlowScene& scene);
 
 /// Parameters of the exchange of sheets with the fluid: those of the scene, and of its corrections where it
 /// has none. Throws only std::bad_alloc.

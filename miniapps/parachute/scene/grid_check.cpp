@@ -12,6 +12,8 @@ namespace {
 
 using scene::Place, scene::rough_text;
 
+constexpr std::size_t most_faces_per_axis = most_cells_per_axis + 1;
+
 /// Sets an axis by its faces; cells of one width need none.
 void set_faces(flow::Parameters& p, std::size_t axis, std::vector<double> faces) {
   p.cells[axis] = static_cast<int>(faces.size()) - 1;
@@ -70,8 +72,8 @@ void complete_core(const Place& root, FlowScene& scene) {
     } catch (const std::invalid_argument& fault) {
       root.refuse("grid.growth", ": along ", axis_names[axis], ", ", fault.what());
     }
-    root.refuse_if(static_cast<double>(faces.size()) > most_cells_per_axis + 1.0, "grid.growth", ": along ",
-                   axis_names[axis], ", core and growth give more than ", most_cells_per_axis, " cells");
+    root.refuse_if(faces.size() > most_faces_per_axis, "grid.growth", ": along ", axis_names[axis],
+                   ", core and growth give more than ", most_cells_per_axis, " cells");
     set_faces(p, axis, std::move(faces));
     note_jumps(scene, scene::sentence("grid.core along ", axis_names[axis]), axis);
   }
@@ -111,8 +113,8 @@ void complete_faces(const Place& root, FlowScene& scene) {
     const std::vector<double>& faces = given.values;
     root.refuse_if(faces.size() < 2, "grid.faces", "[", axis, "]: an axis has two faces at least, not ",
                    faces.size());
-    root.refuse_if(static_cast<double>(faces.size()) > most_cells_per_axis + 1.0, "grid.faces", "[", axis,
-                   "] has ", faces.size(), " numbers, for more than ", most_cells_per_axis, " cells");
+    root.refuse_if(faces.size() > most_faces_per_axis, "grid.faces", "[", axis, "] has ", faces.size(),
+                   " numbers, for more than ", most_cells_per_axis, " cells");
     const auto bad = std::ranges::adjacent_find(faces, [](double a, double b) { return !(a < b); });
     if (bad != faces.end())
       root.refuse("grid.faces", "[", axis, "]: ", bad[1], " follows ", bad[0],

@@ -49,22 +49,6 @@ double speed_ratio(const FlowScene& scene) {
   return std::ranges::any_of(scene.canopies, &Canopy::has_lines) ? 2.5 : 1.0;
 }
 
-/// Step of the flow, s, by the speed at the start; 0 if it is not known.
-double step_of(const FlowScene& scene) {
-  const flow::Parameters& p = scene.parameters;
-  if (p.fixed_dt > 0.0) return p.fixed_dt;
-  double rate = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::optional<double> speed = constant_value(scene.initial_velocity()[axis]);
-    if (!speed && p.max_dt == 0.0) return 0.0;
-    rate += std::abs(speed.value_or(0.0)) / core_width(p, axis);
-  }
-  double dt = flow::largest_diffusive_dt(p);
-  if (p.max_dt > 0.0) dt = std::min(dt, p.max_dt);
-  if (rate > 0.0) dt = std::min(dt, scene.cfl() / (speed_ratio(scene) * rate));
-  return std::isfinite(dt) ? dt : 0.0;
-}
-
 /// Time of a step on a machine, s, of which the parts are measured.
 struct StepTime {
   double cell;            ///< of a cell in a step of AB2 with explicit diffusion
@@ -88,9 +72,25 @@ double time_of(const FlowScene& scene, const RunSize& size, const StepTime& of) 
 
 }  // namespace
 
+double step_length(const FlowScene& scene, double times_as_fast) {
+  const flow::Parameters& p = scene.parameters;
+  if (p.fixed_dt > 0.0) return p.fixed_dt;
+  double rate = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double> speed = constant_value(scene.initial_velocity()[axis]);
+    if (!speed) return 0.0;
+    rate += times_as_fast * std::abs(*speed) / core_width(p, axis);
+  }
+  double dt = flow::largest_diffusive_dt(p);
+  if (p.max_dt > 0.0) dt = std::min(dt, p.max_dt);
+  if (rate > 0.0) dt = std::min(dt, scene.cfl() / rate);
+  return std::isfinite(dt) ? dt : 0.0;
+}
+
 RunSize run_size(const FlowScene& scene) {
   RunSize size{scene.cells(), sizeof(double) * numbers_of(scene)};
-  const double dt = step_of(scene);
+  double dt = step_length(scene, speed_ratio(scene));
+  if (dt == 0.0) dt = scene.parameters.max_dt;
   if (dt == 0.0) return size;
   size.steps = std::ceil(scene.end_time / dt);
   for (const Canopy& canopy : scene.canopies)
@@ -125,9 +125,9 @@ std::string run_size_report(const FlowScene& scene) {
     text += sentence("\n             along ", axis_names[axis], " a core of ", core.cells[axis], " of ",
                      rough_text(core.spacing[axis]), " m, others up to ", rough_text(widest), " m");
   }
-  if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::spread)
+  if (scene.has_sheets() && scene.coupling.method != coupling::CouplingMethod::sharp)
     text += sentence("\ncoupling     edge_inset = ", rough_text(edge_inset(scene)),
-                     ", leak_filter = ", rough_text(leak_filter(scene)));
+                     ", leak_filter = ", rough_text(leak_filter(scene)), ", filter = ", filter_text(scene));
   text += sentence("\nmemory       ", rough_text(size.bytes / 1048576.0), " MiB for its arrays\n");
   if (size.steps == 0.0) return text + "time         not known: it depends on the speed of the fluid\n";
   const RunTime time = run_time(scene);

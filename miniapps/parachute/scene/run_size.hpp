@@ -14,6 +14,10 @@ struct RunSize {
   double cloth_steps = 0.0;  ///< of the cloth, of all canopies, in each of them
 };
 
+/// Duration of a step of the flow, s, where the fluid moves `times_as_fast` as at the start; 0 if that
+/// velocity varies in space or if nothing bounds the step. Throws only std::bad_alloc.
+[[nodiscard]] double step_length(const FlowScene& scene, double times_as_fast = 1.0);
+
 /// Size of the run of a checked scene with a fluid. The steps are those of the speed at the start. Throws
 /// only std::bad_alloc.
 [[nodiscard]] RunSize run_size(const FlowScene& scene);

@@ -32,7 +32,7 @@ inline constexpr std::array<const char*, 6> side_names = {"x_low",  "x_high", "y
 
 inline constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
-inline constexpr double most_cells_per_axis = 16384.0;  ///< as of `flow::check_parameters`
+inline constexpr int most_cells_per_axis = 16384;  ///< as of `flow::check_parameters`
 
 /// Frame of reference of the grid.
 enum class Frame {

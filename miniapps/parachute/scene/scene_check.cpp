@@ -383,6 +383,13 @@ void complete_fields(const Place& root, FlowScene& scene) {
 
 }  // namespace
 
+bool keeps_margin(const flow::Parameters& p, std::size_t axis, double low, double high, double margin) {
+  const auto [begin, end] = sheet_extent(p, axis);
+  const double rounding = 1e-9 * (p.high[axis] - p.low[axis]),
+               least = margin > 0.0 ? margin + rounding : -rounding;
+  return low >= begin + least && high <= end - least;
+}
+
 std::string beyond_sides_text(const flow::Parameters& p, std::size_t axis) {
   return flow::is_stretched(p, axis) ? "the core of the grid less two cells at each end"
                                      : "the cells beside the sides of the domain";
@@ -404,8 +411,8 @@ void refuse_beyond_sides(const Place& root, const flow::Parameters& p, const std
   refuse_without_core(root, p, key, name, axis);
   root.contradict(key, name, " reaches from ", rounded_text(extent[0]), " to ", rounded_text(extent[1]),
                   " m along ", axis_names[axis], ", beyond ", beyond_sides_text(p, axis),
-                  ": it must lie between ", rounded_text(allowed[0]), " and ", rounded_text(allowed[1]), " m",
-                  remedy);
+                  ": it must lie strictly between ", rounded_text(allowed[0]), " and ",
+                  rounded_text(allowed[1]), " m", remedy);
 }
 
 void complete_and_check(const Place& root, FlowScene& scene) {

@@ -68,6 +68,11 @@ void check_images(const scene::Place& root, const FlowScene& scene, const Sheets
 /// to stop before them, which the coupling follows within many steps, without a given bound of dt.
 void note_narrow_channels(const scene::Place& root, FlowScene& scene, const Sheets& sheets);
 
+/// True if sheets that reach from `low` to `high` along an axis, m, keep more than `margin`, m, to the ends
+/// that they may reach (`sheet_extent`): exactly a cell from a side, round-off decides whether the grid has
+/// all faces around a vertex. With a margin of 0 they may touch the ends. Does not throw.
+bool keeps_margin(const flow::Parameters& p, std::size_t axis, double low, double high, double margin);
+
 /// Words on where sheets must not reach along an axis: "the cells beside the sides of the domain". Throws
 /// only std::bad_alloc.
 std::string beyond_sides_text(const flow::Parameters& p, std::size_t axis);

@@ -287,6 +287,11 @@ void Simulation::describe(run::ResultDocument& result) {
     result.metrics.set("pressure", "residual", solve->residual);
     result.metrics.set("pressure", "tolerance", _scene.parameters.pressure_tolerance);
   }
+  if (_scene.has_sheets() && _scene.coupling.method != coupling::CouplingMethod::sharp) {
+    result.metrics.set("coupling", "edge_inset", edge_inset(_scene));
+    result.metrics.set("coupling", "leak_filter", leak_filter(_scene));
+    result.metrics.set("coupling", "filter", filter_text(_scene));
+  }
   if (!_scene.bodies.empty())
     result.metrics.set("bodies", "vertices", static_cast<std::int64_t>(vertices_of(_scene.bodies)));
   if (!_scene.canopies.empty()) {

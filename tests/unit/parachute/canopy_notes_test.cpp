@@ -101,6 +101,11 @@ TEST(CanopyNotes, NameEdgesThatActBeyondTheCloth) {
       {"coupling.edge_inset=0"},
       "coupling.edge_inset = 0: skirt and vent act on the air 0.59 cells beyond the cloth, so that drag "
       "is some 17 % too large; coupling.edge_inset = 0.59 makes up for it");
+  // Explicit coupling has none by default.
+  expect_note(
+      {"coupling={method=\"explicit\",allow_unstable=true}"},
+      "coupling.edge_inset = 0: skirt and vent act on the air 0.59 cells beyond the cloth, so that drag "
+      "is some 17 % too large; coupling.edge_inset = 0.59 makes up for it");
 }
 
 TEST(CanopyNotes, NameTheRoomThatACanopyNeedsInACore) {

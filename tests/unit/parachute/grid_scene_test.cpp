@@ -165,7 +165,7 @@ TEST_F(GridScene, RefusesWhatContradictsOrIsNoGrid) {
       {"core = [[-1, 3], [-1, 1], [-1, 1]]\nspacing = 1\ndomain = [[-5, 9], [-6, 6], [-1, 1]]\n",
        "6: grid.spacing: 2 cells along z; an axis has 1 cell, or at least 4"},
       {"core = [[-1, 3], [-1, 1], [-1, 1]]\nspacing = 1e-5\ndomain = [[-5, 9], [-6, 6], [-1, 1]]\n",
-       "6: grid.spacing: 1e-05 m are more than 16384"},
+       "6: grid.spacing: 1e-05 m are more than 16384 cells"},
       {"core = [[-1, 3], [-1, 1], [-1, 1]]\nspacing = 0.25\ngrowth = 1.2\ndomain = [[-5, 9], [-6, 6], [-1, "
        "1]]\n",
        "7: grid.growth = 1.2 is out of range"},
@@ -181,12 +181,12 @@ TEST_F(GridScene, RefusesWhatContradictsOrIsNoGrid) {
 }
 
 TEST_F(GridScene, BodiesLieInTheCore) {
-  const std::string plate = "body=[{kind='plate',normal='x',centre=[0,0,0],lengths=[1,2],edge_length=0.15}]";
+  const std::string plate = "body=[{kind='plate',normal='x',centre=[0,0,0],lengths=[0.9,2],edge_length=0.15}]";
   EXPECT_EQ(refusal({plate}), "");
   EXPECT_NE(
       refusal({plate, "body[0].centre=[2.6,0,0]"})
           .find("body[0] reaches from 2.6 to 2.6 m along x, beyond the core of the grid less two cells at "
-                "each end: it must lie between -0.5 and 2.5 m"),
+                "each end: it must lie strictly between -0.5 and 2.5 m"),
       std::string::npos)
       << refusal({plate, "body[0].centre=[2.6,0,0]"});
   EXPECT_NE(refusal({plate, "body[0].edge_length=0.07",
