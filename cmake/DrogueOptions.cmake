@@ -5,7 +5,7 @@
 option(DROGUE_EXACT "No fused multiply-add: backends agree bit for bit" OFF)
 option(DROGUE_WARNINGS_AS_ERRORS "Stop at a warning in our own code" OFF)
 option(DROGUE_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
-option(DROGUE_UNITY_TESTS "Compile several sources of a test, or of drogue-perf, as one" ${CMAKE_UNITY_BUILD})
+option(DROGUE_UNITY_TESTS "Compile several sources of a test without kernels as one" ON)
 option(DROGUE_SYSTEM "Ignore build/deps: take every library from the system" OFF)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -65,7 +65,7 @@ target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:-Xcom
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   drogue_host_option(drogue_private INTERFACE -Wno-restrict)
   # In a unity build every source is an included file, where gcc warns of anonymous members of its own classes.
-  if(CMAKE_UNITY_BUILD OR DROGUE_UNITY_TESTS)
+  if(CMAKE_UNITY_BUILD)
     target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
   endif()
 endif()

@@ -1,6 +1,7 @@
 // ctest-label: no-sanitizer
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/mesh/edges.hpp"

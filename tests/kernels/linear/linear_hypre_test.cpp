@@ -2,6 +2,7 @@
 
 #if defined(DROGUE_HAVE_HYPRE)
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>

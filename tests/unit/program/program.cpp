@@ -10,6 +10,7 @@
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
 #include "common/program/provenance.hpp"
 #include "common/version.hpp"

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+#include <vector>
 
 #include "common/run/files/atomic_file.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
