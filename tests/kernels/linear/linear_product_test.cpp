@@ -49,8 +49,8 @@ Sums sums(const std::array<int, 3>& cells, std::size_t axis, bool transposed,
   return result;
 }
 
-// ctest-label: exact
 /// Lengths below, at and above the widths of tiles and batches.
+// ctest-label: exact
 TEST(DenseProduct, SumsInTheOrderOfTheColumnsForAllSizes) {
   const std::array<int, 3> sizes[] = {{1, 1, 1},  {7, 5, 3},   {33, 66, 2}, {8, 4, 17},
                                       {1, 37, 4}, {150, 2, 2}, {2, 150, 65}};
