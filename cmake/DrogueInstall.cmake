@@ -26,6 +26,7 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/DrogueConfig.cmake.in
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/DrogueConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/DrogueConfig.cmake" "${PROJECT_BINARY_DIR}/DrogueConfigVersion.cmake"
   "${PROJECT_SOURCE_DIR}/cmake/FindFFTW.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindHYPRE.cmake"
+  "${PROJECT_SOURCE_DIR}/cmake/FindNCCL.cmake"
   DESTINATION "${_package}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/options/batches/"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/batches" FILES_MATCHING PATTERN "*.csv")

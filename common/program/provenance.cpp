@@ -54,6 +54,7 @@ std::string version_text(const std::string& program) {
   line("HDF5", build.hdf5);
   line("FFTW", build.fftw);
   line("hypre", build.hypre);
+  line("NCCL", build.nccl);
   line("compiler", build.compiler);
   line("flags", build.flags);
   return text;

@@ -37,6 +37,7 @@ struct Control : StepMaxima {
   int pressure_failed;          ///< 1 after an iterative pressure solver did not converge
   int failed_side;              ///< 1 + a side whose prescribed velocity is not finite; 0: none
   int is_unbalanced;            ///< 1 if `net_inflow` is more than round-off
+  int interrupted;              ///< 1 if a rank of several has asked for the end of the advance
   double pressure_residual;     ///< relative residual of the solve that did not converge
   double net_inflow;            ///< m^3/s, of velocities that change in time where no side is an outflow
   double inflow_magnitude;      ///< m^3/s, sum of the magnitudes of the parts of `net_inflow`

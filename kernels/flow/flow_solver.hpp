@@ -30,8 +30,8 @@ namespace drogue::flow {
 /// which must outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is
 /// that before the step.
 ///
-/// On a group of several ranks each holds a box of the cells (`decompose`). All functions are then
-/// collective, every step waits for the host, and arrays are those of the rank.
+/// On a group of several ranks each holds a box of the cells (`ranks_of`). All functions are then collective,
+/// and arrays are those of the rank. Steps wait for the host unless `Step::is_asynchronous`.
 ///
 /// Final functions are documented in `Solver`.
 template <class ExecutionSpace>
@@ -45,6 +45,10 @@ class FlowSolver : public Solver {
   FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
              const linear::RankGroup& group = {});
 
+  /// Messages between the ranks. Does not throw.
+  [[nodiscard]] const linear::DeviceCommunicator<ExecutionSpace>& communicator() const {
+    return _step.halo.communicator();
+  }
   /// Grid of the arrays. Does not throw.
   [[nodiscard]] const MacGrid& grid() const { return _step.grid; }
   /// Velocity with ghost cells, m/s; valid after the kernels enqueued so far. Does not throw.
@@ -54,8 +58,8 @@ class FlowSolver : public Solver {
   /// steps; it keeps its values. Does not throw.
   [[nodiscard]] const Values& force() const { return _step.fields.force; }
 
-  // For a coupling that enqueues other kernels between steps. Asynchronous on one rank, without a bound on
-  // the steps in flight; collective and blocking on several.
+  // For a coupling that enqueues other kernels between steps. Collective, and asynchronous if
+  // `Step::is_asynchronous`, without a bound on the steps in flight.
 
   /// Enqueues the beginning of an advance to the time `target`, s. Throws only after a failed launch.
   void enqueue_begin(double target);
@@ -121,6 +125,7 @@ class FlowSolver : public Solver {
   }
   void sample(CellField field, std::span<double> values) final;
   [[nodiscard]] const char* driver() const final { return stepping::driver_name(_launcher.driver()); }
+  [[nodiscard]] linear::Transport transport() const final { return communicator().transport(); }
   [[nodiscard]] const char* pressure_solver() const final { return _step.pressure_equation->name(); }
   [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const final {
     return _step.pressure_equation->last_solve();
@@ -141,7 +146,9 @@ class FlowSolver : public Solver {
   [[nodiscard]] const StateEntry<ExecutionSpace>& find(std::string_view name, std::size_t size) const;
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(const StateEntry<ExecutionSpace>& entry,
                                                     bool to_field) const;
-  Stop advance_collectively(const stepping::AdvanceRequest& request, const Poll& poll);
+  Stop advance_alone(const stepping::AdvanceRequest& request, const Poll& poll);
+  Stop advance_together(const stepping::AdvanceRequest& request, const Poll& poll);
+  Stop advance_by_step(const stepping::AdvanceRequest& request, const Poll& poll);
   void enqueue_extremes(const ExecutionSpace& space);
 
   const device::Instance<ExecutionSpace>* _instance;
@@ -162,10 +169,8 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
       _state(make_state(_step.fields, parameters, _step.ranks)),
       _totals_sum(_step.grid, _step.fields.predicted),
       _loop(instance),
-      // Messages and an iterative solver wait for the host in every step, which a graph cannot hold.
-      _launcher(instance, parameters.pressure_solver == PressureSolver::hypre_pfmg || group.size() > 1
-                              ? Driver::plain
-                              : parameters.driver) {
+      // A graph cannot hold a step that waits for the host.
+      _launcher(instance, _step.is_asynchronous() ? parameters.driver : Driver::plain) {
   if (parameters.watches_extremes) _extremes.emplace(_step.grid, parameters.density);
 }
 
@@ -444,13 +449,28 @@ struct FlowSolver<ExecutionSpace>::Steps {
       solver._step.enqueue(on, solver._loop.status_view());
       solver.enqueue_extremes(on);
     });
+    // Not every step of a graph has been enqueued here.
+    if (solver._step.outdates_ghosts()) solver._step.halo.outdate_velocity();
+  }
+  /// Lets this rank launch as many steps as the others, whose messages wait for it. Those beyond the stop do
+  /// nothing.
+  void complete_launches() {
+    const linear::RankGroup& group = solver._step.halo.group();
+    auto most = static_cast<std::uint64_t>(solver._loop.launches());
+    group.maximize({&most, 1});
+    while (solver._loop.launches() < static_cast<std::int64_t>(most)) {
+      enqueue(0, 1);
+      solver._loop.count_launch();
+    }
   }
 };
 
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
-  const Stop stop = _step.halo.is_alone() ? _loop.advance({target, pause_step}, Steps{*this}, poll)
-                                          : advance_collectively({target, pause_step}, poll);
+  const auto run = _step.halo.is_alone()     ? &FlowSolver::advance_alone
+                   : _step.is_asynchronous() ? &FlowSolver::advance_together
+                                             : &FlowSolver::advance_by_step;
+  const Stop stop = (this->*run)({target, pause_step}, poll);
   if (stop == Stop::failed && _step.boundary.changes()) {
     _step.boundary.enqueue_evaluation(space(), _step.control, _step.constants, {0.0, true});
     space().fence("drogue::flow::advance: sides before the failed step");
@@ -580,25 +600,44 @@ void FlowSolver<ExecutionSpace>::forget_long_step() {
   write_control(control);
 }
 
-/// Step loop of several ranks: step by step, so that all take the same steps.
 template <class ExecutionSpace>
-Stop FlowSolver<ExecutionSpace>::advance_collectively(const stepping::AdvanceRequest& request,
-                                                      const Poll& poll) {
+Stop FlowSolver<ExecutionSpace>::advance_alone(const stepping::AdvanceRequest& request, const Poll& poll) {
+  return _loop.advance(request, Steps{*this}, poll);
+}
+
+/// Step loop of several ranks that wait for no host: the device decides after which step all stop, also for
+/// the poll of one.
+template <class ExecutionSpace>
+Stop FlowSolver<ExecutionSpace>::advance_together(const stepping::AdvanceRequest& request, const Poll& poll) {
+  if (!_step.halo.group().all(!poll || poll(_loop.status()))) return Stop::interrupted;
+  _step.halo.ask_for_interrupt(false);
+  const Stop stop = _loop.advance(request, Steps{*this}, [&](const Status& now) {
+    if (poll && !poll(now)) _step.halo.ask_for_interrupt(true);
+    return true;
+  });
+  _step.finish_ghosts(space(), _step.fields.velocity);
+  space().fence("drogue::flow::advance_together: stopped");
+  return stop;
+}
+
+/// Step loop of several ranks whose steps wait for the host: step by step, so that all take the same steps.
+template <class ExecutionSpace>
+Stop FlowSolver<ExecutionSpace>::advance_by_step(const stepping::AdvanceRequest& request, const Poll& poll) {
   const auto goes_on = [&] { return _step.halo.group().all(!poll || poll(_loop.status())); };
   if (!goes_on()) return Stop::interrupted;
   Steps steps{*this};
   steps.begin(request, -1);
   _loop.count_launch();
-  space().fence("drogue::flow::advance_collectively: begun");
+  space().fence("drogue::flow::advance_by_step: begun");
   bool interrupted = false;
   while (_loop.status().stop == Stop::running && !interrupted) {
     steps.enqueue(0, 1);
     _loop.count_launch();
-    space().fence("drogue::flow::advance_collectively: stepped");
+    space().fence("drogue::flow::advance_by_step: stepped");
     interrupted = _loop.status().stop == Stop::running && !goes_on();
   }
   _step.finish_ghosts(space(), _step.fields.velocity);
-  space().fence("drogue::flow::advance_collectively: stopped");
+  space().fence("drogue::flow::advance_by_step: stopped");
   return interrupted ? Stop::interrupted : _loop.status().stop;
 }
 

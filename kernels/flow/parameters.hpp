@@ -133,6 +133,8 @@ struct Parameters {
   double horizon = 0.0;
   std::vector<stepping::MotionInterval> motion;  ///< other prescribed motion that limits dt, or empty
   bool watches_extremes = false;  ///< every step takes part in `Extremes`, which costs some kernels
+  /// Ranks divide the cells along z alone, as they always do on devices, and not along y and z.
+  bool slabs = false;
   Driver driver = Driver::automatic;
   /// Threads of a team of momentum stage and pressure correction on a device, a multiple of 32 up to 512; 0:
   /// 128.

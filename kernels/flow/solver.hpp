@@ -13,6 +13,7 @@
 #include "kernels/flow/parameters.hpp"
 #include "kernels/flow/state.hpp"
 #include "kernels/linear/parallel/rank_group.hpp"
+#include "kernels/linear/parallel/transport.hpp"
 #include "kernels/stepping/state_array.hpp"
 
 namespace drogue::flow {
@@ -74,6 +75,9 @@ class Solver {
 
   /// Launch strategy: "graph" or "plain". Does not throw.
   [[nodiscard]] virtual const char* driver() const = 0;
+
+  /// How messages between ranks travel. Does not throw.
+  [[nodiscard]] virtual linear::Transport transport() const = 0;
 
   /// Last solve of an iterative pressure solver; none for a direct one. Does not throw.
   [[nodiscard]] virtual std::optional<PressureSolve> last_pressure_solve() const = 0;

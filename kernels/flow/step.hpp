@@ -30,7 +30,7 @@ namespace drogue::flow {
 ///
 /// The projection is exact to round-off, so that with explicit diffusion a pressure increment would give the
 /// same velocity; Crank-Nicolson diffusion needs one. `space` is that of the constructor, which blocks. The
-/// other functions are asynchronous on one rank, collective and blocking on several.
+/// other functions are collective, and asynchronous if `is_asynchronous`.
 template <class ExecutionSpace>
 struct Step {
   using Values = List<ExecutionSpace>;
@@ -40,12 +40,14 @@ struct Step {
   void enqueue(const ExecutionSpace& space, const StatusView& status) {
     set_guess();
     last_solution_is_pressure = true;
+    // A captured step begins as it ends.
+    if (outdates_ghosts()) halo.outdate_velocity();
     if (parameters.time_scheme == TimeScheme::ab2)
       enqueue_ab2(space);
     else
       enqueue_rk3(space);
     evaluate_eddy_viscosity(space, fields.velocity);  // here, because it limits the next dt
-    halo.agree(space, control, checks_inflow);
+    halo.agree(space, control, checks_inflow, true);
     Kokkos::parallel_for("drogue::flow::finish_step", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
                          FinishStepFunctor<ExecutionSpace>{control, status, constants});
   }
@@ -108,13 +110,17 @@ struct Step {
           PressureFailureFunctor<ExecutionSpace>{control, pressure_equation->last_solve()->residual});
   }
 
-  /// Fills the ghost cells of a velocity field; on several ranks it only begins.
+  /// Fills the ghost cells of a velocity field; with ghost cells towards other ranks, `finish_ghosts` does.
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) {
-    if (!halo.begin_velocity(space, velocity)) enqueue_side_ghosts(space, velocity);
+    if (!halo.outdate_velocity()) enqueue_side_ghosts(space, velocity);
   }
-  /// Completes what `begin_ghosts` began for the same field.
+  /// Completes what `begin_ghosts` left for the same field.
   void finish_ghosts(const ExecutionSpace& space, const Values& velocity) {
     if (halo.finish_velocity(space, velocity)) enqueue_side_ghosts(space, velocity);
+  }
+  /// True if the ghost cells towards other ranks are outdated after a step. Does not throw.
+  [[nodiscard]] bool outdates_ghosts() const {
+    return parameters.turbulence == Turbulence::none && !parameters.watches_extremes;
   }
   /// Ghost cells at the sides of the domain.
   void enqueue_side_ghosts(const ExecutionSpace& space, const Values& velocity) const {
@@ -154,6 +160,7 @@ struct Step {
   /// way.
   void enqueue_momentum(const ExecutionSpace& space, MomentumSetup<ExecutionSpace> setup) {
     const std::vector<MacGrid>& parts = halo.parts();
+    halo.begin_velocity(space, setup.stage);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       // The cells inside need the ghost cells at the sides of the domain.
       if (i == 0 && parts.size() > 1) enqueue_side_ghosts(space, setup.stage);
@@ -239,6 +246,12 @@ struct Step {
             .pressure_below = halo.pressure_below()};
   }
 
+  /// True if steps neither block nor allocate, so that a graph can hold one. Does not throw.
+  [[nodiscard]] bool is_asynchronous() const {
+    return halo.communicator().is_asynchronous() && pressure_equation->is_asynchronous() &&
+           (!diffusion || diffusion->is_asynchronous());
+  }
+
   [[nodiscard]] double kinematic_viscosity() const { return parameters.viscosity / parameters.density; }
 
   /// Throws std::invalid_argument as `check_parameters` and `uses_transforms` do, and std::runtime_error if
@@ -277,18 +290,18 @@ inline std::array<Boundary, 6> sides_of(const Parameters& parameters, const line
 template <class ExecutionSpace>
 Step<ExecutionSpace>::Step(const ExecutionSpace& space, const Parameters& p, const linear::RankGroup& group)
     : parameters(p),
-      ranks((check_parameters(p), ranks_of(p, group.size(), group.rank()))),
+      ranks((check_parameters(p), ranks_of(p, group.size(), group.rank(), !device::is_host<ExecutionSpace>))),
       axis_tables(space, p),
       grid(axis_tables.attach(make_grid(p, ranks))),
-      halo(group, ranks, p, grid),
+      halo(space, group, ranks, p, grid),
       boundary(space, grid, sides_of(p, ranks)),
       checks_inflow(pressure_problem(p).is_singular() && inflow_changes(p.boundary)),
       eddy_cells(make_eddy_cells(grid, boundary.conditions().kind)),
       fields(make_fields<ExecutionSpace>(p, grid, eddy_cells)),
       constants(step_constants(p, grid)),
       motion(side_motion(p)) {
-  if (p.diffusion == Diffusion::crank_nicolson) diffusion.emplace(space, p, halo.group(), ranks);
-  pressure_equation.emplace(space, p, halo.group(), ranks, !diffusion);
+  if (p.diffusion == Diffusion::crank_nicolson) diffusion.emplace(space, p, halo.communicator(), ranks);
+  pressure_equation.emplace(space, p, halo.communicator(), ranks, !diffusion);
   if (p.turbulence != Turbulence::none) eddy_model = make_eddy_model(p, grid);
   for (std::size_t axis = 0; axis < 3; ++axis)
     acceleration[axis] =

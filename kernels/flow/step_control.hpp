@@ -73,6 +73,7 @@ struct FinishStepFunctor {
           trial.stop = Stop::failed;
         } else if (stepping::continues(now, trial, constants.max_steps)) {
           prepare_step(now, trial, constants);
+          if (c.interrupted != 0 && trial.stop == Stop::running) trial.stop = Stop::interrupted;
         }
         c.forget_step();
       }

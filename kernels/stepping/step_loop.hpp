@@ -90,6 +90,12 @@ concept StepsWithOutputs = AdaptiveSteps<T> && requires(T steps) {
   { steps.last_output() } -> std::convertible_to<std::int64_t>;
 };
 
+/// Solver on several ranks. `complete_launches` enqueues launches until all ranks have enqueued equally many.
+template <class T>
+concept SharedSteps = AdaptiveSteps<T> && requires(T steps) {
+  steps.complete_launches();
+};
+
 /// Solver as `StepLoop::enqueue_steps` uses it. `enqueue` enqueues that many steps. `checkpoint` enqueues
 /// `Checkpoint::save` and publishes `launches`.
 template <class T>
@@ -227,6 +233,7 @@ class StepLoop {
       }
       count_launch();
     }
+    if constexpr (SharedSteps<Steps>) steps.complete_launches();
     space.fence("drogue::stepping::advance: stopped");
     const Status last = status();
     read_outputs();

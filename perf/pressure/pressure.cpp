@@ -5,6 +5,7 @@
 #include "kernels/device/instance.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
+#include "kernels/linear/poisson/slab_solver.hpp"
 
 #if defined(DROGUE_HAVE_HYPRE)
 #include "kernels/linear/poisson/hypre_pfmg.hpp"
@@ -12,8 +13,14 @@
 
 namespace drogue::perf::pressure {
 
+linear::AxisMethod axis_method(flow::PressureSolver method) {
+  return method == flow::PressureSolver::fft ? linear::AxisMethod::fourier
+                                             : linear::AxisMethod::diagonalization;
+}
+
 template <class ExecutionSpace>
-bool supports(const linear::PoissonProblem& problem, flow::PressureSolver method) {
+bool supports(const linear::PoissonProblem& problem, flow::PressureSolver method, bool in_slabs) {
+  if (in_slabs) return linear::SlabSolver<ExecutionSpace>::supports(problem, axis_method(method));
   if (method == flow::PressureSolver::fft) return linear::FourierSolver<ExecutionSpace>::supports(problem);
 #if defined(DROGUE_HAVE_HYPRE)
   return true;
@@ -76,7 +83,11 @@ class SolverOf final : public Solver {
 
 template <class ExecutionSpace>
 std::unique_ptr<Solver> make_solver(const linear::PoissonProblem& problem, flow::PressureSolver method,
-                                    [[maybe_unused]] double tolerance) {
+                                    [[maybe_unused]] double tolerance, bool in_slabs) {
+  if (in_slabs)
+    return std::make_unique<SolverOf<ExecutionSpace, linear::SlabSolver<ExecutionSpace>>>(
+        problem, linear::DeviceCommunicator<ExecutionSpace>(), linear::PencilRanks(), axis_method(method),
+        linear::InvertedOperators::laplacian);
   if (method == flow::PressureSolver::fft)
     return std::make_unique<SolverOf<ExecutionSpace, linear::FourierSolver<ExecutionSpace>>>(problem);
 #if defined(DROGUE_HAVE_HYPRE)
@@ -88,16 +99,16 @@ std::unique_ptr<Solver> make_solver(const linear::PoissonProblem& problem, flow:
       problem, linear::InvertedOperators::laplacian);
 }
 
-bool is_available(device::Backend backend, const linear::PoissonProblem& problem,
-                  flow::PressureSolver method) {
-  return device::dispatch(backend,
-                          [&]<class ExecutionSpace>() { return supports<ExecutionSpace>(problem, method); });
+bool is_available(device::Backend backend, const linear::PoissonProblem& problem, flow::PressureSolver method,
+                  bool in_slabs) {
+  return device::dispatch(
+      backend, [&]<class ExecutionSpace>() { return supports<ExecutionSpace>(problem, method, in_slabs); });
 }
 
 std::unique_ptr<Solver> create_solver(device::Backend backend, const linear::PoissonProblem& problem,
-                                      flow::PressureSolver method, double tolerance) {
+                                      flow::PressureSolver method, double tolerance, bool in_slabs) {
   return device::dispatch(backend, [&]<class ExecutionSpace>() {
-    return make_solver<ExecutionSpace>(problem, method, tolerance);
+    return make_solver<ExecutionSpace>(problem, method, tolerance, in_slabs);
   });
 }
 

@@ -23,14 +23,17 @@ class Solver {
   [[nodiscard]] virtual int iterations() const = 0;
 };
 
-/// True if this build can solve the problem by this method on this backend. Does not throw.
+/// True if this build can solve the problem by this method on this backend; `in_slabs`: as the ranks of a
+/// device do. Does not throw.
 [[nodiscard]] bool is_available(device::Backend backend, const linear::PoissonProblem& problem,
-                                flow::PressureSolver method);
+                                flow::PressureSolver method, bool in_slabs = false);
 
-/// Solver by a method other than `automatic`, to a relative residual of `tolerance` if it iterates. Throws
-/// std::runtime_error if memory runs out.
+/// Solver by a method other than `automatic`, to a relative residual of `tolerance` if it iterates.
+/// `in_slabs`: a direct one with the kernels of several ranks, but one slab. Throws std::runtime_error if
+/// memory runs out.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend,
                                                     const linear::PoissonProblem& problem,
-                                                    flow::PressureSolver method, double tolerance);
+                                                    flow::PressureSolver method, double tolerance,
+                                                    bool in_slabs = false);
 
 }  // namespace drogue::perf::pressure

@@ -59,7 +59,8 @@ std::vector<PressureSolve> pressure_solves(device::Backend backend, const std::a
     for (const PressureMethod& method : pressure_methods) {
       const PressureSolve solve{backend, cells, of_box, method};
       const bool slow = method.iterates() && solve.cell_count() > most_iterated_cells;
-      if (!slow && pressure::is_available(backend, streams::pressure_problem(cells, of_box), method.solver))
+      if (!slow && pressure::is_available(backend, streams::pressure_problem(cells, of_box), method.solver,
+                                          method.in_slabs))
         solves.push_back(solve);
     }
   return solves;
@@ -89,7 +90,7 @@ Case pressure_case(const PressureSolve& solve) {
               [=] {
                 const std::shared_ptr<pressure::Solver> solver = pressure::create_solver(
                     solve.backend, streams::pressure_problem(solve.cells, solve.sides), method.solver,
-                    std::max(method.tolerance, 1e-10));
+                    std::max(method.tolerance, 1e-10), method.in_slabs);
                 return Sample{.reset = [] {},
                               .work =
                                   [=] {

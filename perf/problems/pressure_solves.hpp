@@ -12,9 +12,10 @@ namespace drogue::perf {
 
 /// Solver of the pressure equation of a flow.
 struct PressureMethod {
-  const char* name;  ///< as in scenes
+  const char* name;  ///< as in scenes; with "slabs-" those of several ranks of a device, on one
   flow::PressureSolver solver;
-  double tolerance;  ///< relative residual of an iterative solver; 0: direct
+  double tolerance;       ///< relative residual of an iterative solver; 0: direct
+  bool in_slabs = false;  ///< as `pressure::create_solver`
 
   /// True for a solver whose time grows with the number of its iterations. Does not throw.
   [[nodiscard]] bool iterates() const { return tolerance > 0.0; }
@@ -22,6 +23,8 @@ struct PressureMethod {
 inline constexpr PressureMethod pressure_methods[] = {
     {"fft", flow::PressureSolver::fft, 0.0},
     {"diagonalization", flow::PressureSolver::diagonalization, 0.0},
+    {"slabs-fft", flow::PressureSolver::fft, 0.0, true},
+    {"slabs-diagonalization", flow::PressureSolver::diagonalization, 0.0, true},
     {"hypre-pfmg", flow::PressureSolver::hypre_pfmg, 1e-10},
     {"hypre-pfmg", flow::PressureSolver::hypre_pfmg, 1e-6}};
 

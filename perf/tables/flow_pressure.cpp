@@ -46,7 +46,7 @@ Table print_flow_pressure(device::Backend backend, bool quick, const nlohmann::j
   const std::string name(device::name(backend));
   std::printf(
       "Pressure solvers on %s\n"
-      "grid         sides     solver           tolerance          ms     95 %% interval    iterations  "
+      "grid         sides     solver                 tolerance          ms     95 %% interval    iterations  "
       "residual\n",
       name.c_str());
   Table table;
@@ -63,7 +63,7 @@ Table print_flow_pressure(device::Backend backend, bool quick, const nlohmann::j
       const std::string iterated = iterations > 0 ? std::to_string(iterations) : "direct";
       const std::string tolerance =
           solve.method.iterates() ? printed("%g", solve.method.tolerance) : "round-off";
-      std::printf("%-11s  %-8s  %-15s  %-9s  %10s  %-20s  %10s  %.2g  %s\n", streams::text(grid).c_str(),
+      std::printf("%-11s  %-8s  %-21s  %-9s  %10s  %-20s  %10s  %.2g  %s\n", streams::text(grid).c_str(),
                   streams::name(solve.sides), solve.method.name, tolerance.c_str(),
                   median_text(records[i], 1e3, 4).c_str(), interval_text(records[i], 1e3, 4).c_str(),
                   iterated.c_str(), records[i].error, verdict(records[i]));

@@ -24,11 +24,11 @@ LONG_GUST = GUST.replace("end_time = 0.5", "end_time = 1e4").split("[output]")[0
 
 @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
 class RanksTest(parachute_program.FlowTest):
-    def begin(self, ranks, *words, sets=()):
+    def begin(self, ranks, *words, sets=(), environment=()):
         options = [word for value in sets for word in ("--set", value)]
         line = [LAUNCHER, "--oversubscribe", "-n", ranks, PROGRAM, *words, *options]
         process = subprocess.Popen(list(map(str, line)), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   stdin=subprocess.DEVNULL, text=True, env=RANK_ENVIRONMENT)
+                                   stdin=subprocess.DEVNULL, text=True, env=RANK_ENVIRONMENT | dict(environment))
         self.addCleanup(process.kill)
         return process
 
@@ -85,8 +85,16 @@ class Results(RanksTest):
             reported = self.result(str(ranks))
             self.assertEqual((ranks, "ok", 0.5), (reported["ranks"], reported["status"], reported["time"]))
         self.assertEqual("plain", self.result("4")["driver"])
+        self.assertEqual([None, {"transport": "mpi"}], [self.result(ranks).get("messages") for ranks in ("1", "4")])
         for ranks in (2, 4):
             self.assert_same_runs("1", str(ranks))
+
+    def test_messages_through_a_staging_buffer_are_the_same(self):
+        scene = self.write(GUST)
+        for transport in ("mpi", "host-staging"):
+            self.run_on(0, 2, scene, *QUIET, "--out", transport, environment={"DROGUE_TRANSPORT": transport})
+            self.assertEqual({"transport": transport}, self.result(transport)["messages"])
+        self.assert_same_files("mpi", "host-staging")
 
     def test_stretched_grids_are_divided_too(self):
         for ranks in (1, 4):
@@ -253,6 +261,10 @@ class Failures(RanksTest):
     def test_refuses_more_ranks_than_the_grid_has_room_for(self):
         sentence = self.run_on(2, 4, self.write(VORTICES), *QUIET, "--out", "out", sets=["grid.cells=[16, 8, 1]"])
         self.assertIn("4 ranks cannot share 8 x 1 cells", sentence)
+
+    def test_refuses_a_transport_that_the_ranks_lack(self):
+        sentence = self.run_on(2, 2, self.write(VORTICES), *QUIET, "--out", "out", environment={"DROGUE_TRANSPORT": "nccl"})
+        self.assertIn("DROGUE_TRANSPORT: these ranks can exchange messages by host-staging, mpi", sentence)
 
     def test_reports_a_canopy_that_leaves_the_domain_once(self):
         free = CANOPY.replace("fixed = true", "fixed = false").replace("-2.6, 3.4", "-2.6, 1.4").replace("20, 30", "20, 20")

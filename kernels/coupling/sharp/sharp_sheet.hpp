@@ -263,9 +263,10 @@ class SharpSheet final : public Sheet<ExecutionSpace> {
 
   /// As the constructor of `Sheet`, on one rank.
   SharpSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
-             const SheetParameters& parameters, double density, const linear::RankGroup& group = {},
+             const SheetParameters& parameters, double density,
+             const linear::DeviceCommunicator<ExecutionSpace>& communicator = {},
              const std::optional<FaceWindow>& own_faces = {})
-      : Base(space, grid, cloth, parameters, density, group, own_faces, cloth.mesh.triangles),
+      : Base(space, grid, cloth, parameters, density, communicator, own_faces, cloth.mesh.triangles),
         _corner_force("drogue::coupling::corner_force", static_cast<std::size_t>(_surface.triangles())),
         _count(faces_of<int>("drogue::coupling::crossings")),
         _before(faces_of<double>("drogue::coupling::velocity_before")),

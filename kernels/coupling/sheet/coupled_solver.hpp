@@ -47,8 +47,8 @@ struct CompletedFlowStep {
 /// sheets may meet images compares them, with the state after a call of `advance`.
 ///
 /// On a group of several ranks each holds a box of the cells and the whole cloth, with the same bits.
-/// Functions are then collective, except those that only return values of the cloth, and every step waits for
-/// the host.
+/// Functions are then collective, except those that only return values of the cloth. Every step waits for the
+/// host unless `flow::Step::is_asynchronous`.
 template <class ExecutionSpace>
 class CoupledSolver : public Solver {
  public:
@@ -66,9 +66,10 @@ class CoupledSolver : public Solver {
         _group(group),
         _flow(instance, _parameters.flow, group),
         _box(flow::force_box(_parameters.flow)),
-        _sheet(make_sheet<ExecutionSpace>(
-            _parameters.sheet.method, _space, flow::coupling_grid(_flow.grid(), _box), _parameters.fabric,
-            _parameters.sheet, _parameters.flow.density, group, flow::face_window(_flow.grid(), _box))),
+        _sheet(make_sheet<ExecutionSpace>(_parameters.sheet.method, _space,
+                                          flow::coupling_grid(_flow.grid(), _box), _parameters.fabric,
+                                          _parameters.sheet, _parameters.flow.density, _flow.communicator(),
+                                          flow::face_window(_flow.grid(), _box))),
         _fabric(instance, _parameters.fabric, _sheet->relaxation()),
         _step(_space, _parameters, _flow, *_sheet, _fabric),
         _plan(_parameters),
@@ -107,8 +108,8 @@ class CoupledSolver : public Solver {
       throw std::invalid_argument("coupled solver: there must be one vector per vertex");
     _reader.read(_space, air_velocity(), at_vertices);
   }
-  /// The same on the device, (vertices, 3), m/s, valid until the next step. On one rank asynchronous. Throws
-  /// only after a failed kernel.
+  /// The same on the device, (vertices, 3), m/s, valid until the next step. Collective, and asynchronous as
+  /// steps are. Throws only after a failed kernel.
   [[nodiscard]] const Vectors& air_velocity() const { return _step.air_velocity(); }
   void watch_pulls(std::span<const fabric::Pull> pulls) final {
     _pulls = fabric::PeakPulls<ExecutionSpace>(_space, _parameters.fabric.mesh, _cuts.stiffness(), pulls);

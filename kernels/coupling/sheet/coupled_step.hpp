@@ -77,8 +77,8 @@ std::unique_ptr<Sheet<ExecutionSpace>> make_sheet(CouplingMethod method, const A
   return std::make_unique<ImmersedSheet<ExecutionSpace>>(arguments...);
 }
 
-/// A step of flow and cloth, and the state that it saves at its beginning. Steps neither wait for the host,
-/// on one rank, nor copy to it nor allocate.
+/// A step of flow and cloth, and the state that it saves at its beginning. Steps neither wait for the host
+/// nor copy to it nor allocate, on several ranks if `flow::Step::is_asynchronous`.
 template <class ExecutionSpace>
 class CoupledStep {
  public:

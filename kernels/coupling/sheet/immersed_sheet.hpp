@@ -225,9 +225,10 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
 
   /// As the constructor of `Sheet`.
   ImmersedSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
-                const SheetParameters& parameters, double density, const linear::RankGroup& group = {},
+                const SheetParameters& parameters, double density,
+                const linear::DeviceCommunicator<ExecutionSpace>& communicator = {},
                 const std::optional<FaceWindow>& own_faces = {})
-      : Base(space, grid, cloth, parameters, density, group, own_faces, {}),
+      : Base(space, grid, cloth, parameters, density, communicator, own_faces, {}),
         _inset(space, cloth.mesh, grid, parameters.edge_inset),
         _present("drogue::coupling::present_positions", _inset.size() > 0 ? Base::rows() : 0),
         _interpolated_force(Base::vectors("interpolated_force")),

@@ -116,13 +116,14 @@ class Sheet {
   /// all. `corners`: triangles as of `ClosingSheets`. Blocks. Throws std::invalid_argument for parameters out
   /// of range.
   Sheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
-        const SheetParameters& parameters, double density, const linear::RankGroup& group,
+        const SheetParameters& parameters, double density,
+        const linear::DeviceCommunicator<ExecutionSpace>& communicator,
         const std::optional<FaceWindow>& own_faces, std::span<const std::array<int, 3>> corners)
       : _parameters((check_parameters(parameters, density), parameters)),
         _density(density),
         _surface(space, cloth.mesh),
         _transfer(space, grid, parameters.delta, _surface.vertices(), own_faces),
-        _rank_sum(group, rows(), 2),
+        _rank_sum(communicator, rows(), 2),
         _air{.area = Scalars("drogue::coupling::area", rows()),
              .normal = vectors("normal"),
              .inverse_air_mass = vectors("inverse_air_mass"),

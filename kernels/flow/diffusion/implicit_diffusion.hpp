@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -10,9 +11,11 @@
 #include "kernels/flow/launch.hpp"
 #include "kernels/flow/prefers_transforms.hpp"
 #include "kernels/flow/views.hpp"
+#include "kernels/linear/device_communicator.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
 #include "kernels/linear/poisson/pencil_solver.hpp"
+#include "kernels/linear/poisson/slab_solver.hpp"
 
 namespace drogue::flow {
 
@@ -237,8 +240,10 @@ class ImplicitDiffusion {
 
   /// Allocates; blocks. Collective on `group`, which `ranks` divides. Throws std::runtime_error if memory
   /// runs out.
-  ImplicitDiffusion(const ExecutionSpace& space, const Parameters& parameters, const linear::RankGroup& group,
+  ImplicitDiffusion(const ExecutionSpace& space, const Parameters& parameters,
+                    const linear::DeviceCommunicator<ExecutionSpace>& communicator,
                     const linear::PencilRanks& ranks) {
+    const linear::RankGroup& group = communicator.group();
     for (std::size_t c = 0; c < 3; ++c) {
       const linear::PoissonProblem problem = diffusion_problem(parameters, c);
       _unknowns[c] = linear::unknowns_of(ranks, problem);
@@ -247,13 +252,18 @@ class ImplicitDiffusion {
       _solver_of[c] = same;
       if (same < _problems.size()) continue;
       _problems.push_back(problem);
-      const bool transforms = linear::FourierSolver<ExecutionSpace>::supports(problem) &&
-                              prefers_transforms(parameters.pressure_solver);
-      if (group.size() > 1)
-        _solvers.emplace_back(
-            std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space, problem, group, ranks,
-            transforms && device::is_host<ExecutionSpace> ? linear::AxisMethod::fourier
-                                                          : linear::AxisMethod::diagonalization);
+      const bool slabs = ranks.are_slabs();
+      const bool can =
+          slabs ? linear::SlabSolver<ExecutionSpace>::supports(problem, linear::AxisMethod::fourier)
+                : linear::FourierSolver<ExecutionSpace>::supports(problem);
+      const bool transforms = can && prefers_transforms(parameters.pressure_solver);
+      const auto method = transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization;
+      if (slabs)
+        _solvers.emplace_back(std::in_place_type<linear::SlabSolver<ExecutionSpace>>, space, problem,
+                              communicator, ranks, method);
+      else if (group.size() > 1)
+        _solvers.emplace_back(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space, problem, group,
+                              ranks, method);
       else if (transforms)
         _solvers.emplace_back(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem);
       else
@@ -262,9 +272,16 @@ class ImplicitDiffusion {
     }
   }
 
+  /// True if solves neither block nor allocate. Does not throw.
+  [[nodiscard]] bool is_asynchronous() const {
+    return std::ranges::all_of(_solvers, [](const Solver& each) {
+      return std::visit([](const auto& solver) { return linear::is_asynchronous(solver); }, each);
+    });
+  }
+
   /// Enqueues the implicit part of a step: replaces the predicted velocity, which holds the explicit part.
-  /// The work arrays hold at least one number per cell. Asynchronous on one rank, where it neither fences nor
-  /// allocates; collective and blocking on several.
+  /// The work arrays hold at least one number per cell. Collective, and asynchronous if
+  /// `is_asynchronous`.
   void enqueue(const ExecutionSpace& space, const DiffusionSetup<ExecutionSpace>& setup, const Values& source,
                const Values& change) {
     enqueue_component<0>(space, setup, source, change);
@@ -301,7 +318,7 @@ class ImplicitDiffusion {
 
   using Solver =
       std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
-                   linear::PencilSolver<ExecutionSpace>>;
+                   linear::PencilSolver<ExecutionSpace>, linear::SlabSolver<ExecutionSpace>>;
   std::vector<linear::PoissonProblem> _problems;  ///< without repetitions
   std::vector<Solver> _solvers;                   ///< of each problem
   std::array<std::size_t, 3> _solver_of{};        ///< by component

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -24,32 +25,43 @@ inline double numbers_sent(const std::array<int, 3>& cells, int parts_y, int par
   return along(parts_y, own_z) + along(parts_z, own_y);
 }
 
-/// Division of a grid of cells among ranks along y and z, with the fewest numbers sent. Axes with one cell
-/// and x are not divided. Throws std::invalid_argument if a rank would have too few cells.
-inline linear::PencilRanks decompose(const std::array<int, 3>& cells, int ranks, int rank) {
-  linear::PencilRanks best;
+/// Division of a grid of cells among ranks along y and z, or along z alone (`slabs`), with the fewest numbers
+/// sent; none if a rank would have too few cells. Axes with one cell and x are not divided. Does not throw.
+inline std::optional<linear::PencilRanks> find_division(const std::array<int, 3>& cells, int ranks, int rank,
+                                                        bool slabs) {
+  std::optional<linear::PencilRanks> best;
   double least = 0.0;
-  for (int parts_y = 1; parts_y <= ranks; ++parts_y) {
+  for (int parts_y = 1; parts_y <= (slabs ? 1 : ranks); ++parts_y) {
     const int parts_z = ranks / parts_y;
     const auto fits = [](int n, int parts) { return parts == 1 || n / parts >= least_cells_of_rank; };
     if (parts_y * parts_z != ranks || !fits(cells[1], parts_y) || !fits(cells[2], parts_z)) continue;
     const double sent = numbers_sent(cells, parts_y, parts_z);
-    if (best.parts[1] * best.parts[2] == ranks && sent >= least) continue;
+    if (best && sent >= least) continue;
     least = sent;
     best = {{1, parts_y, parts_z}, {0, rank % parts_y, rank / parts_y}};
   }
-  if (best.parts[1] * best.parts[2] != ranks)
-    throw std::invalid_argument("flow solver: " + std::to_string(ranks) + " ranks cannot share " +
-                                std::to_string(cells[1]) + " x " + std::to_string(cells[2]) +
-                                " cells along y and z: each needs at least " +
-                                std::to_string(least_cells_of_rank) + " along a divided axis");
   return best;
 }
 
-/// Place of a rank in the division of a flow. Throws std::invalid_argument, with one sentence, if the flow
-/// cannot be divided among so many ranks.
-inline linear::PencilRanks ranks_of(const Parameters& p, int ranks, int rank) {
-  return decompose(p.cells, ranks, rank);
+/// The same. Throws std::invalid_argument, with one sentence that names the largest number of ranks that
+/// works, if a rank would have too few cells.
+inline linear::PencilRanks decompose(const std::array<int, 3>& cells, int ranks, int rank,
+                                     bool slabs = false) {
+  if (const auto division = find_division(cells, ranks, rank, slabs)) return *division;
+  int most = ranks;
+  while (!find_division(cells, most, 0, slabs)) --most;
+  const std::string y = std::to_string(cells[1]), z = std::to_string(cells[2]);
+  throw std::invalid_argument("flow solver: " + std::to_string(ranks) + " ranks cannot share " +
+                              (slabs ? z + " cells along z" : y + " x " + z + " cells along y and z") +
+                              ": each needs at least " + std::to_string(least_cells_of_rank) +
+                              " along a divided axis; use " + std::to_string(most) +
+                              (most == 1 ? " rank" : " ranks"));
+}
+
+/// Place of a rank in the division of a flow, which `on_device` is along z alone. Throws
+/// std::invalid_argument, with one sentence, if the flow cannot be divided among so many ranks.
+inline linear::PencilRanks ranks_of(const Parameters& p, int ranks, int rank, bool on_device) {
+  return decompose(p.cells, ranks, rank, p.slabs || on_device);
 }
 
 /// True if the side of this rank's cells borders another rank. Does not throw.

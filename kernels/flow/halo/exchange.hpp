@@ -1,15 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <string>
 #include <vector>
 
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/launch.hpp"
-#include "kernels/device/memory.hpp"
-#include "kernels/linear/parallel/rank_group.hpp"
+#include "kernels/linear/device_communicator.hpp"
 
 namespace drogue::flow {
 
@@ -43,80 +40,88 @@ struct BoxCopyFunctor {
   }
 };
 
-/// Exchange of parts of an array with other ranks; without messages, its functions do nothing. Buffers are in
-/// host memory that the kernels access directly; MPI without support of devices suffices.
+/// Exchange of parts of an array with other ranks, through buffers in the memory of the array; without
+/// messages, its functions do nothing. They are asynchronous as `linear::DeviceCommunicator` is.
 template <class ExecutionSpace>
 class Exchange {
  public:
-  using Buffer = Kokkos::View<double*, device::HostPinnedSpace<ExecutionSpace>>;
+  using Communicator = linear::DeviceCommunicator<ExecutionSpace>;
 
   /// Adds a message to `peer`. Messages between two ranks have different tags. Throws std::runtime_error if
   /// memory runs out.
-  void add_send(int peer, int tag, const ArrayBox& box) { _sent.push_back(port(peer, tag, box)); }
+  void add_send(int peer, int tag, const ArrayBox& box) {
+    const Buffer buffer = make_buffer(box.size());
+    _sent.push_back({box, buffer});
+    _messages.push_back({.peer = peer,
+                         .send_tag = tag,
+                         .receive_tag = 0,
+                         .send = {buffer.data(), buffer.size()},
+                         .receive = {}});
+  }
   /// Adds a message from `peer`, as `add_send`; `box` is its place in the array.
-  void add_receive(int peer, int tag, const ArrayBox& box) { _received.push_back(port(peer, tag, box)); }
-  /// Adds a message of `size` numbers from `peer` that stays in a buffer, in host memory that kernels access.
-  /// Returns the buffer, which lives as long as this object.
+  void add_receive(int peer, int tag, const ArrayBox& box) {
+    static_cast<void>(add_receive(peer, tag, box.size()));
+    _received.back().box = box;
+  }
+  /// Adds a message of `size` numbers from `peer` that stays in a buffer. Returns the buffer, which lives as
+  /// long as this object.
   const double* add_receive(int peer, int tag, int size) {
-    const ArrayBox none{};
-    _received.push_back({peer, tag, none, buffer(size)});
-    return _received.back().buffer.data();
+    const Buffer buffer = make_buffer(size);
+    _received.push_back({ArrayBox{}, buffer});
+    _messages.push_back({.peer = peer,
+                         .send_tag = 0,
+                         .receive_tag = tag,
+                         .send = {},
+                         .receive = {buffer.data(), buffer.size()}});
+    return buffer.data();
   }
 
-  /// Begins to send and receive all messages, from `array`; false without messages. Blocks until the kernels
-  /// before are complete.
-  [[nodiscard]] linear::Transfers begin(const ExecutionSpace& space, const linear::RankGroup& group,
-                                        double* array) const {
-    if (_sent.empty() && _received.empty()) return {};
-    std::vector<linear::Message> messages;
-    for (const Port& port : _sent) {
-      copy(space, port, array, true);
-      messages.push_back({.peer = port.peer,
-                          .send_tag = port.tag,
-                          .receive_tag = 0,
-                          .send = {port.buffer.data(), port.buffer.size()},
-                          .receive = {}});
-    }
-    // Also the kernels before, which may still read the buffers of the last exchange.
-    space.fence("drogue::flow::exchange: packed");
-    for (const Port& port : _received)
-      messages.push_back({.peer = port.peer,
-                          .send_tag = 0,
-                          .receive_tag = port.tag,
-                          .send = {},
-                          .receive = {port.buffer.data(), port.buffer.size()}});
-    return group.begin(messages);
+  /// False without messages. Does not throw.
+  [[nodiscard]] bool has_messages() const { return !_messages.empty(); }
+
+  /// Begins to send and receive all messages, from `array`.
+  void begin(const ExecutionSpace& space, const Communicator& communicator, double* array) const {
+    pack(space, array);
+    if (has_messages()) communicator.begin(space, _messages);
   }
 
-  /// Blocks until the messages are complete, but not for the kernels that fill `array` from them.
-  void finish(const ExecutionSpace& space, linear::Transfers& transfers, double* array) const {
-    if (!transfers) return;
-    transfers.wait();
-    for (const Port& port : _received)
-      if (port.box.size() > 0) copy(space, port, array, false);
+  /// Completes what `begin` began, and fills `array` from the messages.
+  void finish(const ExecutionSpace& space, const Communicator& communicator, double* array) const {
+    if (has_messages()) communicator.finish(space);
+    unpack(space, array);
   }
 
   /// Sends and receives all messages.
-  void run(const ExecutionSpace& space, const linear::RankGroup& group, double* array) const {
-    linear::Transfers transfers = begin(space, group, array);
-    finish(space, transfers, array);
+  void run(const ExecutionSpace& space, const Communicator& communicator, double* array) const {
+    pack(space, array);
+    if (has_messages()) communicator.exchange(space, _messages);
+    unpack(space, array);
   }
 
  private:
+  using Buffer = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
   struct Port {
-    int peer, tag;
     ArrayBox box;
     Buffer buffer;
   };
 
-  static Port port(int peer, int tag, const ArrayBox& box) { return {peer, tag, box, buffer(box.size())}; }
-  static Buffer buffer(int size) { return Buffer("drogue::flow::message", static_cast<std::size_t>(size)); }
+  static Buffer make_buffer(int size) {
+    return Buffer("drogue::flow::message", static_cast<std::size_t>(size));
+  }
+  void pack(const ExecutionSpace& space, double* array) const {
+    for (const Port& port : _sent) copy(space, port, array, true);
+  }
+  void unpack(const ExecutionSpace& space, double* array) const {
+    for (const Port& port : _received)
+      if (port.box.size() > 0) copy(space, port, array, false);
+  }
   static void copy(const ExecutionSpace& space, const Port& port, double* array, bool to_buffer) {
     device::launch_each(space, to_buffer ? "drogue::flow::pack" : "drogue::flow::unpack", port.box.size(),
                         BoxCopyFunctor{port.box, to_buffer, array, port.buffer.data()});
   }
 
   std::vector<Port> _sent, _received;
+  std::vector<linear::Message> _messages;
 };
 
 }  // namespace drogue::flow

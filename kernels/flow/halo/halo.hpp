@@ -3,51 +3,69 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
-#include <span>
 #include <vector>
 
-#include "kernels/device/copy.hpp"
+#include "kernels/device/launch.hpp"
+#include "kernels/device/memory.hpp"
+#include "kernels/device/relaxed_access.hpp"
+#include "kernels/flow/halo/agreement.hpp"
 #include "kernels/flow/halo/decomposition.hpp"
 #include "kernels/flow/halo/exchange.hpp"
-#include "kernels/flow/observables/extremes.hpp"
+#include "kernels/flow/observables/totals.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {
 
 /// Everything that a solver on one of several ranks needs from the others. Functions are collective, except
-/// those that only return values, and block until their messages are complete, except `begin_velocity`. That
-/// of a process alone does nothing, at no cost: it neither allocates nor launches nor fences.
+/// those that only return values, and asynchronous as `linear::DeviceCommunicator` is, unless stated
+/// otherwise. That of a process alone does nothing, at no cost: it neither allocates nor launches nor fences.
 template <class ExecutionSpace>
 class Halo {
  public:
-  /// `grid`: cells of this rank. Throws std::runtime_error if memory runs out.
-  Halo(const linear::RankGroup& group, const linear::PencilRanks& ranks, const Parameters& parameters,
-       const MacGrid& grid)
-      : _group(group.size() > 1 ? group : linear::RankGroup()), _ranks(ranks), _grid(grid) {
+  using Communicator = linear::DeviceCommunicator<ExecutionSpace>;
+
+  /// `grid`: cells of this rank. Blocks. Throws std::runtime_error if memory runs out, and as the constructor
+  /// of the communicator does.
+  Halo(const ExecutionSpace& space, const linear::RankGroup& group, const linear::PencilRanks& ranks,
+       const Parameters& parameters, const MacGrid& grid)
+      : _communicator(space, group), _ranks(ranks), _grid(grid) {
     for (std::size_t side = 0; side < 6; ++side) _borders[side] = borders_rank(parameters, ranks, side);
     for (const int y : {-1, 0, 1})
       for (const int z : {-1, 0, 1}) add_direction({0, y, z});
     for (const std::size_t axis : {1U, 2U}) add_axis(axis);
     _parts = divided();
+    if (is_alone()) return;
+    _agreement = decltype(_agreement)("drogue::flow::agreement");
+    _of_ranks = List<ExecutionSpace>("drogue::flow::of_ranks", 2 * static_cast<std::size_t>(group.size()));
+    _interrupt = decltype(_interrupt)("drogue::flow::interrupt");
   }
 
-  [[nodiscard]] const linear::RankGroup& group() const { return _group; }
+  [[nodiscard]] const Communicator& communicator() const { return _communicator; }
+  [[nodiscard]] const linear::RankGroup& group() const { return _communicator.group(); }
   /// True without other ranks.
-  [[nodiscard]] bool is_alone() const { return _group.size() == 1; }
+  [[nodiscard]] bool is_alone() const { return group().size() == 1; }
 
-  /// Begins the exchange of the ghost cells of a velocity field towards other ranks, and returns whether
-  /// there are any. Blocks until the kernels before are complete.
-  bool begin_velocity(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
-    _transfers = _velocity.begin(space, _group, velocity.data());
-    return static_cast<bool>(_transfers);
+  /// Declares that the ghost cells towards other ranks are not those of the velocity field in use, and
+  /// returns whether there are any. Does not throw.
+  bool outdate_velocity() {
+    _is_outdated = _velocity.has_messages();
+    return _is_outdated;
   }
 
-  /// Fills the ghost cells of the velocity field of the last `begin_velocity`, if that exchange is under way,
-  /// and returns whether it was. Ghost cells at the sides of the domain must be filled afterwards.
+  /// Begins the exchange of the ghost cells of a velocity field towards other ranks if they are outdated.
+  void begin_velocity(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
+    if (!_is_outdated || _is_under_way) return;
+    _velocity.begin(space, _communicator, velocity.data());
+    _is_under_way = true;
+  }
+
+  /// Fills the ghost cells of that velocity field towards other ranks if they are outdated, and returns
+  /// whether they were. Ghost cells at the sides of the domain must be filled afterwards.
   bool finish_velocity(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
-    if (!_transfers) return false;
-    _velocity.finish(space, _transfers, velocity.data());
+    if (!_is_outdated) return false;
+    begin_velocity(space, velocity);
+    _velocity.finish(space, _communicator, velocity.data());
+    _is_outdated = _is_under_way = false;
     return true;
   }
 
@@ -57,73 +75,61 @@ class Halo {
 
   /// Fills the normal components on the high faces that belong to other ranks.
   void exchange_high_faces(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) const {
-    _faces.run(space, _group, velocity.data());
+    _faces.run(space, _communicator, velocity.data());
   }
 
   /// Fills `pressure_below`.
   void exchange_pressure(const ExecutionSpace& space, const List<ExecutionSpace>& pressure) const {
-    _pressure.run(space, _group, pressure.data());
+    _pressure.run(space, _communicator, pressure.data());
   }
 
   /// Pressure in the layer of cells below the low side along each axis, in the order of the cells of the
   /// side; null where there is no other rank.
   [[nodiscard]] const Kokkos::Array<const double*, 3>& pressure_below() const { return _below; }
 
+  /// Asks for the end of the advance after the step under way, on all ranks, or withdraws that. Not
+  /// collective. Does not throw.
+  void ask_for_interrupt(bool wish) const { device::relaxed_store(_interrupt.data(), wish ? 1 : 0); }
+
   /// Gives all ranks the least failed cell, the largest `StepMaxima`, and the failures of a pressure solver
-  /// and a side. `checks_inflow`: whether to fail for the net inflow of all ranks.
-  void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view, bool checks_inflow) const {
+  /// and a side. `checks_inflow`: whether to fail for the net inflow of all ranks. `ends_step`: whether to
+  /// find out if a rank has asked for an interrupt.
+  void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view, bool checks_inflow,
+             bool ends_step = false) const {
     if (is_alone()) return;
-    Control control;
-    device::copy_out(space, &control, view, 1);
-    space.fence("drogue::flow::halo: read control");
-    // The maximum of a complement is that of the least value.
-    constexpr std::size_t maxima = sizeof(StepMaxima) / sizeof(std::uint64_t);
-    std::array<std::uint64_t, maxima + 3> values = {};
-    StepMaxima& largest = control;
-    std::memcpy(values.data(), &largest, sizeof(StepMaxima));
-    values[maxima] = ~control.first_failure;
-    values[maxima + 1] = static_cast<std::uint64_t>(control.pressure_failed);
-    values[maxima + 2] = static_cast<std::uint64_t>(control.failed_side);
-    _group.maximize(values);
-    std::memcpy(&largest, values.data(), sizeof(StepMaxima));
-    control.first_failure = ~values[maxima];
-    control.pressure_failed = static_cast<int>(values[maxima + 1]);
-    control.failed_side = static_cast<int>(values[maxima + 2]);
-    if (checks_inflow && control.is_unbalanced == 0) {
-      std::array<double, 2> inflow = {control.net_inflow, control.inflow_magnitude};
-      _group.sum(inflow);
-      control.is_unbalanced = is_unbalanced(inflow[0], inflow[1]);
-      if (control.is_unbalanced != 0) control.net_inflow = inflow[0];
-    }
-    device::copy_in(space, view, &control, 1);
-    space.fence("drogue::flow::halo: write control");
+    constexpr std::size_t values = sizeof(Agreement) / sizeof(std::uint64_t);
+    static_assert(values * sizeof(std::uint64_t) == sizeof(Agreement));
+    device::launch_each(
+        space, "drogue::flow::contribute", 1,
+        ContributeFunctor<ExecutionSpace>{view, _agreement.data(), ends_step ? _interrupt.data() : nullptr});
+    _communicator.maximize(space, &_agreement.data()->next_rate_bits, values);
+    device::launch_each(space, "drogue::flow::adopt", 1,
+                        AdoptFunctor<ExecutionSpace>{view, _agreement.data()});
+    if (!checks_inflow) return;
+    // The net inflow and its magnitude.
+    _communicator.gather(space, &view.data()->net_inflow, _of_ranks.data(), 2);
+    device::launch_each(space, "drogue::flow::check_inflow_of_ranks", 1,
+                        CheckInflowOfRanksFunctor<ExecutionSpace>{view, _of_ranks.data(), group().size()});
   }
 
-  /// Gives all ranks the energies of all, in the order of the ranks. Blocks.
+  /// Gives all ranks the energies of all, in the order of the ranks.
   void combine(const ExecutionSpace& space, const EnergyView<ExecutionSpace>& whole) const {
     if (is_alone()) return;
-    std::array<double, 2> mine{};
-    device::copy_out(space, mine.data(), whole, 2);
-    space.fence("drogue::flow::halo: read energies");
-    const std::vector<double> all = _group.gather(mine);
-    mine = {};
-    for (std::size_t at = 0; at < all.size(); at += 2) {
-      mine[0] += all[at];
-      mine[1] = larger_or_nan(mine[1], all[at + 1]);
-    }
-    device::copy_in(space, whole, mine.data(), 2);
-    space.fence("drogue::flow::halo: write energies");
+    _communicator.gather(space, whole.data(), _of_ranks.data(), 2);
+    device::launch_each(
+        space, "drogue::flow::combine_energies_of_ranks", 1,
+        CombineEnergiesOfRanksFunctor<ExecutionSpace>{whole, _of_ranks.data(), group().size()});
   }
 
   /// Combines the contributions of all ranks to the totals, in the order of the ranks, and adds those to the
-  /// flow through each side.
+  /// flow through each side. Blocks.
   void combine(PartTotals& part) const {
     if (is_alone()) return;
     constexpr std::size_t count = total_count;
     std::array<double, count + 6> mine;
     std::copy_n(part.sum, count, mine.begin());
     std::copy_n(part.outflow, 6, mine.begin() + count);
-    const std::vector<double> all = _group.gather(mine);
+    const std::vector<double> all = group().gather(mine);
     part = {};
     for (std::size_t at = 0; at < all.size(); at += mine.size()) {
       combine_totals(part.sum, all.data() + at);
@@ -228,14 +234,17 @@ class Halo {
     }
   }
 
-  linear::RankGroup _group;
+  Communicator _communicator;
   linear::PencilRanks _ranks;
   MacGrid _grid;
   std::array<bool, 6> _borders{};  ///< sides towards other ranks
   std::vector<MacGrid> _parts;
   Exchange<ExecutionSpace> _velocity, _faces, _pressure;
-  linear::Transfers _transfers;  ///< of the velocity
+  bool _is_outdated = false, _is_under_way = false;  ///< exchange of the velocity
   Kokkos::Array<const double*, 3> _below{};
+  Kokkos::View<Agreement, typename ExecutionSpace::memory_space> _agreement;
+  List<ExecutionSpace> _of_ranks;  ///< two numbers of each
+  Kokkos::View<int, device::HostPinnedSpace<ExecutionSpace>> _interrupt;
 };
 
 }  // namespace drogue::flow

@@ -11,9 +11,11 @@
 #include "kernels/flow/prefers_transforms.hpp"
 #include "kernels/flow/state.hpp"
 #include "kernels/flow/views.hpp"
+#include "kernels/linear/device_communicator.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
 #include "kernels/linear/poisson/pencil_solver.hpp"
+#include "kernels/linear/poisson/slab_solver.hpp"
 #if defined(DROGUE_HAVE_HYPRE)
 #include "kernels/linear/poisson/hypre_pfmg.hpp"
 #endif
@@ -41,12 +43,14 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
 /// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization. Throws
 /// std::invalid_argument if `parameters` request transforms that the backend lacks for them.
 template <class ExecutionSpace>
-bool uses_transforms(const Parameters& parameters, int ranks) {
-  const bool can = linear::FourierSolver<ExecutionSpace>::supports(pressure_problem(parameters)) &&
-                   (device::is_host<ExecutionSpace> || ranks == 1);
+bool uses_transforms(const Parameters& parameters, const linear::PencilRanks& ranks) {
+  const linear::PoissonProblem problem = pressure_problem(parameters);
+  const bool can = ranks.are_slabs()
+                       ? linear::SlabSolver<ExecutionSpace>::supports(problem, linear::AxisMethod::fourier)
+                       : linear::FourierSolver<ExecutionSpace>::supports(problem);
   if (parameters.pressure_solver == PressureSolver::fft && !can)
     throw std::invalid_argument(
-        "flow solver: this backend has fast transforms for periodic axes on one rank only");
+        "flow solver: this backend has fast transforms along periodic axes with equal cells alone");
   return can && prefers_transforms(parameters.pressure_solver);
 }
 
@@ -59,9 +63,11 @@ class PressureEquation {
 
   /// `in_place`: the solution replaces the right-hand side. Throws std::invalid_argument as `uses_transforms`
   /// does, and std::runtime_error if memory runs out or a library fails.
-  PressureEquation(const ExecutionSpace& space, const Parameters& parameters, const linear::RankGroup& group,
+  PressureEquation(const ExecutionSpace& space, const Parameters& parameters,
+                   const linear::DeviceCommunicator<ExecutionSpace>& communicator,
                    const linear::PencilRanks& ranks, bool in_place) {
     const linear::PoissonProblem problem = pressure_problem(parameters);
+    const linear::RankGroup& group = communicator.group();
 #if defined(DROGUE_HAVE_HYPRE)
     if (parameters.pressure_solver == PressureSolver::hypre_pfmg) {
       _name = "hypre-pfmg";
@@ -70,11 +76,15 @@ class PressureEquation {
       return;
     }
 #endif
-    const bool transforms = uses_transforms<ExecutionSpace>(parameters, group.size());
+    const bool transforms = uses_transforms<ExecutionSpace>(parameters, ranks);
     _name = transforms ? "fft" : "diagonalization";
-    if (group.size() > 1)
+    const auto method = transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization;
+    if (ranks.are_slabs())
+      _solver.emplace(std::in_place_type<linear::SlabSolver<ExecutionSpace>>, space, problem, communicator,
+                      ranks, method, linear::InvertedOperators::laplacian, in_place);
+    else if (group.size() > 1)
       _solver.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space, problem, group, ranks,
-                      transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization);
+                      method);
     else if (transforms)
       _solver.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem, in_place);
     else
@@ -84,6 +94,11 @@ class PressureEquation {
 
   /// Name of the solver: "fft" or "diagonalization" or "hypre-pfmg". Does not throw.
   [[nodiscard]] const char* name() const { return _name; }
+
+  /// True if solves neither block nor allocate. Does not throw.
+  [[nodiscard]] bool is_asynchronous() const {
+    return std::visit([](const auto& solver) { return linear::is_asynchronous(solver); }, *_solver);
+  }
 
   /// Last solve of an iterative solver; none for a direct one. Does not throw.
   [[nodiscard]] std::optional<PressureSolve> last_solve() const {
@@ -123,11 +138,12 @@ class PressureEquation {
 #if defined(DROGUE_HAVE_HYPRE)
   using Solver =
       std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
-                   linear::PencilSolver<ExecutionSpace>, linear::HyprePfmgSolver<ExecutionSpace>>;
+                   linear::PencilSolver<ExecutionSpace>, linear::SlabSolver<ExecutionSpace>,
+                   linear::HyprePfmgSolver<ExecutionSpace>>;
 #else
   using Solver =
       std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
-                   linear::PencilSolver<ExecutionSpace>>;
+                   linear::PencilSolver<ExecutionSpace>, linear::SlabSolver<ExecutionSpace>>;
 #endif
 
   const char* _name = "";

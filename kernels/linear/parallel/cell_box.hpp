@@ -22,6 +22,9 @@ struct PencilRanks {
   std::array<int, 3> parts = {1, 1, 1};  ///< along each axis
   std::array<int, 3> place = {0, 0, 0};  ///< of this rank
 
+  /// True if several ranks divide z alone. Does not throw.
+  [[nodiscard]] constexpr bool are_slabs() const { return parts[1] == 1 && parts[2] > 1; }
+
   /// Rank at a place. Does not throw.
   [[nodiscard]] constexpr int rank_at(const std::array<int, 3>& at) const { return at[1] + parts[1] * at[2]; }
 };

@@ -1,6 +1,9 @@
 #include "kernels/linear/parallel/rank_group.hpp"
 
 #include <mpi.h>
+#if defined(OPEN_MPI)
+#include <mpi-ext.h>
+#endif
 
 #include <algorithm>
 #include <cstdlib>
@@ -35,6 +38,17 @@ std::vector<int> offsets_of(const std::vector<int>& counts) {
 int length(std::size_t size) { return static_cast<int>(size); }
 
 }  // namespace
+
+bool mpi_takes_device_memory() {
+#if defined(MPIX_CUDA_AWARE_SUPPORT)
+  return MPIX_Query_cuda_support() == 1;
+#elif defined(MPIX_GPU_SUPPORT_CUDA)
+  int supports = 0;
+  return MPIX_GPU_query_support(MPIX_GPU_SUPPORT_CUDA, &supports) == MPI_SUCCESS && supports != 0;
+#else
+  return false;
+#endif
+}
 
 struct RankGroup::Communicator {
   MPI_Comm handle = MPI_COMM_NULL;
@@ -118,12 +132,18 @@ void RankGroup::sum(std::span<double> values) const {
 
 std::vector<double> RankGroup::gather(std::span<const double> values) const {
   std::vector<double> all(values.size() * static_cast<std::size_t>(_size));
-  if (_size == 1)
-    std::copy(values.begin(), values.end(), all.begin());
-  else
-    MPI_Allgather(values.data(), length(values.size()), MPI_DOUBLE, all.data(), length(values.size()),
-                  MPI_DOUBLE, _communicator->handle);
+  gather(values.data(), all.data(), values.size());
   return all;
+}
+
+void RankGroup::gather(const double* values, double* all, std::size_t count) const {
+  const bool in_place = values == all + count * static_cast<std::size_t>(_rank);
+  if (_size == 1) {
+    if (!in_place) std::copy_n(values, count, all);
+    return;
+  }
+  MPI_Allgather(in_place ? MPI_IN_PLACE : values, length(count), MPI_DOUBLE, all, length(count), MPI_DOUBLE,
+                _communicator->handle);
 }
 
 Transfers RankGroup::begin(std::span<const Message> messages) const {

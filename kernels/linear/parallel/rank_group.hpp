@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -7,7 +8,11 @@
 
 namespace drogue::linear {
 
-/// Message to and from another rank: numbers of any unit in host memory. `send` or `receive` may be empty.
+/// True if MPI takes memory of CUDA devices, by its own account. Needs an initialised MPI. Does not throw.
+[[nodiscard]] bool mpi_takes_device_memory();
+
+/// Message to and from another rank: numbers of any unit, in host memory unless stated otherwise. `send` or
+/// `receive` may be empty.
 struct Message {
   int peer;
   int send_tag, receive_tag;
@@ -40,7 +45,8 @@ class Transfers {
 
 /// Group of MPI processes, or one process alone without MPI. Copies share the communicator.
 ///
-/// Member functions are collective and block, unless stated otherwise. If communication fails, MPI ends the
+/// Member functions are collective and block, unless stated otherwise. Numbers are in host memory, or in that
+/// of a device if `mpi_takes_device_memory`. If communication fails, MPI ends the
 /// program. Numbers may have any unit. One thread at a time may call them.
 class RankGroup {
  public:
@@ -73,6 +79,8 @@ class RankGroup {
   /// Values of all ranks, in their unit and in the order of the ranks. Each rank gives equally many. Does not
   /// throw but std::bad_alloc.
   [[nodiscard]] std::vector<double> gather(std::span<const double> values) const;
+  /// The same to `all`, of which `values`, `count` numbers, may be the part of this rank. Does not throw.
+  void gather(const double* values, double* all, std::size_t count) const;
 
   /// Begins to send and receive the messages, numbers of any unit that must stay in place until they are
   /// complete. Both ends of a message must agree on its length; the tags of messages from one rank to another

@@ -212,6 +212,27 @@ class FourierSolver {
 };
 
 #if defined(KOKKOS_ENABLE_CUDA)
+using CufftPlan = std::shared_ptr<cufftHandle>;
+
+/// Throws std::runtime_error for an error of cuFFT.
+inline void check_cufft(cufftResult result) {
+  if (result != CUFFT_SUCCESS) throw std::runtime_error("cuFFT: error " + std::to_string(result));
+}
+
+/// Plan of `batch` contiguous transforms, the slowest axis first, enqueued on `space`. Throws as
+/// `check_cufft`.
+[[nodiscard]] inline CufftPlan make_cufft_plan(const Kokkos::Cuda& space, std::vector<int> lengths,
+                                               cufftType type, int batch) {
+  cufftHandle handle = 0;
+  check_cufft(cufftPlanMany(&handle, static_cast<int>(lengths.size()), lengths.data(), nullptr, 1, 0, nullptr,
+                            1, 0, type, batch));
+  check_cufft(cufftSetStream(handle, space.cuda_stream()));
+  return {new cufftHandle(handle), [](cufftHandle* owned) {
+            cufftDestroy(*owned);
+            delete owned;
+          }};
+}
+
 /// By cuFFT, for problems that are periodic along all axes: one real transform in up to three dimensions.
 template <>
 class FourierSolver<Kokkos::Cuda> {
@@ -252,8 +273,8 @@ class FourierSolver<Kokkos::Cuda> {
     if (lengths.empty()) lengths.push_back(1);
     _spectrum =
         List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::spectrum"), 2 * modes);
-    _forward = make_plan(lengths, CUFFT_D2Z);
-    _backward = make_plan(lengths, CUFFT_Z2D);
+    _forward = make_cufft_plan(space, lengths, CUFFT_D2Z, 1);
+    _backward = make_cufft_plan(space, lengths, CUFFT_Z2D, 1);
   }
 
   /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
@@ -265,7 +286,7 @@ class FourierSolver<Kokkos::Cuda> {
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
     auto* spectrum = reinterpret_cast<cufftDoubleComplex*>(_spectrum.data());
     // cuFFT keeps the input of an out-of-place forward transform, though its interface lacks const.
-    check(cufftExecD2Z(*_forward, right_hand_side.data(), spectrum));
+    check_cufft(cufftExecD2Z(*_forward, right_hand_side.data(), spectrum));
     scale_spectrum(_space, SpectralScalingFunctor<Kokkos::Cuda>{.coefficients = _spectrum.data(),
                                                                 .x = _eigenvalues[0],
                                                                 .y = _eigenvalues[1],
@@ -273,31 +294,15 @@ class FourierSolver<Kokkos::Cuda> {
                                                                 .parts = 2,
                                                                 .normalisation = _normalisation,
                                                                 .spectral_operator = spectral_operator});
-    check(cufftExecZ2D(*_backward, spectrum, solution.data()));
+    check_cufft(cufftExecZ2D(*_backward, spectrum, solution.data()));
   }
 
  private:
-  using Plan = std::shared_ptr<cufftHandle>;
-
-  static void check(cufftResult result) {
-    if (result != CUFFT_SUCCESS) throw std::runtime_error("cuFFT: error " + std::to_string(result));
-  }
-  [[nodiscard]] Plan make_plan(std::vector<int>& lengths, cufftType type) const {
-    cufftHandle handle = 0;
-    check(cufftPlanMany(&handle, static_cast<int>(lengths.size()), lengths.data(), nullptr, 1, 0, nullptr, 1,
-                        0, type, 1));
-    check(cufftSetStream(handle, _space.cuda_stream()));
-    return {new cufftHandle(handle), [](cufftHandle* owned) {
-              cufftDestroy(*owned);
-              delete owned;
-            }};
-  }
-
   Kokkos::Cuda _space;
   std::size_t _cells = 0;
   double _normalisation = 1.0;
   List _eigenvalues[3], _spectrum;
-  Plan _forward, _backward;
+  CufftPlan _forward, _backward;
 };
 #endif
 

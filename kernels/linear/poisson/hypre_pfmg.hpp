@@ -38,6 +38,9 @@ class HyprePfmgSolver {
     }
   }
 
+  /// Solves wait for the host. Does not throw.
+  [[nodiscard]] static constexpr bool is_asynchronous() { return false; }
+
   /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps.
   /// Begins with the last guess or solution. Blocks until the work enqueued before and the solve are
   /// complete. Throws std::invalid_argument for an array of the wrong size and std::runtime_error if hypre

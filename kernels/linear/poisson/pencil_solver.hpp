@@ -68,6 +68,9 @@ class PencilSolver {
     space.fence("drogue::linear::pencil_solver: allocated");
   }
 
+  /// Transpositions wait for the host. Does not throw.
+  [[nodiscard]] static constexpr bool is_asynchronous() { return false; }
+
   /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
   /// the unit of the solution per m^2. Arrays of the unknowns of this rank, x fastest. Collective; blocks
   /// until the last transposition. Throws std::invalid_argument for an array of the wrong size.

@@ -67,4 +67,14 @@ inline std::vector<double> axis_eigenvalues(const PoissonProblem& problem, std::
   return values;
 }
 
+/// True if the solves of a solver neither block nor allocate, as all do that say nothing else. Does not
+/// throw.
+template <class Solver>
+[[nodiscard]] bool is_asynchronous(const Solver& solver) {
+  if constexpr (requires { solver.is_asynchronous(); })
+    return solver.is_asynchronous();
+  else
+    return true;
+}
+
 }  // namespace drogue::linear

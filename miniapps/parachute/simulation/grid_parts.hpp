@@ -16,8 +16,9 @@ namespace drogue::parachute_app {
 /// Parts of the arrays of a flow that ranks hold; a process alone holds all of them.
 class GridParts {
  public:
-  GridParts(const flow::Parameters& parameters, linear::RankGroup group)
-      : _parameters(parameters), _group(std::move(group)) {}
+  /// `on_device`: whether the flow is on a device, where ranks divide it otherwise.
+  GridParts(const flow::Parameters& parameters, linear::RankGroup group, bool on_device = false)
+      : _parameters(parameters), _group(std::move(group)), _on_device(on_device) {}
 
   [[nodiscard]] const linear::RankGroup& group() const { return _group; }
 
@@ -44,12 +45,13 @@ class GridParts {
 
  private:
   [[nodiscard]] linear::CellBox box(const std::array<int, 3>& whole, int rank) const {
-    return flow::part_of(whole, _parameters, flow::ranks_of(_parameters, _group.size(), rank));
+    return flow::part_of(whole, _parameters, flow::ranks_of(_parameters, _group.size(), rank, _on_device));
   }
   [[nodiscard]] run::Blocks blocks(const std::array<int, 3>& whole, int rank) const;
 
   const flow::Parameters& _parameters;
   linear::RankGroup _group;
+  bool _on_device;
 };
 
 }  // namespace drogue::parachute_app

@@ -95,7 +95,8 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
     : _scene(scene),
       _communicator(settings.communicator),
-      _parts(scene.parameters, _communicator.size() > 1 ? linear::RankGroup::world() : linear::RankGroup()),
+      _parts(scene.parameters, _communicator.size() > 1 ? linear::RankGroup::world() : linear::RankGroup(),
+             device::needs_device(settings.backend)),
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
                               scene.parameters.viscosity, scene.flags)),
       _airstream(scene),
@@ -280,6 +281,8 @@ void Simulation::describe(run::ResultDocument& result) {
   result.driver = _solver->driver();
   result.dt_min = progress.dt_min;
   result.dt_max = progress.dt_max;
+  if (_parts.group().size() > 1)
+    result.metrics.set("messages", "transport", std::string(linear::name(_solver->transport())));
   result.metrics.set("pressure", "solver", std::string(_solver->pressure_solver()));
   result.metrics.set("pressure", "divergence_rms", _solver->totals().divergence_rms);
   if (const auto solve = _solver->last_pressure_solve()) {

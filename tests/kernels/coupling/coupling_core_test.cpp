@@ -54,7 +54,7 @@ TEST(ForceBox, RanksShareItsFacesWhereTheFlowKeepsThem) {
   for (const int ranks : {1, 4, 6}) {
     std::array<std::set<std::array<int, 3>>, 3> found;
     for (int rank = 0; rank < ranks; ++rank) {
-      const flow::MacGrid g = flow::make_grid(p, flow::ranks_of(p, ranks, rank));
+      const flow::MacGrid g = flow::make_grid(p, flow::ranks_of(p, ranks, rank, false));
       const FaceWindow window = flow::face_window(g, box);
       const flow::List<Space> values("values", static_cast<std::size_t>(3 * g.component));
       const auto views = flow::face_views<Space>(g, box, values);

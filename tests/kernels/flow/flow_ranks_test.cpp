@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "tests/support/flow_case.hpp"
 #include "tests/support/flow_faces.hpp"
 #include "tests/support/flow_ranks.hpp"
+#include "tests/support/profiled.hpp"
 
 // The flow solver on several ranks against itself on one.
 
@@ -28,7 +30,7 @@ class SharedSolver {
   SharedSolver(const Parameters& p, const linear::RankGroup& group)
       : _p(p),
         _group(group),
-        _ranks(decompose(p.cells, group.size(), group.rank())),
+        _ranks(ranks_of(p, group.size(), group.rank(), device::needs_device(backend))),
         _solver(create_solver(backend, p, group)) {}
 
   Solver* operator->() { return _solver.get(); }
@@ -206,16 +208,27 @@ void expect_same_extremes(const Extremes& a, const Extremes& b, const std::strin
   near(a.largest_speed, b.largest_speed, "speed");
 }
 
+/// Whether so many ranks can share a flow of these tests: any on hosts, and on devices, which divide z alone,
+/// if there are cells enough.
+bool can_share(const Parameters& p, int ranks) {
+  const bool slabs = p.slabs || device::needs_device(backend);
+  const bool can = find_division(p.cells, ranks, 0, slabs).has_value();
+  EXPECT_TRUE(can || slabs);
+  return can;
+}
+
 /// Runs a case from random data on `ranks` ranks and on this one only, and compares everything.
 void expect_steps_of_one_rank(const Case& each, int ranks) {
   Parameters p = each.parameters;
   p.watches_extremes = true;
+  if (!can_share(p, ranks)) return;
   const linear::RankGroup group = first_ranks(ranks);
   if (!belongs_to_first(ranks)) return;
   const std::string what = each.name + " on " + std::to_string(ranks) + " ranks";
   const StaggeredField initial = random_field(FlowDomain(p), 77);
   SharedSolver single(p, {}), shared(p, group);
-  EXPECT_EQ(std::string(ranks == 1 ? single->driver() : "plain"), shared->driver());
+  const bool waits = ranks > 1 && shared->transport() != linear::Transport::nccl;
+  EXPECT_EQ(std::string(waits ? "plain" : single->driver()), shared->driver());
   single.start(initial);
   shared.start(initial);
   for (const int step : {0, 1, 5}) {
@@ -297,6 +310,7 @@ TEST_F(FlowRanks, ChooseTheDtOfOneRank) {
       const StaggeredField rest = FlowDomain(p).zero_field();
       for (const int ranks : {2, 3, 4}) {
         if (ranks == 3 && p.cells != cases()[0].parameters.cells) continue;  // too few cells
+        if (!can_share(p, ranks)) continue;
         const linear::RankGroup group = first_ranks(ranks);
         if (!belongs_to_first(ranks)) continue;
         SharedSolver one(p, {}), shared(p, group);
@@ -435,11 +449,46 @@ TEST_F(FlowRanks, KeepsTheStepsEqualIfOneRankIsInterrupted) {
   EXPECT_EQ(Stop::interrupted, shared->advance(endless, -1, [&](const Status& now) {
     return world.rank() != 3 || now.step < 4;
   }));
-  EXPECT_EQ(4, shared->progress().step);
+  const std::int64_t step = shared->progress().step;
+  // Only a host that waits for each step knows when to ask.
+  if (shared->transport() == linear::Transport::nccl)
+    EXPECT_GE(step, 4);
+  else
+    EXPECT_EQ(4, step);
+  for (const double each : world.gather(std::vector<double>{static_cast<double>(step)}))
+    EXPECT_EQ(static_cast<double>(step), each);
   EXPECT_EQ(Stop::interrupted,
             shared->advance(endless, -1, [&](const Status&) { return world.rank() != 1; }));
-  EXPECT_EQ(4, shared->progress().step);
-  EXPECT_EQ(Stop::pause, shared->advance(endless, 5, [](const Status&) { return true; }));
+  EXPECT_EQ(step, shared->progress().step);
+  EXPECT_EQ(Stop::pause, shared->advance(endless, step + 1, [](const Status&) { return true; }));
+}
+
+TEST_F(FlowRanks, OfSeveralGpusStepByOneLaunchEach) {
+  for (const Case& each : cases()) {
+    if (!can_share(each.parameters, 2)) continue;
+    const linear::RankGroup group = first_ranks(2);
+    if (!belongs_to_first(2)) continue;
+    SharedSolver shared(each.parameters, group);
+    if (shared->transport() != linear::Transport::nccl) GTEST_SKIP() << "needs a GPU for each rank, and NCCL";
+    shared.start(random_field(FlowDomain(each.parameters), 9));
+    std::int64_t end = 1;
+    const auto cost = [&](std::int64_t steps) {
+      const device::ProfilingCounters before = profiled();
+      EXPECT_EQ(Stop::pause, shared->advance(endless, end += steps, {}));
+      device::ProfilingCounters taken = profiled();
+      taken.kernel_launches -= before.kernel_launches;
+      taken.fences -= before.fences;
+      taken.copies -= before.copies;
+      taken.allocations -= before.allocations;
+      return taken;
+    };
+    cost(1);  // captures the step
+    const device::ProfilingCounters few = cost(10), many = cost(60);
+    EXPECT_LE(many.kernel_launches - few.kernel_launches, 50) << each.name;
+    EXPECT_EQ(many.fences, few.fences) << each.name;
+    EXPECT_EQ(many.copies, few.copies) << each.name;
+    EXPECT_EQ(many.allocations, few.allocations) << each.name;
+  }
 }
 
 TEST(FlowDecomposition, DividesAxesWithTheFewestNumbersSent) {
@@ -452,9 +501,40 @@ TEST(FlowDecomposition, DividesAxesWithTheFewestNumbersSent) {
   EXPECT_EQ((std::array<int, 3>{1, 1, 1}), decompose({4, 1, 1}, 1, 0).parts);
 }
 
+TEST(FlowDecomposition, DividesZAloneIntoSlabs) {
+  EXPECT_EQ((std::array<int, 3>{1, 1, 4}), decompose({64, 64, 13}, 4, 0, true).parts);
+  EXPECT_EQ((std::array<int, 3>{0, 0, 2}), decompose({64, 64, 13}, 4, 2, true).place);
+  Parameters p;
+  p.cells = {64, 64, 16};
+  EXPECT_EQ((std::array<int, 3>{1, 4, 1}), ranks_of(p, 4, 0, false).parts);
+  EXPECT_EQ((std::array<int, 3>{1, 1, 4}), ranks_of(p, 4, 0, true).parts);
+  p.slabs = true;
+  EXPECT_EQ((std::array<int, 3>{1, 1, 4}), ranks_of(p, 4, 0, false).parts);
+}
+
 TEST(FlowDecomposition, RejectsMoreRanksThanTheGridHasRoomFor) {
   for (const std::array<int, 3>& cells : {std::array<int, 3>{64, 11, 1}, {64, 1, 1}, {64, 5, 8}})
     EXPECT_THROW(static_cast<void>(decompose(cells, 4, 0)), std::invalid_argument);
+  const auto refusal = [](const std::array<int, 3>& cells, int ranks, bool slabs) -> std::string {
+    try {
+      static_cast<void>(decompose(cells, ranks, 0, slabs));
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(
+      "flow solver: 17 ranks cannot share 7 x 9 cells along y and z: each needs at least 3 along a divided "
+      "axis; use 6 ranks",
+      refusal({64, 7, 9}, 17, false));
+  EXPECT_EQ(
+      "flow solver: 4 ranks cannot share 11 cells along z: each needs at least 3 along a divided axis; use 3 "
+      "ranks",
+      refusal({64, 64, 11}, 4, true));
+  EXPECT_EQ(
+      "flow solver: 2 ranks cannot share 1 cells along z: each needs at least 3 along a divided axis; use 1 "
+      "rank",
+      refusal({64, 64, 1}, 2, true));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/linear/poisson/pencil_solver.hpp"
+#include "kernels/linear/poisson/slab_solver.hpp"
 #include "tests/support/ranks.hpp"
 #if defined(DROGUE_HAVE_HYPRE)
 #include "kernels/linear/poisson/hypre_pfmg.hpp"
@@ -183,6 +184,116 @@ TEST_F(LinearRanks, PencilsDiffuseValuesOnFacesAsOneRank) {
                     1e-13)
               << "component " << component << ", " << parts[1] << " x " << parts[2] << " ranks";
         }
+}
+
+/// Boxes that slabs of unequal numbers of planes divide.
+std::vector<Case> slab_cases() {
+  constexpr EndCondition n = EndCondition::neumann, d = EndCondition::dirichlet;
+  const AxisConditions periodic, walls{false, n, n}, high{false, n, d}, both{false, d, d};
+  std::vector<Case> all;
+  for (const int ranks : {1, 2, 3, 4})
+    for (const AxisConditions& z : {periodic, walls, high, both})
+      for (const std::array<int, 3>& cells :
+           {std::array<int, 3>{8, 9, 13}, {9, 6, 31}, {1, 8, 12}, {7, 1, 17}, {1, 1, 29}}) {
+        const bool has_walls = all.size() % 2 == 1;
+        all.push_back({cells, {1, 1, ranks}, {has_walls ? walls : periodic, has_walls ? high : periodic, z}});
+      }
+  return all;
+}
+
+TEST_F(LinearRanks, SlabsSolveAsOneRank) {
+  const ExecutionSpace space;
+  int solves = 0;
+  for (const Case& each : slab_cases()) {
+    const int size = each.parts[2];
+    const RankGroup group = first_ranks(size);
+    if (!belongs_to_first(size)) continue;
+    const DeviceCommunicator<ExecutionSpace> communicator(space, group);
+    const PencilRanks ranks{each.parts, {0, 0, group.rank()}};
+    const CellBox box = box_of(ranks, each.cells);
+    for (const bool stretched : {false, true}) {
+      PoissonProblem problem{each.cells, {0.3, 0.2, 0.5}, each.axes};
+      if (stretched) stretch(problem);
+      const std::vector<double> right = random_values(problem.size()),
+                                own = testing::cut(right, each.cells, box);
+      const List single("single", right.size());
+      DiagonalizationSolver<ExecutionSpace>(space, problem).enqueue_solve(on_device(right), single);
+      for (const AxisMethod method : {AxisMethod::fourier, AxisMethod::diagonalization}) {
+        if (!SlabSolver<ExecutionSpace>::supports(problem, method)) continue;
+        const bool in_place = ++solves % 2 == 0;
+        const SlabSolver<ExecutionSpace> solver(
+            space, problem, communicator, ranks, method,
+            solves % 3 == 0 ? InvertedOperators::any : InvertedOperators::laplacian, in_place);
+        const List given = on_device(own), solution = in_place ? given : List("solution", own.size());
+        solver.enqueue_solve(given, solution);
+        if (!in_place) {
+          EXPECT_EQ(own, on_host(given));
+        }
+        EXPECT_LT(
+            largest_difference(on_host(single), testing::joined(group, on_host(solution), each.cells, box)),
+            1e-12)
+            << each.cells[0] << " x " << each.cells[1] << " x " << each.cells[2] << " on " << size;
+      }
+    }
+  }
+  EXPECT_GT(solves, 0);
+}
+
+TEST_F(LinearRanks, SlabsDiffuseValuesOnFacesAsOneRank) {
+  const ExecutionSpace space;
+  constexpr EndCondition d = EndCondition::dirichlet, n = EndCondition::neumann;
+  const RankGroup group = RankGroup::world();
+  const DeviceCommunicator<ExecutionSpace> communicator(space, group);
+  const PencilRanks ranks{{1, 1, 4}, {0, 0, group.rank()}};
+  for (const bool periodic : {false, true})
+    for (const std::size_t component : {0U, 1U, 2U})
+      for (const bool stretched : {false, true})
+        for (const AxisMethod method : {AxisMethod::fourier, AxisMethod::diagonalization}) {
+          PoissonProblem problem{{6, 13, 14}, {0.3, 0.2, 0.5}, {}};
+          for (AxisConditions& axis : problem.axes) axis = {periodic, d, n};
+          problem.axes[component] = {periodic, d, d, !periodic || stretched};
+          if (!periodic) --problem.cells[component];
+          if (stretched) stretch(problem);
+          if (!SlabSolver<ExecutionSpace>::supports(problem, method)) continue;
+          const SlabSolver<ExecutionSpace> solver(space, problem, communicator, ranks, method);
+          const std::vector<double> right = random_values(problem.size());
+          const CellBox box = unknowns_of(ranks, problem);
+          // The operator changes from solve to solve.
+          for (const double length : {0.4, 0.01, 30.0}) {
+            const List dt = on_device(std::vector<double>{length});
+            const SpectralOperator implicit{dt.data(), 0.7};
+            const List single("single", right.size()), solution("solution", box.size());
+            DiagonalizationSolver<ExecutionSpace>(space, problem)
+                .enqueue_solve(on_device(right), single, implicit);
+            solver.enqueue_solve(on_device(testing::cut(right, problem.cells, box)), solution, implicit);
+            EXPECT_LT(largest_difference(on_host(single),
+                                         testing::joined(group, on_host(solution), problem.cells, box)),
+                      1e-13)
+                << "component " << component << ", dt " << length;
+          }
+        }
+}
+
+TEST_F(LinearRanks, SlabsRejectWhatTheyCannotSolve) {
+  const ExecutionSpace space;
+  const RankGroup group = RankGroup::world();
+  const DeviceCommunicator<ExecutionSpace> communicator(space, group);
+  PoissonProblem problem{{6, 8, 16}, {0.3, 0.2, 0.5}, {}};
+  const auto solver = [&](const PencilRanks& ranks, AxisMethod method) {
+    return SlabSolver<ExecutionSpace>(space, problem, communicator, ranks, method,
+                                      InvertedOperators::laplacian);
+  };
+  const PencilRanks slabs{{1, 1, 4}, {0, 0, group.rank()}};
+  EXPECT_THROW(static_cast<void>(solver({{1, 4, 1}, {0, group.rank(), 0}}, AxisMethod::diagonalization)),
+               std::invalid_argument);
+  const SlabSolver<ExecutionSpace> laplacian = solver(slabs, AxisMethod::diagonalization);
+  const List dt("dt", 1), values("values", 6 * 8 * 4), few("values", 6);
+  EXPECT_THROW(laplacian.enqueue_solve(values, values, {dt.data(), 0.7}), std::invalid_argument);
+  EXPECT_THROW(laplacian.enqueue_solve(few, values), std::invalid_argument);
+  EXPECT_THROW(laplacian.enqueue_solve(values, few), std::invalid_argument);
+  problem.widths[0].assign(6, 0.3);
+  EXPECT_FALSE(SlabSolver<ExecutionSpace>::supports(problem, AxisMethod::fourier));
+  EXPECT_THROW(static_cast<void>(solver(slabs, AxisMethod::fourier)), std::invalid_argument);
 }
 
 #if defined(DROGUE_HAVE_HYPRE)
