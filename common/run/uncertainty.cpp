@@ -13,6 +13,11 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
+/// Least number of independent batches from which an error is stated.
+constexpr double least_independent = 3.0;
+
+constexpr double round_off = 1e-26;  // of squares
+
 double mean_over(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -77,12 +82,13 @@ double batch_half_width(std::span<const double> means) {
     return unknown;
   constexpr auto count = static_cast<double>(batches);
   const double squares = covariance_sum(means, 0);
-  if (squares == 0.0) return 0.0;
+  if (squares <= round_off * std::pow(mean_over(means), 2)) return 0.0;
   // The estimate of the correlation of few values is too low by about (1 + 3 r) / n.
   const double estimate = covariance_sum(means, 1) / squares,
                correlation = std::clamp((count * estimate + 1.0) / (count - 3.0), 0.0, 0.9),
                variance_ratio = (1.0 + correlation) / (1.0 - correlation),
-               independent = std::max(2.0, count / variance_ratio);
+               independent = count / variance_ratio;
+  if (independent < least_independent) return unknown;
   return student_factor(independent - 1.0) * std::sqrt(squares / (count - 1.0) * variance_ratio / count);
 }
 

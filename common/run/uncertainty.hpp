@@ -28,8 +28,9 @@ inline constexpr double grid_safety = 1.5;
 
 /// Half width of the 95 % confidence interval of the mean over an interval of time, from the means of
 /// `batches` parts of equal duration. Correlation between neighbours, estimated to first order, widens it.
-/// NaN for another number of means, or if one is not finite. Source: batch means (Law, Simulation Modeling
-/// and Analysis, 2015, chapter 9) of an autoregressive process. Does not throw.
+/// NaN for a series that is too short for that, with less than three independent parts, for another number of
+/// means, or if one is not finite. Source: batch means (Law, Simulation Modeling and Analysis, 2015, chapter
+/// 9) of an autoregressive process. Does not throw.
 [[nodiscard]] double batch_half_width(std::span<const double> means);
 
 /// The same of a statistic of any parts [from, to] of an interval of time, s. Throws what `statistic` throws.

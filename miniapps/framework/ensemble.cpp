@@ -81,11 +81,10 @@ class EnsembleStudy {
     process.command = {_ensemble.program, _file.string(), "--backend",
                        _options.backend,  "--out",        folder_of(run.member).string(),
                        "--overwrite",     "--quiet"};
-    for (const auto* sets : {&_options.set, &run.sets})
-      for (const std::string& assignment : *sets) {
-        process.command.emplace_back("--set");
-        process.command.push_back(assignment);
-      }
+    for (const std::string& assignment : run.sets) {
+      process.command.emplace_back("--set");
+      process.command.push_back(assignment);
+    }
     process.command.insert(process.command.end(), _options.kokkos.begin(), _options.kokkos.end());
     process.log = log_of(run.member);
     std::filesystem::create_directories(process.log.parent_path());

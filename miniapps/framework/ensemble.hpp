@@ -10,7 +10,7 @@
 
 namespace drogue::framework {
 
-/// A perturbed run of a scene: its place in the study, and its `--set` assignments behind those of the
+/// A perturbed run of a scene: its place in the study, and its `--set` assignments with those of the
 /// command line.
 struct EnsembleRun {
   study::Member member;

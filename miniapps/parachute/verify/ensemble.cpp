@@ -130,17 +130,31 @@ std::vector<std::string> other_velocity(const FlowScene& scene, int seed) {
   return {"initial.velocity=" + list + "]"};
 }
 
-/// Reads a scene with assignments. An error names --study unless `factor` is 1.
-FlowScene scene_of(const std::filesystem::path& file, const MiniAppOptions& options,
-                   const std::vector<std::string>& point) {
-  std::vector<std::string> sets = options.set;
-  sets.insert(sets.end(), point.begin(), point.end());
+/// Assignments without those on fields and their times, which apply only together, and no run writes.
+std::vector<std::string> sets_without_fields(std::vector<std::string> sets) {
+  std::erase_if(sets, [](const std::string& assignment) {
+    return assignment.starts_with("output.fields") || assignment.starts_with("output.times");
+  });
+  return sets;
+}
+
+/// Reads a scene as a point of the study. An error names --study.
+FlowScene read_point(const std::filesystem::path& file, const MiniAppOptions& options,
+                     const std::vector<std::string>& sets) {
   try {
     return read_flow_scene(file, sets);
   } catch (const Failure& failure) {
-    if (point.empty()) throw;
     throw Failure(ExitCode::usage, "--study " + options.study + ": " + failure.what());
   }
+}
+
+/// The scene of the command line with further assignments.
+FlowScene scene_of(const std::filesystem::path& file, const MiniAppOptions& options,
+                   const std::vector<std::string>& point) {
+  if (point.empty()) return read_flow_scene(file, options.set);
+  std::vector<std::string> sets = options.set;
+  sets.insert(sets.end(), point.begin(), point.end());
+  return read_point(file, options, sets);
 }
 
 int threads_of(const FlowScene& scene) {
@@ -191,12 +205,14 @@ framework::Ensemble ensemble_of(const MiniAppOptions& options, const std::filesy
       run.member.folder = "cells-" + scene::rough_text(wanted[grid]) + "/seed-" + std::to_string(seed);
       run.member.grid = grid;
       run.member.seed = seed;
-      run.sets = refinement(base, wanted[grid]);
+      run.sets = sets_without_fields(options.set);
+      const std::vector<std::string> finer = refinement(base, wanted[grid]);
+      run.sets.insert(run.sets.end(), finer.begin(), finer.end());
       const std::vector<std::string> start =
           base.canopies.empty() ? other_velocity(base, seed) : displaced_cloth(base, wanted.back(), seed);
       run.sets.insert(run.sets.end(), start.begin(), start.end());
       run.sets.insert(run.sets.end(), {"output.fields=[]", "output.restart_every=0"});
-      if (seed == 1) scene_of(file, options, run.sets);  // refuses what would fail in every run
+      if (seed == 1) (void)read_point(file, options, run.sets);  // refuses what would fail in every run
     }
   }
   return ensemble;
