@@ -23,8 +23,8 @@ using FaceView = Kokkos::View<double***, Kokkos::LayoutStride, typename Executio
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.cells[axis] = g.whole[axis];
     box.low[axis] = g.start[axis];
-    box.high[axis] = g.high[axis];
     box.spacing[axis] = g.h[axis];
+    box.high[axis] = box.low[axis] + box.cells[axis] * box.spacing[axis];
   }
   return box;
 }

@@ -42,7 +42,7 @@ template <class Pack, int rows, int packs>
 void multiply_tile(int n, const double* scalars, std::int64_t scalar_row, std::int64_t scalar_k,
                    const double* vectors, std::int64_t vector_k, double* to, std::int64_t to_row, bool adds) {
   using Access = device::Access<Pack>;
-  Pack sum[rows][packs];
+  Pack sum[rows][packs] = {};  // gcc 12 takes those of scalars for uninitialised
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < packs; ++c)
       sum[r][c] = adds ? Access::load(to + r * to_row + c * Access::lanes) : Pack(0.0);
