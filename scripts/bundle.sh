@@ -61,7 +61,7 @@ build() {
 }
 
 build host -DDROGUE_DEPS_VARIANT=bundle
-[ "$cuda" = no ] || build cuda -DDROGUE_DEPS_VARIANT=bundle-cuda -DDROGUE_CUDA=ON "-DDROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH:-90}" \
+[ "$cuda" = no ] || build cuda -DDROGUE_DEPS_VARIANT=bundle-cuda -DDROGUE_CUDA=ON -DDROGUE_NCCL=OFF "-DDROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH:-90}" \
   "-DCMAKE_CUDA_FLAGS=-Xcompiler=-march=x86-64-v3 $(nvcc_compression)"
 
 # Everything that the programs load but the C library, the driver and the CUDA toolkit, which belong to the machine.
