@@ -206,7 +206,7 @@ class BadFlows(parachute_program.FlowTest):
         self.sound(parachute_program.CLOTH)
         for key in ("grid={cells=[8,8,8],domain=[[0,1],[0,1],[0,1]]}", "flow.time=ab2", "initial.velocity=[1,0,0]",
                     "body=[{kind='sphere',centre=[0,0,0],radius=1,edge_length=0.1}]", "tuning.step.driver=plain", "coupling.method=spread",
-                    "coupling.filter=0.5", "canopy[0].porosity.law=none", "canopy[0].lines.strength=100", "run.cfl=0.5",
+                    "coupling.filter=0.5", "canopy[0].porosity.law=none", "canopy[0].lines.strength=100", "canopy[0].lines.drag={}", "run.cfl=0.5",
                     "run.max_dt=0.01", "verify.divergence=1", "verify.momentum=1", "verify.energy_growth=1",
                     "verify.speed_growth=1", "verify.force_balance=1", "verify.exact={x=0,y=0,z=0}"):
             name = re.search(r": (\S+) applies only with \[fluid\]", self.refusal(key))

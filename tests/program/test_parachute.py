@@ -976,6 +976,31 @@ class Canopies(parachute_program.FlowTest):
                 for name in whole:
                     self.assertEqual(whole[name][-1], again[name][-1], name)
 
+    def test_lines_and_payload_have_drag_if_asked(self):
+        words = ("--quiet", "--backend", "serial", "--overwrite")
+        output = "output={history_every=1,restart_every=1,times=[0.1,0.2],fields=['position']}"
+        scene = self.write(CANOPY)
+        self.expect(0, scene, *words, "--out", "none", sets=[output])
+        self.assertFalse([name for name in self.history("none") if "_drag_" in name and "coefficient" not in name])
+        drag = ["canopy[0].lines.drag={diameter=0.01}", "canopy[0].payload.drag={area=0.02,coefficient=0.5}"]
+        self.expect(0, scene, *words, "--out", "out", sets=[output, *drag])
+        rows = self.history("out")
+        # The payload is held below the canopy, where the stream is slower by what the canopy displaces.
+        pressure = 0.5 * 1.225 * 64
+        for force in rows["canopy_0_payload_drag_z"][1:]:
+            self.assertAlmostEqual(1, force / (pressure * 0.02 * 0.5), delta=0.06)
+        # Lines move with the cloth at first. Less than that of the lines to the flat cloth, of 1 m radius, in a free stream.
+        sine = 1 / 1.8
+        most = 8 * pressure * 1.8 * 0.01 * (1.1 * sine**3 + 0.02 * (1 - sine**2) ** 1.5)
+        self.assertTrue(0.05 * most < rows["canopy_0_line_drag_z"][-1] < most, rows["canopy_0_line_drag_z"][-1] / most)
+        self.assertLess(max(rows["force_balance"]), 1e-14)
+        # A run continues bit for bit.
+        self.expect(0, scene, *words, "--out", "part", sets=[output, *drag, "run.end_time=0.1", "output.times=[0.1]"])
+        self.expect(0, scene, *words[:-1], "--out", "part", "--restart", "auto", sets=[output, *drag])
+        again = self.history("part")
+        for name in rows:
+            self.assertEqual(rows[name][-1], again[name][-1], name)
+
     def test_line_that_breaks_ends_the_run(self):
         self.expect(0, self.write(CANOPY), *QUIET, sets=["output.history_every=1"])
         rows = self.history("out")

@@ -70,8 +70,10 @@ class CoupledSolver : public Solver {
                                           flow::coupling_grid(_flow.grid(), _box), _parameters.fabric,
                                           _parameters.sheet, _parameters.flow.density, _flow.communicator(),
                                           flow::face_window(_flow.grid(), _box))),
-        _fabric(instance, _parameters.fabric, _sheet->relaxation()),
-        _step(_space, _parameters, _flow, *_sheet, _fabric),
+        _drag(_space, flow::coupling_grid(_flow.grid(), _box), _parameters, _flow.communicator(),
+              flow::face_window(_flow.grid(), _box)),
+        _fabric(instance, _parameters.fabric, _sheet->relaxation(_drag.relaxation())),
+        _step(_space, _parameters, _flow, *_sheet, _drag, _fabric),
         _plan(_parameters),
         _total_force(flow::coupling_grid(_flow.grid(), _box)),
         _frame(_space, _parameters.follow, _parameters.fabric),
@@ -173,6 +175,7 @@ class CoupledSolver : public Solver {
   Flow _flow;
   flow::Core _box;  ///< of the grid, that sheets lie in
   std::unique_ptr<Sheet<ExecutionSpace>> _sheet;
+  AirDrag<ExecutionSpace> _drag;
   Fabric _fabric;
   CoupledStep<ExecutionSpace> _step;
   BlockPlan _plan;

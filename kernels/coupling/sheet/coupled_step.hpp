@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
+#include "kernels/coupling/sheet/air_drag.hpp"
 #include "kernels/coupling/sheet/immersed_sheet.hpp"
 #include "kernels/coupling/sheet/line_strength.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
@@ -88,10 +89,11 @@ class CoupledStep {
 
   /// Refers to its parts, which must outlive it. Blocks. Throws as the constructor of `LineStrength`.
   CoupledStep(const ExecutionSpace& space, const Parameters& parameters, Flow& flow,
-              const Sheet<ExecutionSpace>& sheet, Fabric& fabric)
+              const Sheet<ExecutionSpace>& sheet, const AirDrag<ExecutionSpace>& drag, Fabric& fabric)
       : _space(space),
         _flow(flow),
         _sheet(sheet),
+        _drag(drag),
         _fabric(fabric),
         _box(flow::force_box(parameters.flow)),
         _state(sheet.state()),
@@ -100,6 +102,7 @@ class CoupledStep {
         _strength(space, parameters) {
     _state.add("sheet_position", "m", fabric.state().positions, fabric.vertices());
     _state.add("sheet_velocity", "m/s", fabric.state().velocities, fabric.vertices());
+    _drag.add_state(_state);
     _saved = typename StateList::Packed("drogue::coupling::saved_state", _state.size());
   }
 
@@ -109,12 +112,14 @@ class CoupledStep {
     const auto cloth = _fabric.state();
     const auto u = faces(_flow.velocity()), f = faces(_flow.force());
 
-    _sheet.clear_forces(_space, f);  // not before: the pressure of an output contains those of the last step
+    clear_forces(f);  // not before: the pressure of an output contains those of the last step
     save();
     _sheet.freeze(_space, cloth, dt);                    // (1), (2): weights, area, normal, row sum
     _sheet.interpolate_air(_space, u);                   // (3): copies of the air
+    _drag.begin_step(_space, cloth, u, dt);              // of lines and payloads
     static_cast<void>(_fabric.enqueue_steps(substeps));  // (4) to (6): cloth and copies relax
     _sheet.spread_forces(_space, cloth, f, dt);          // (7)
+    _drag.spread_forces(_space, f, dt);
     check();
     _flow.enqueue_step();                                                     // (8)
     _sheet.filter_acceleration(_space, u, f, dt, is_first, _flow.control());  // (9)
@@ -148,21 +153,24 @@ class CoupledStep {
   void roll_back() const {
     Kokkos::deep_copy(_space, _sheet.transfer().counts, TransferCounts{});
     const auto f = faces(_flow.force());
-    _sheet.clear_forces(_space, f);  // before the places of the discarded step are lost
+    clear_forces(f);  // before the places of the discarded step are lost
     device::launch_each(_space, "drogue::coupling::roll_back", _state.most_rows(), copy_state(false));
     renew();
     _sheet.spread_again(_space, f);
+    _drag.spread_again(_space, f);
     _space.fence("drogue::coupling::roll_back");
   }
 
   /// Forgets former steps and failures. Blocks.
   void start() const {
     _sheet.forget_steps(_space);
+    _drag.forget_force(_space);
     forget_failures();
   }
   /// The same with an array of the state that has been restored.
   void restore() const {
     _sheet.forget_force(_space);
+    _drag.forget_force(_space);
     forget_failures();
   }
 
@@ -175,7 +183,10 @@ class CoupledStep {
   }
 
   /// Sets E A of every line of the mesh, N. Blocks.
-  void set_line_stiffness(std::span<const double> of_lines) { _strength.set_stiffness(_space, of_lines); }
+  void set_line_stiffness(std::span<const double> of_lines) {
+    _strength.set_stiffness(_space, of_lines);
+    _drag.set_line_stiffness(_space, of_lines);
+  }
 
  private:
   [[nodiscard]] auto faces(const flow::List<ExecutionSpace>& values) const {
@@ -187,6 +198,10 @@ class CoupledStep {
     Kokkos::deep_copy(_space, value, view);
     _space.fence("drogue::coupling::read");
     return value;
+  }
+  void clear_forces(const FaceViews<flow::FaceView<ExecutionSpace>>& f) const {
+    _sheet.clear_forces(_space, f);
+    _drag.clear_forces(_space, f);
   }
   void forget_failures() const {
     Kokkos::deep_copy(_space, _sheet.transfer().counts, TransferCounts{});
@@ -216,6 +231,7 @@ class CoupledStep {
   ExecutionSpace _space;
   Flow& _flow;
   const Sheet<ExecutionSpace>& _sheet;
+  const AirDrag<ExecutionSpace>& _drag;
   Fabric& _fabric;
   flow::Core _box;  ///< of the grid, that sheets lie in
   StateList _state;

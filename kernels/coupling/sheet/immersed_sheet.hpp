@@ -277,13 +277,13 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
     device::launch_each(space, "drogue::coupling::sheet_force", _transfer.points,
                         SheetForceFunctor<ExecutionSpace>{_air, _force, 1.0 / dt});
     spread(space, _transfer, _force, force_density);
+    interpolate(space, _transfer, force_density, _interpolated_force);  // before those of lines are added
   }
 
  private:
-  void filter(const ExecutionSpace& space, const Faces& velocity, const Faces& force_density, double dt,
-              bool is_first, const flow::ControlView<ExecutionSpace>&) const override {
+  void filter(const ExecutionSpace& space, const Faces& velocity, const Faces&, double dt, bool is_first,
+              const flow::ControlView<ExecutionSpace>&) const override {
     interpolate(space, _transfer, velocity, _after);
-    interpolate(space, _transfer, force_density, _interpolated_force);
     _rank_sum(space, {_after, _interpolated_force});
     device::launch_each(space, "drogue::coupling::end_sheet_step", _transfer.points,
                         EndSheetStepFunctor<ExecutionSpace>{.air = _air,

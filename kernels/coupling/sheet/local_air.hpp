@@ -1,7 +1,7 @@
 #pragma once
 
+#include "kernels/coupling/sheet/drag_relaxation.hpp"
 #include "kernels/coupling/sheet/no_slip.hpp"
-#include "kernels/fabric/vertex_force.hpp"
 #include "kernels/spatial/points.hpp"
 
 namespace drogue::coupling {
@@ -66,19 +66,22 @@ struct LocalAir {
 
 /// Relaxes the velocity of a vertex and that of the air beside it against each other by the porous law: a
 /// `VertexForce` of the fabric solver. Both change by equal and opposite impulses: along the normal where the
-/// sheet slips freely along its tangents, and such that no tangential motion remains where it does not.
+/// sheet slips freely along its tangents, and such that no tangential motion remains where it does not. Drag
+/// of lines and bodies, if any, acts before.
 template <class ExecutionSpace>
 struct AirRelaxation {
   LocalAir<ExecutionSpace> air;
+  DragRelaxation<ExecutionSpace> drag;
 
   /// Velocity after the relaxation, or after the reaction of the last step, m/s. Updates the local velocity
   /// and the impulse of the vertex unless the coupling is explicit.
   KOKKOS_FUNCTION fabric::Vector3<double> relaxed_velocity(const fabric::VertexStage& at) const {
-    if (!(air.area(at.vertex) > 0.0)) return at.velocity;
-    const spatial::Point inverse_mass = spatial::load_vector(air.inverse_cloth_mass, at.vertex);
+    const spatial::Point inverse_mass = spatial::load_vector(air.inverse_cloth_mass, at.vertex),
+                         velocity = drag.is_empty() ? at.velocity : drag.relax(at, inverse_mass);
+    if (!(air.area(at.vertex) > 0.0)) return velocity;
     if (air.is_explicit())
-      return at.velocity - at.dt * product(inverse_mass, spatial::load_vector(air.last_force, at.vertex));
-    return air.relax(at.vertex, at.velocity, inverse_mass, at.dt);
+      return velocity - at.dt * product(inverse_mass, spatial::load_vector(air.last_force, at.vertex));
+    return air.relax(at.vertex, velocity, inverse_mass, at.dt);
   }
 };
 

@@ -94,6 +94,21 @@ struct LineCut {
   std::vector<int> lines;  ///< numbers in the mesh of the cloth
 };
 
+/// Drag of a straight line of the mesh in the air by the cross-flow principle: each component of the velocity
+/// of the air relative to the line, along it and across it, has a force per length of half the density times
+/// the square of the component. Lines that are cut have none.
+struct LineDrag {
+  int line = 0;         ///< number in the mesh
+  double across = 0.0;  ///< drag coefficient of the flow across the line times diameter, m
+  double along = 0.0;   ///< the same of the flow along it, m
+};
+
+/// Drag of a body at a vertex, without reaction on the air: its wake would be as wide as some cells.
+struct VertexDrag {
+  int vertex = 0;
+  double area = 0.0;  ///< drag coefficient times area, m^2
+};
+
 /// Courant number of the flow unless `flow::Parameters::cfl` is given.
 inline constexpr double default_cfl = 0.5;
 
@@ -120,7 +135,9 @@ struct Parameters {
   /// Time of the steps that are enqueued at once, s, > 0, beyond which the next ones are fewer: requests to
   /// stop are answered between them. It changes no result.
   double longest_batch = 0.4;
-  std::vector<LineCut> cuts;  ///< a block of steps ends at the time of each
+  std::vector<LineDrag> line_drag;      ///< not with `CouplingMethod::sharp`
+  std::vector<VertexDrag> vertex_drag;  ///< likewise
+  std::vector<LineCut> cuts;            ///< a block of steps ends at the time of each
   /// Tension of each line at the end of a step beyond which the step fails, N; infinite for lines without
   /// limit; or empty.
   std::vector<double> line_strength;

@@ -56,8 +56,11 @@ class Sheet {
   Sheet(const Sheet&) = delete;
   Sheet& operator=(const Sheet&) = delete;
 
-  /// VertexForce of the fabric solver.
-  [[nodiscard]] AirRelaxation<ExecutionSpace> relaxation() const { return {_air}; }
+  /// VertexForce of the fabric solver. `drag`: of lines and bodies.
+  [[nodiscard]] AirRelaxation<ExecutionSpace> relaxation(
+      const DragRelaxation<ExecutionSpace>& drag = {}) const {
+    return {_air, drag};
+  }
   /// Force of each vertex on the air in the last step of the flow, (vertices, 3), N. Does not throw.
   [[nodiscard]] const Vectors& force() const { return _force; }
   /// Weights of both directions. Does not throw.
@@ -84,14 +87,14 @@ class Sheet {
   /// Enqueues the copies of the air beside the sheet. `velocity`: of the flow, m/s.
   virtual void interpolate_air(const ExecutionSpace& space, const Faces& velocity) const = 0;
 
-  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `force_density`, N/m^3.
-  /// `cloth`: after its steps.
+  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `force_density`, N/m^3,
+  /// which holds no others. `cloth`: after its steps.
   virtual void spread_forces(const ExecutionSpace& space, const Cloth& cloth, const Faces& force_density,
                              double dt) const = 0;
 
-  /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, under the forces
-  /// of the sheet alone in `force_density`, N/m^3. `is_first`: no step precedes this one; `control`: of the
-  /// flow.
+  /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, without that by
+  /// the forces of the sheet in the step. `force_density`: of the step, N/m^3. `is_first`: no step precedes
+  /// this one; `control`: of the flow.
   void filter_acceleration(const ExecutionSpace& space, const Faces& velocity, const Faces& force_density,
                            double dt, bool is_first, const flow::ControlView<ExecutionSpace>& control) const {
     filter(space, velocity, force_density, dt, is_first, control);

@@ -499,6 +499,13 @@ void append_canopy(const Canopy& canopy, const coupling::PorousLaw& law, Sheets&
   if (canopy.lines.strength)
     for (const int k : rows.suspension)
       sheets.line_strength[static_cast<std::size_t>(k)] = *canopy.lines.strength;
+  rows.line_drag = sheets.line_drag.size();
+  rows.payload_drag = sheets.vertex_drag.size();
+  if (const auto& drag = canopy.lines.drag)
+    for (const int k : rows.suspension)
+      sheets.line_drag.push_back({k, drag->coefficient * drag->diameter, drag->friction * drag->diameter});
+  if (const auto& drag = canopy.payload.drag)
+    sheets.vertex_drag.push_back({static_cast<int>(rows.payload.value()), drag->coefficient * drag->area});
   if (canopy.reefing && canopy.reefing->cut) sheets.cuts.push_back({*canopy.reefing->cut, rows.reefing});
   if (canopy.payload.release)
     sheets.cuts.push_back({*canopy.payload.release, rows.riser ? std::vector{*rows.riser} : rows.suspension});

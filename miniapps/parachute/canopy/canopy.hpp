@@ -35,12 +35,26 @@ enum class CanopyShape {
   angled_75,
 };
 
+/// Drag of lines in the fluid: that of cylinders by the cross-flow principle.
+struct CylinderDrag {
+  double diameter = 0.004;   ///< m
+  double coefficient = 1.1;  ///< of the flow across a line
+  double friction = 0.02;    ///< of that along it, on the same area
+};
+
+/// Drag of a payload in the fluid, the same from all sides.
+struct PayloadDrag {
+  double area = 0.0;          ///< m^2
+  double coefficient = 0.47;  ///< of a sphere
+};
+
 /// Suspension lines, one per gore, without mass unless given.
 struct SuspensionLines {
   double length = 7.0;             ///< m, from the payload to the skirt
   double stiffness = 8000.0;       ///< E A, N
   double line_density = 0.0;       ///< kg/m; half of it moves with the skirt, half with the payload
   std::optional<double> strength;  ///< N, of each line
+  std::optional<CylinderDrag> drag;
 };
 
 /// Point mass below the lines.
@@ -51,6 +65,7 @@ struct CanopyPayload {
   std::array<double, 3> velocity{};  ///< m/s, at the start
   std::optional<double> release;     ///< s, at which the lines, or the riser, are cut
   std::optional<int> shared;         ///< number of the canopy that has the payload
+  std::optional<PayloadDrag> drag;
 };
 
 /// Strap from the point where the lines meet to the payload.
@@ -161,6 +176,7 @@ struct CanopyRows {
   std::size_t triangles_begin = 0, triangles_end = 0;
   std::vector<int> reefing, suspension;  ///< numbers of lines
   std::optional<int> riser;
+  std::size_t line_drag = 0, payload_drag = 0;  ///< first in `Sheets::line_drag`, and in `vertex_drag`
 
   /// Part of the canopy that a vertex belongs to: "cloth", "vent lines", "payload" or "riser". Does not
   /// throw.
@@ -176,7 +192,9 @@ struct Sheets {
   std::vector<CanopyRows> canopies;
   std::vector<FlagRows> flags;
   std::vector<coupling::LineCut> cuts;  ///< of reefing lines, and of lines to payloads
-  std::vector<double> line_strength;    ///< N, of every line of the mesh; infinite: no limit
+  std::vector<coupling::LineDrag> line_drag;
+  std::vector<coupling::VertexDrag> vertex_drag;
+  std::vector<double> line_strength;  ///< N, of every line of the mesh; infinite: no limit
 };
 
 /// Sets the centres of canopies that share the payload of an earlier one, so that their lines and risers are

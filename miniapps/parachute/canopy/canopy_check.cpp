@@ -84,6 +84,8 @@ void check_edges(const Place& at, const flow::Parameters& p, const Canopy& canop
   const double longest = largest_edge_in_cells * width;
   at.refuse_if(canopy.edge_length > (1.0 + 1e-9) * longest, "edge_length", " = ", canopy.edge_length,
                " m is too coarse: the cloth leaks on cells of ", width, " m; at most ", longest, " m");
+  at.refuse_if(canopy.lines.drag && canopy.lines.drag->diameter > width, "lines.drag.diameter", " = ",
+               canopy.lines.drag->diameter, " m is no line on cells of ", width, " m; at most a cell");
 }
 
 void check_size(const Place& at, const Canopy& canopy) {

@@ -82,6 +82,21 @@ void declare_perturbation(Table& table, Perturbation& perturbation) {
        .when = {[&perturbation] { return perturbation.amplitude > 0.0; }, "with an amplitude", "amplitude"}});
 }
 
+void declare_line_drag(Table& table, CylinderDrag& drag) {
+  table.value("diameter", drag.diameter, "Diameter of a line", {.unit = "m", .range = positive});
+  table.value("coefficient", drag.coefficient,
+              "Drag coefficient of the flow across a line, of its length times its diameter",
+              {.range = not_negative});
+  table.value("friction", drag.friction, "Drag coefficient of the flow along a line, of the same area",
+              {.range = not_negative});
+}
+
+void declare_payload_drag(Table& table, PayloadDrag& drag) {
+  table.value("area", drag.area, "Area", {.unit = "m^2", .range = positive, .required = true});
+  table.value("coefficient", drag.coefficient, "Drag coefficient of this area, the same from all sides",
+              {.range = not_negative});
+}
+
 void declare_lines(Table& table, SuspensionLines& lines, const Condition& fluid) {
   table.value("length", lines.length,
               "Length from the payload to the skirt; longer than the radius of the skirt at rest",
@@ -92,9 +107,12 @@ void declare_lines(Table& table, SuspensionLines& lines, const Condition& fluid)
               {.unit = "kg/m", .range = not_negative});
   table.value("strength", lines.strength, "Tension of a line that ends the run as a failure",
               {.unit = "N", .range = positive, .when = fluid, .default_text = "none"});
+  table.optional_table("drag", lines.drag, declare_line_drag,
+                       "Drag of the lines as cylinders, and its reaction on the fluid", {.when = fluid});
 }
 
-void declare_payload(Table& table, CanopyPayload& payload, const std::function<bool()>& drops) {
+void declare_payload(Table& table, CanopyPayload& payload, const Condition& fluid,
+                     const std::function<bool()>& drops) {
   const Condition own = {[&payload] { return !payload.shared; }, "without shared", "shared"};
   table.value("shared", payload.shared,
               "Number of the earlier [[canopy]] that has the payload; needs a riser",
@@ -110,6 +128,8 @@ void declare_payload(Table& table, CanopyPayload& payload, const std::function<b
               {.unit = "m/s",
                .when = {[&payload, drops] { return !payload.shared && !payload.fixed && !drops(); },
                         "without shared, fixed and [drop], which sets it", "fixed"}});
+  table.optional_table("drag", payload.drag, declare_payload_drag, "Drag of the payload, without a wake",
+                       {.when = fluid && own});
   table.value("release", payload.release, "Time at which the riser, or without one the lines, are cut",
               {.unit = "s", .range = positive, .default_text = "never"});
 }
@@ -174,8 +194,8 @@ void declare_canopy(Table& table, Canopy& canopy, const Condition& fluid,
               "Displacement of the centre along the axis at the start, in the first axisymmetric mode",
               {.unit = "m", .when = with_kind({drum})});
   table.table("lines", [&](Table& keys) { declare_lines(keys, canopy.lines, fluid); },
-              "Suspension lines to the skirt, one per gore, without drag", {.when = lines});
-  table.table("payload", [&canopy, drops](Table& keys) { declare_payload(keys, canopy.payload, drops); },
+              "Suspension lines to the skirt, one per gore", {.when = lines});
+  table.table("payload", [&, drops](Table& keys) { declare_payload(keys, canopy.payload, fluid, drops); },
               "Point mass where the lines meet, or at the end of the riser", {.when = lines});
   table.optional_table("riser", canopy.riser, declare_riser,
                        "Strap from the point where the lines meet to the payload", {.when = lines});

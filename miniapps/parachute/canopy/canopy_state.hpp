@@ -13,6 +13,7 @@ struct SheetState {
   std::vector<fabric::Vector> velocities;  ///< m/s
   std::vector<fabric::Vector> on_air;      ///< forces on the air in the last step, N
   std::vector<fabric::Vector> elastic;     ///< elastic forces, N
+  std::vector<fabric::Vector> drag;        ///< of lines, then of payloads, in the last step, N
   std::vector<fabric::Vector> air;         ///< velocities of the air at the positions, m/s; empty without air
 };
 

@@ -45,6 +45,8 @@ void append_canopy(const FlowScene& scene, std::size_t i, Columns& columns) {
   if (scene.lack_of_airspeed(i).empty())
     columns.insert(columns.end(), {{name + "airspeed", "m/s"}, {name + "drag_coefficient", ""}});
   columns.insert(columns.end(), {{name + "largest_strain", ""}, {name + "inversion", ""}});
+  if (scene.canopies[i].lines.drag) append_vector(columns, name + "line_drag", "N");
+  if (scene.canopies[i].payload.drag) append_vector(columns, name + "payload_drag", "N");
 }
 
 void append_canopies(const FlowScene& scene, Columns& columns) {

@@ -13,6 +13,13 @@ namespace {
 
 using fabric::Vector;
 
+Vector sum(std::span<const Vector> vectors) {
+  Vector total{};
+  for (const Vector& each : vectors)
+    for (std::size_t axis = 0; axis < 3; ++axis) total[axis] += each[axis];
+  return total;
+}
+
 /// Rows of a mesh dataset, each with n integers.
 template <std::size_t n>
 run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
@@ -108,6 +115,9 @@ void append_measures(const FlowScene& scene, const Airstream& stream, const Shee
                                            drag_coefficient(one.force, relative, scene.parameters.density,
                                                             canopy.nominal_area())});
     row.values.insert(row.values.end(), {one.largest_strain, one.inversion});
+    const CanopyRows& rows = sheets.canopies[i];
+    if (canopy.lines.drag) append(sum(std::span(state.drag).subspan(rows.line_drag, rows.suspension.size())));
+    if (canopy.payload.drag) append(state.drag[sheets.line_drag.size() + rows.payload_drag]);
   }
 }
 

@@ -80,6 +80,8 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
   p.fabric.contact.block = scene.contact_block;
   p.cuts = sheets.cuts;
   p.line_strength = sheets.line_strength;
+  p.line_drag = sheets.line_drag;
+  p.vertex_drag = sheets.vertex_drag;
   if (scene.frame == Frame::follow) {
     p.follow.vertices = followed_vertices(scene, sheets);
     p.follow.axes = scene.open_axes();

@@ -34,6 +34,8 @@ SheetState Simulation::sheet_state() {
   _coupled->fabric().download(state.positions, state.velocities);
   _coupled->download("sheet_force", coupling::numbers(state.on_air));
   _coupled->fabric().forces(state.elastic);
+  state.drag.resize(_sheets.line_drag.size() + _sheets.vertex_drag.size());
+  if (!state.drag.empty()) _coupled->download("drag", coupling::numbers(state.drag));
   return state;
 }
 
@@ -85,7 +87,10 @@ void Simulation::append_canopy_values(const coupling::FrameMotion& frame, framew
   _coupled->air_velocity(state.air);
   const Vector origin = frame.position(row.time);
   append_measures(_scene, _airstream, _sheets, state, origin, frame.velocity, row);
-  const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
+  std::vector<Vector> on_air = state.on_air;
+  for (std::size_t k = 0; k < _sheets.line_drag.size(); ++k)
+    on_air.push_back({-state.drag[k][0], -state.drag[k][1], -state.drag[k][2]});
+  const double balance = force_balance(_coupled->total_force_on_air(), on_air);
   fabric::Totals totals = _coupled->fabric().totals();
   // The vertices of moving bodies have a mass without meaning.
   for (std::size_t i = 0; i < vertices_of(_scene.bodies); ++i)

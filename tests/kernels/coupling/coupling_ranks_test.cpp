@@ -150,6 +150,11 @@ std::vector<Case> cases() {
   channel.p.flow.turbulence = flow::Turbulence::vreman;
   channel.p.sheet.law.no_slip = true;
   channel.p.sheet.delta = DeltaFunction::ib4;
+  // A line across the sheet with drag, and a body at one of its ends.
+  channel.p.fabric.mesh.lines = {{0, 24}, {24, 48}};
+  channel.p.fabric.mesh.line_stiffness = {0.1, 0.1};
+  channel.p.line_drag = {{0, 0.011, 2e-4}, {1, 0.011, 2e-4}};
+  channel.p.vertex_drag = {{24, 0.003}};
   // In the core of a stretched grid.
   Case& core = all.emplace_back(sheet_in("core", {20, 20, 19}));
   set_stream(core);

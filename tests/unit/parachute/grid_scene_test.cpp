@@ -181,7 +181,8 @@ TEST_F(GridScene, RefusesWhatContradictsOrIsNoGrid) {
 }
 
 TEST_F(GridScene, BodiesLieInTheCore) {
-  const std::string plate = "body=[{kind='plate',normal='x',centre=[0,0,0],lengths=[0.9,2],edge_length=0.15}]";
+  const std::string plate =
+      "body=[{kind='plate',normal='x',centre=[0,0,0],lengths=[0.9,2],edge_length=0.15}]";
   EXPECT_EQ(refusal({plate}), "");
   EXPECT_NE(
       refusal({plate, "body[0].centre=[2.6,0,0]"})
