@@ -7,21 +7,23 @@
 namespace drogue::reference {
 
 SheetMode coupled_step(const SheetMode& state, const SheetModeParameters& p, bool is_first) {
-  const double tau = p.dt / p.substeps, inverse_mass = 1.0 / p.mass + p.inverse_air_mass;
+  const double tau = p.dt / p.substeps, lighter = 1.0 - p.counted_once,
+               inverse_copy = p.inverse_air_mass / lighter, inverse_mass = 1.0 / p.mass + inverse_copy;
   SheetMode next = state;
   double beside = state.air, impulse = 0.0;
   for (int substep = 0; substep < p.substeps; ++substep) {
     next.velocity -= tau * p.stiffness / p.mass * next.displacement;
-    beside += tau * (state.acceleration + state.trend + state.defect);
+    beside += tau / lighter * (state.acceleration + state.trend + state.defect);
     const double relative = next.velocity - beside;
     const double normal_impulse = std::isinf(p.alpha)
                                       ? relative / inverse_mass
                                       : tau * p.alpha * relative / (1.0 + tau * p.alpha * inverse_mass);
     next.velocity -= normal_impulse / p.mass;
-    beside += p.inverse_air_mass * normal_impulse;
+    beside += inverse_copy * normal_impulse;
     impulse += normal_impulse;
     next.displacement += tau * next.velocity;
   }
+  impulse += p.counted_once / p.inverse_air_mass * (beside - state.air);
   next.air = state.air + p.response * impulse;
   const double without_sheet = (p.response - p.spread) * impulse / p.dt,
                weight = is_first && p.filter > 0.0 ? 1.0 : p.filter;

@@ -25,6 +25,9 @@ struct SheetModeParameters {
   double spread = 1.0;
   /// Such a change after a projection: the inverse of the added mass, m^2/kg; at most `spread`.
   double response = 1.0;
+  /// Share of a copy's mass that the delta function adds to the added mass, if it is counted once: the copy
+  /// is lighter by it, and the air receives what accelerates it beside the impulse of the sheet.
+  double counted_once = 0.0;
   double alpha = 0.0;        ///< of a linear porous law, Pa s/m; infinite: impermeable
   double filter = 0.5;       ///< weight of the present step in the acceleration of the air
   double trend = 0.0;        ///< and of what it adds in the trend, which loses half of itself in a step

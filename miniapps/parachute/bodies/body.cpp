@@ -19,11 +19,24 @@ double edges_along(double length, double edge) {
   return std::max(1.0, std::ceil(length / edge * (1.0 - 1e-9)));
 }
 
+/// Square plate from its round hole to its sides: a tube that is laid flat. Multiples of eight columns have
+/// vertices at the corners.
+mesh::Mesh plate_with_hole(const Body& body, int columns, int rows) {
+  mesh::Mesh plate = mesh::tube(1.0, 1.0, columns, rows);
+  for (mesh::Vector& x : plate.rest) {
+    const double side = 0.5 * body.lengths[0] / std::max(std::abs(x[0]), std::abs(x[1])),
+                 outwards = 0.5 + x[2], radius = body.hole + outwards * (side - body.hole);
+    x = {radius * x[0], radius * x[1], 0.0};
+  }
+  return plate;
+}
+
 mesh::Mesh local_mesh(const Body& body) {
   const auto [first, second] = body.divisions();
   const int n = static_cast<int>(first), rows = static_cast<int>(second);
   switch (body.kind) {
     case BodyKind::plate: {
+      if (body.hole > 0.0) return plate_with_hole(body, n, rows);
       mesh::Mesh plate = mesh::rectangle(body.lengths[0], body.lengths[1], n, rows);
       for (mesh::Vector& x : plate.rest) x[0] -= 0.5 * body.lengths[0], x[1] -= 0.5 * body.lengths[1];
       return plate;
@@ -102,6 +115,9 @@ std::array<std::size_t, 2> Body::axes() const {
 std::array<double, 2> Body::divisions() const {
   switch (kind) {
     case BodyKind::plate:
+      if (hole > 0.0)  // the longest edges are those beside the corners
+        return {8.0 * edges_along(0.25 * std::numbers::pi * lengths[0], edge_length),
+                edges_along(std::numbers::sqrt2 / 2.0 * lengths[0] - hole, edge_length)};
       return {edges_along(lengths[0], edge_length), edges_along(lengths[1], edge_length)};
     case BodyKind::disk:
       return {edges_along(mesh::disk_edge * radius, edge_length), 0.0};
@@ -125,7 +141,7 @@ double Body::vertices() const {
   const double of_disk = 1.0 + 3.0 * n * (n + 1.0);
   switch (kind) {
     case BodyKind::plate:
-      return (n + 1.0) * (rows + 1.0);
+      return (hole > 0.0 ? n : n + 1.0) * (rows + 1.0);
     case BodyKind::disk:
     case BodyKind::cup:
       return of_disk;

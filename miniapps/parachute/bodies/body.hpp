@@ -55,6 +55,7 @@ struct Body {
   int axis = 0;                       ///< normal of a plate or disk; axis of a cylinder or cup
   std::array<double, 3> centre{};     ///< m
   std::array<double, 2> lengths{};    ///< m, of a plate along the other axes in ascending order
+  double hole = 0.0;                  ///< radius of a round hole in the middle of a square plate, m; 0: none
   double radius = 0.0;                ///< m, of others
   double length = 0.0;                ///< m, of a cylinder
   bool has_ends = false;              ///< of a cylinder: disks close it
@@ -73,8 +74,9 @@ struct Body {
   /// The two axes along a plate, ascending. Does not throw.
   [[nodiscard]] std::array<std::size_t, 2> axes() const;
 
-  /// Numbers of divisions: edges of a plate along these axes; rings of a disk or cup; divisions of a sphere;
-  /// columns, or rings of ends, and rows of a cylinder; none of a file. Does not throw.
+  /// Numbers of divisions: edges of a plate along these axes, or columns and rows around its hole; rings of a
+  /// disk or cup; divisions of a sphere; columns, or rings of ends, and rows of a cylinder; none of a file.
+  /// Does not throw.
   [[nodiscard]] std::array<double, 2> divisions() const;
 
   /// Number of vertices. Does not throw.

@@ -75,7 +75,12 @@ void check_two_dimensions(const Place& at, const flow::Parameters& p, const Body
   };
   if (body.kind == BodyKind::plate) {
     at.refuse_if(p.cells[along] == 1, "normal", ": the grid has one cell along ", axis_names[along]);
-    for (std::size_t k = 0; k < 2; ++k) must_span(body.axes()[k], body.lengths[k], "lengths");
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::size_t axis = body.axes()[k];
+      must_span(axis, body.lengths[k], "lengths");
+      at.refuse_if(p.cells[axis] == 1 && body.hole > 0.0, "hole", ": the grid has one cell along ",
+                   axis_names[axis]);
+    }
     return;
   }
   if (is_cylinder) must_span(along, body.length, "length");
@@ -113,6 +118,16 @@ void check_mount(const Place& root, const Place& at, const FlowScene& scene, con
                " cannot be combined with a [[canopy]], whose lines carry no compression");
 }
 
+void check_hole(const Place& at, const Body& body) {
+  if (body.hole == 0.0) return;
+  at.refuse_if(body.lengths[0] != body.lengths[1], "hole", ": the plate must be a square, and lengths are ",
+               body.lengths[0], " and ", body.lengths[1], " m");
+  at.refuse_if(body.hole >= 0.5 * body.lengths[0], "hole", " = ", body.hole,
+               " m leaves no plate within its sides, ", 0.5 * body.lengths[0], " m from the middle");
+  at.refuse_if(body.mount.has_value(), "mount",
+               ": a plate with a mount must close the channel; this one has a hole");
+}
+
 /// Checks the lengths of edges against the cells along each axis.
 void check_edges(const Place& at, const flow::Parameters& p, const Body& body) {
   const std::string key = body.kind == BodyKind::file ? "file" : "edge_length";
@@ -120,7 +135,8 @@ void check_edges(const Place& at, const flow::Parameters& p, const Body& body) {
     const bool is_plate = body.kind == BodyKind::plate;
     if (p.cells[axis] == 1 || (is_plate && static_cast<int>(axis) == body.axis)) continue;
     const std::size_t k = axis == body.axes()[0] ? 0 : 1;
-    const double edge = is_plate ? body.lengths[k] / body.divisions()[k] : body.largest_edge(),
+    const double edge = is_plate && body.hole == 0.0 ? body.lengths[k] / body.divisions()[k]
+                                                     : body.largest_edge(),
                  h = core_width(p, axis);
     at.refuse_if(edge > (1.0 + 1e-9) * largest_edge_in_cells * h, key, ": edges of ", edge, " m along ",
                  axis_names[axis], " leak on cells of ", h, " m; at most ", largest_edge_in_cells * h, " m");
@@ -219,6 +235,7 @@ void complete_and_check_bodies(const Place& root, FlowScene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     const Place at = root.at("body", i);
+    check_hole(at, body);
     check_two_dimensions(at, p, body);
     check_porosity(at, p, body.porosity);
     check_edges(at, p, body);

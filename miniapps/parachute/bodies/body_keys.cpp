@@ -77,6 +77,8 @@ void declare_body(Table& table, Body& body) {
               "Extents along the two other axes, in the order x, y, z; the whole width of a periodic axis is "
               "closed",
               {.unit = "m", .range = positive, .when = with_kind({plate}), .required = true});
+  table.value("hole", body.hole, "Radius of a round hole in the middle of a square plate; 0: none",
+              {.unit = "m", .range = not_negative, .when = with_kind({plate})});
   table.value(
       "radius", body.radius, "Radius",
       {.unit = "m", .range = positive, .when = with_kind({disk, sphere, cylinder, cup}), .required = true});

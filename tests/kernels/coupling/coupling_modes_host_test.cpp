@@ -120,6 +120,34 @@ TEST(SheetModes, GrowIfCopiesAreHeavierThanTheRowSum) {
   }
 }
 
+TEST(SheetModes, GrowIfTheAirOfTheDeltaFunctionIsCountedOnce) {
+  // It is 1.30 rho h, 0.62 of the copies. All of these modes are resolved by steps.
+  const auto growth_of = [](double alpha, double filter, double trend, double counted_once) {
+    double largest = 0.0;
+    for (const double ratio : {4.0, 8.0, 16.0})
+      for (const double omega_dt : {0.1, 0.3, 0.6, 1.0}) {
+        SheetModeParameters p;
+        p.mass = 0.0373;
+        p.stiffness = omega_dt * omega_dt / (dt * dt) * ratio * copy_mass;
+        p.inverse_air_mass = p.spread = 1.0 / copy_mass;
+        p.response = 1.0 / (ratio * copy_mass);
+        p.counted_once = counted_once;
+        p.alpha = alpha;
+        p.filter = filter;
+        p.trend = trend;
+        p.dt = dt;
+        p.substeps = 40;
+        largest = std::max(largest, spectral_radius(amplification(p)));
+      }
+    return largest;
+  };
+  EXPECT_LT(growth_of(closed, 0.2, 0.0, 0.0), 1.01);
+  EXPECT_GT(growth_of(closed, 0.2, 0.0, 0.62), 1.03);
+  EXPECT_GT(growth_of(closed, 0.5, 0.0, 0.62), 1.05);
+  EXPECT_LT(growth_of(porous, 1.0, 0.5, 0.0), 1.0);
+  EXPECT_GT(growth_of(porous, 1.0, 0.5, 0.62), 1.5);
+}
+
 /// Constants of waves of cloth, of k h = `wave`, that reach the grid in part only: interpolation after
 /// spreading gives the part `sinc`^6 of the row sum, two means between neighbours h / 2 apart cos^4.
 SheetModeParameters wave_parameters(double wave, double omega_dt, double mass, double alpha) {
