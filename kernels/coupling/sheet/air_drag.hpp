@@ -70,22 +70,21 @@ struct PlaceDragPointsFunctor {
   }
 };
 
-/// Force and rate of change of drag at the beginning of a step, at all points of an element and the share of
-/// its ends.
+/// Drag at the velocities at the beginning of a step, at all points of an element and the share of its ends.
 template <class ExecutionSpace>
 struct DragOfElementsFunctor {
   using Vectors = typename DragRelaxation<ExecutionSpace>::Vectors;
-  using Scalars = typename DragRelaxation<ExecutionSpace>::Scalars;
+  using Rates = typename DragRelaxation<ExecutionSpace>::Rates;
 
   DragElements<ExecutionSpace> elements;
   fabric::State<ExecutionSpace> cloth;
   double time;  ///< s, from the beginning of the step to its middle
   Vectors air;  ///< velocity at the points, m/s
   double density;
-  Vectors force;      ///< of the air at each point, N
-  Scalars rate;       ///< at each point, kg/s
+  Vectors force;  ///< of the air at each point, N
+  Rates rate;
   Vectors end_force;  ///< of end k of element e in row 2 e + k
-  Scalars end_rate;
+  Rates end_rate;
 
   KOKKOS_FUNCTION void operator()(const int element) const {
     using spatial::load_vector, spatial::Point;
@@ -95,21 +94,20 @@ struct DragOfElementsFunctor {
     const Point chord = elements.end(cloth, element, 1, time) - elements.end(cloth, element, 0, time);
     const double size = length(chord), part = a == b ? 1.0 : size / (end - first);  // a body has no length
     const Point direction = size > 0.0 ? (1.0 / size) * chord : chord;
+    const double half = 0.5 * density * part;
     Point sum[2] = {};
-    double rates[2] = {};
+    DragRate rates[2];
     for (int point = first; point < end; ++point) {
       const double at = elements.place(element, point);
       const Point w = between(at, one, other) - load_vector(air, point);
       const double slip = dot(w, direction);
-      const Point normal = w - slip * direction;
-      const double half = 0.5 * density * part, of_normal = half * elements.across(element) * length(normal),
-                   of_slip = half * elements.along(element) * Kokkos::fabs(slip);
-      const Point drag = (-of_normal) * normal - (of_slip * slip) * direction;
-      const double change = 2.0 * (of_normal + of_slip);
+      const DragRate of_point = drag_rate(half * elements.across(element) * length(w - slip * direction),
+                                          half * elements.along(element) * Kokkos::fabs(slip), direction);
+      const Point drag = -1.0 * product(of_point, w);
       spatial::store_vector(force, point, drag);
-      rate(point) = change;
+      rate(point) = of_point;
       sum[0] = sum[0] + (1.0 - at) * drag, sum[1] = sum[1] + at * drag;
-      rates[0] += (1.0 - at) * change, rates[1] += at * change;
+      rates[0] = rates[0] + (1.0 - at) * of_point, rates[1] = rates[1] + at * of_point;
     }
     for (int k = 0; k < 2; ++k) {
       spatial::store_vector(end_force, 2 * element + k, sum[k]);
@@ -124,31 +122,32 @@ struct DragVertices {
   fabric::ListView<ExecutionSpace, int> vertex, first, end;
 };
 
-/// Drag on a vertex, linear in its velocity around that at the beginning of the step.
+/// Drag on a vertex, linear in its velocity.
 template <class ExecutionSpace>
 struct DragOfVerticesFunctor {
   using Vectors = typename DragRelaxation<ExecutionSpace>::Vectors;
-  using Scalars = typename DragRelaxation<ExecutionSpace>::Scalars;
+  using Rates = typename DragRelaxation<ExecutionSpace>::Rates;
 
   DragVertices<ExecutionSpace> vertices;
   fabric::PointsView<ExecutionSpace> velocities;
   Vectors end_force;
-  Scalars end_rate;
+  Rates end_rate;
   DragRelaxation<ExecutionSpace> relaxation;
-  Vectors before;  ///< force at the beginning of the step on each vertex, N
+  Vectors before;  ///< velocity of each vertex at the beginning of the step, m/s
 
   KOKKOS_FUNCTION void operator()(const int k) const {
     const int i = vertices.vertex(k);
+    const spatial::Point velocity = spatial::load_vector(velocities, i);
     spatial::Point force{0.0, 0.0, 0.0};
-    double rate = 0.0;
+    DragRate rate;
     for (int n = vertices.first(k); n < vertices.first(k + 1); ++n) {
       force = force + spatial::load_vector(end_force, vertices.end(n));
-      rate += end_rate(vertices.end(n));
+      rate = rate + end_rate(vertices.end(n));
     }
-    spatial::store_vector(before, i, force);
-    spatial::store_vector(relaxation.drive, i, force + rate * spatial::load_vector(velocities, i));
+    spatial::store_vector(before, i, velocity);
+    spatial::store_vector(relaxation.drive, i, force + product(rate, velocity));
     relaxation.rate(i) = rate;
-    spatial::store_vector(relaxation.impulse, i, spatial::Point{0.0, 0.0, 0.0});
+    spatial::store_vector(relaxation.path, i, spatial::Point{0.0, 0.0, 0.0});
   }
 };
 
@@ -157,22 +156,19 @@ struct DragOfVerticesFunctor {
 template <class ExecutionSpace>
 struct DragReactionFunctor {
   using Vectors = typename DragRelaxation<ExecutionSpace>::Vectors;
-  using Scalars = typename DragRelaxation<ExecutionSpace>::Scalars;
+  using Rates = typename DragRelaxation<ExecutionSpace>::Rates;
 
   DragElements<ExecutionSpace> elements;
   DragRelaxation<ExecutionSpace> relaxation;
   Vectors before, force;
-  Scalars rate;
+  Rates rate;
   double inverse_dt;  ///< 1/s
   Vectors on_air;     ///< of each point, N
   Vectors sum;        ///< force of the air on each element, N
 
-  /// Mean over the step of what a vertex has lost of its velocity, as the linear drag has it, m/s.
+  /// What a vertex has lost of its velocity in the mean over the step, m/s.
   KOKKOS_FUNCTION spatial::Point loss(int vertex) const {
-    const double of_vertex = relaxation.rate(vertex);
-    if (!(of_vertex > 0.0)) return {0.0, 0.0, 0.0};
-    return (1.0 / of_vertex) * (inverse_dt * spatial::load_vector(relaxation.impulse, vertex) -
-                                spatial::load_vector(before, vertex));
+    return spatial::load_vector(before, vertex) - inverse_dt * spatial::load_vector(relaxation.path, vertex);
   }
   KOKKOS_FUNCTION void operator()(const int element) const {
     using spatial::Point;
@@ -180,7 +176,7 @@ struct DragReactionFunctor {
     Point total{0.0, 0.0, 0.0};
     for (int point = elements.first(element); point < elements.first(element + 1); ++point) {
       const Point mean = spatial::load_vector(force, point) +
-                         rate(point) * between(elements.place(element, point), one, other);
+                         product(rate(point), between(elements.place(element, point), one, other));
       spatial::store_vector(on_air, point, element < elements.lines ? -1.0 * mean : Point{0.0, 0.0, 0.0});
       total = total + mean;
     }
@@ -192,9 +188,10 @@ struct DragReactionFunctor {
 /// do nothing and there are no Views.
 ///
 /// Points at most a cell apart along each line have the velocity of the air there. The drag of a step of the
-/// flow acts on the ends in proportion to their distance from each point, as on a rod between two supports,
-/// and is linear in their velocity around that at the beginning of the step, so that steps of any length are
-/// stable for vertices of any mass. Points spread the reaction with the weights of the interpolation.
+/// flow acts on the ends in proportion to their distance from each point, as on a rod between two supports.
+/// The speeds of its coefficients are those at the beginning of the step, the velocities that they multiply
+/// those of the ends during it, so that steps of any length are stable for vertices of any mass and no force
+/// turns against the air. Points spread the reaction with the weights of the interpolation.
 ///
 /// A step of the flow is `begin_step`, steps of the cloth with `relaxation`, `spread_forces`. Functions are
 /// asynchronous unless stated otherwise; `begin_step` is collective and blocks on several ranks.
@@ -203,7 +200,7 @@ class AirDrag {
  public:
   using Relaxation = DragRelaxation<ExecutionSpace>;
   using Vectors = typename Relaxation::Vectors;
-  using Scalars = typename Relaxation::Scalars;
+  using Rates = typename Relaxation::Rates;
   using Cloth = fabric::State<ExecutionSpace>;
   using Faces = FaceViews<flow::FaceView<ExecutionSpace>>;
 
@@ -243,11 +240,11 @@ class AirDrag {
     _transfer.emplace(space, grid, p.sheet.delta, static_cast<int>(points), own_faces);
     _rank_sum.emplace(communicator, points, 1);
     _relaxation = {
-        .drive = vectors("drive", rows), .rate = scalars("rate", rows), .impulse = vectors("impulse", rows)};
+        .drive = vectors("drive", rows), .rate = rates("rate", rows), .path = vectors("path", rows)};
     _before = vectors("before", rows);
     _air = vectors("air", points), _force = vectors("force", points), _on_air = vectors("on_air", points);
-    _rate = scalars("point_rate", points);
-    _end_force = vectors("end_force", 2 * elements), _end_rate = scalars("end_rate", 2 * elements);
+    _rate = rates("point_rate", points);
+    _end_force = vectors("end_force", 2 * elements), _end_rate = rates("end_rate", 2 * elements);
     _sum = vectors("sum", elements);
   }
 
@@ -310,8 +307,8 @@ class AirDrag {
   static Vectors vectors(const std::string& name, std::size_t rows) {
     return Vectors("drogue::coupling::drag_" + name, rows);
   }
-  static Scalars scalars(const std::string& name, std::size_t rows) {
-    return Scalars("drogue::coupling::drag_" + name, rows);
+  static Rates rates(const std::string& name, std::size_t rows) {
+    return Rates("drogue::coupling::drag_" + name, rows);
   }
   [[nodiscard]] int elements() const { return static_cast<int>(_sum.extent(0)); }
 
@@ -343,9 +340,9 @@ class AirDrag {
   Relaxation _relaxation;
   Vectors _before;                ///< of vertices
   Vectors _air, _force, _on_air;  ///< of points
-  Scalars _rate;
+  Rates _rate;
   Vectors _end_force, _sum;  ///< of the ends of elements, and of these
-  Scalars _end_rate;
+  Rates _end_rate;
 };
 
 template <class ExecutionSpace>

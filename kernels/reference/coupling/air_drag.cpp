@@ -1,5 +1,6 @@
 #include "kernels/reference/coupling/air_drag.hpp"
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -15,7 +16,33 @@ void for_each_point(const std::vector<DragLine>& lines,
       visit(line, point, (2.0 * static_cast<double>(k) + 1.0) / (2.0 * static_cast<double>(line.points)));
 }
 
+using Matrix = std::array<Vector, 3>;
+
 double norm(const Vector& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+
+void add(double factor, const Matrix& a, Matrix& sum) {
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) sum[i][j] += factor * a[i][j];
+}
+
+Vector times(const Matrix& a, const Vector& v) {
+  Vector result{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) result[i] += a[i][j] * v[j];
+  return result;
+}
+
+/// Solution of a linear system with a positive definite matrix by elimination.
+Vector solution(Matrix a, Vector right) {
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (i == k) continue;
+      const double factor = a[i][k] / a[k][k];
+      for (std::size_t j = 0; j < 3; ++j) a[i][j] -= factor * a[k][j];
+      right[i] -= factor * right[k];
+    }
+  return {right[0] / a[0][0], right[1] / a[1][1], right[2] / a[2][2]};
+}
 
 }  // namespace
 
@@ -36,11 +63,12 @@ std::vector<Vector> drag_points(const std::vector<DragLine>& lines, const DragSt
 std::vector<Vector> take_drag_step(const std::vector<DragLine>& lines, const std::vector<Vector>& air,
                                    double density, double dt, int parts, DragState& state) {
   const std::size_t vertices = state.masses.size();
-  std::vector<Vector> force(air.size());
-  std::vector<double> change(air.size()), rate(vertices, 0.0);
-  std::vector<Vector> first(vertices, Vector{}), impulse(vertices, Vector{});
+  std::vector<Vector> slips(air.size());
+  std::vector<Matrix> at_point(air.size(), Matrix{}), at_vertex(vertices, Matrix{});
+  std::vector<Vector> drive(vertices, Vector{}), mean(vertices, Vector{});
   for_each_point(lines, [&](const DragLine& line, std::size_t point, double share) {
-    Vector chord{}, w{};
+    Vector chord{};
+    Vector& w = slips[point];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto middle = [&](std::size_t i) {
         return state.positions[i][axis] + 0.5 * dt * state.velocities[i][axis];
@@ -52,42 +80,52 @@ std::vector<Vector> take_drag_step(const std::vector<DragLine>& lines, const std
     const bool is_body = line.from == line.to;
     const double length = norm(chord),
                  factor = 0.5 * density * (is_body ? 1.0 : length / static_cast<double>(line.points));
-    Vector along{};
-    double slip = 0.0;
-    for (std::size_t axis = 0; axis < 3 && !is_body; ++axis) slip += w[axis] * chord[axis] / length;
-    for (std::size_t axis = 0; axis < 3 && !is_body; ++axis) along[axis] = slip * chord[axis] / length;
-    const Vector across = {w[0] - along[0], w[1] - along[1], w[2] - along[2]};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      force[point][axis] =
-          -factor * (line.across * norm(across) * across[axis] + line.along * norm(along) * along[axis]);
-    change[point] = 2.0 * factor * (line.across * norm(across) + line.along * norm(along));
-    rate[line.from] += (1.0 - share) * change[point];
-    rate[line.to] += share * change[point];
+    Vector direction{};
+    for (std::size_t axis = 0; axis < 3 && !is_body; ++axis) direction[axis] = chord[axis] / length;
+    const double slip = w[0] * direction[0] + w[1] * direction[1] + w[2] * direction[2];
+    Vector across{};
+    for (std::size_t axis = 0; axis < 3; ++axis) across[axis] = w[axis] - slip * direction[axis];
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double projection = direction[i] * direction[j];
+        at_point[point][i][j] = factor * (line.across * norm(across) * ((i == j ? 1.0 : 0.0) - projection) +
+                                          line.along * std::abs(slip) * projection);
+      }
+    const Vector force = times(at_point[point], w);
+    add(1.0 - share, at_point[point], at_vertex[line.from]);
+    add(share, at_point[point], at_vertex[line.to]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[line.from][axis] += (1.0 - share) * force[point][axis];
-      first[line.to][axis] += share * force[point][axis];
+      drive[line.from][axis] -= (1.0 - share) * force[axis];
+      drive[line.to][axis] -= share * force[axis];
     }
   });
   const std::vector<Vector> before = state.velocities;
   const double part = dt / parts;
-  for (std::size_t i = 0; i < vertices; ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (int k = 0; k < parts; ++k) {
-        double& v = state.velocities[i][axis];
-        const double old = v;
-        v = before[i][axis] + (old - before[i][axis] + part / state.masses[i] * first[i][axis]) /
-                                  (1.0 + part / state.masses[i] * rate[i]);
-        impulse[i][axis] += state.masses[i] * (v - old);
-        state.positions[i][axis] += part * v;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    const Vector of_start = times(at_vertex[i], before[i]);
+    Matrix matrix{};
+    for (std::size_t axis = 0; axis < 3; ++axis) matrix[axis][axis] = state.masses[i];
+    add(part, at_vertex[i], matrix);
+    for (int k = 0; k < parts; ++k) {
+      Vector right{};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        right[axis] = state.masses[i] * state.velocities[i][axis] + part * (drive[i][axis] + of_start[axis]);
+      state.velocities[i] = solution(matrix, right);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        state.positions[i][axis] += part * state.velocities[i][axis];
+        mean[i][axis] += state.velocities[i][axis] / parts;
       }
-  // What each end has lost of its velocity changes the force at the points of its lines.
-  for_each_point(lines, [&](const DragLine& line, std::size_t point, double share) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto loss = [&](std::size_t i) {
-        return rate[i] > 0.0 ? (impulse[i][axis] / dt - first[i][axis]) / rate[i] : 0.0;
-      };
-      force[point][axis] += change[point] * ((1.0 - share) * loss(line.from) + share * loss(line.to));
     }
+  }
+  std::vector<Vector> force(air.size());
+  for_each_point(lines, [&](const DragLine& line, std::size_t point, double share) {
+    Vector w{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto loss = [&](std::size_t i) { return before[i][axis] - mean[i][axis]; };
+      w[axis] = slips[point][axis] - (1.0 - share) * loss(line.from) - share * loss(line.to);
+    }
+    const Vector of_line = times(at_point[point], w);
+    for (std::size_t axis = 0; axis < 3; ++axis) force[point][axis] = -of_line[axis];
   });
   return force;
 }

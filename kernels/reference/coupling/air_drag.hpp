@@ -24,7 +24,8 @@ struct DragState {
                                               double dt);
 
 /// Takes a step of dt, s, in equal parts by the backward Euler method, with the drag on each vertex linear in
-/// its velocity. `air`: velocity at `drag_points`, m/s. Returns the mean force of the air at each point, N.
+/// its velocity: speeds are those of the beginning. `air`: velocity at `drag_points`, m/s. Returns the mean
+/// force of the air at each point, N.
 std::vector<Vector> take_drag_step(const std::vector<DragLine>& lines, const std::vector<Vector>& air,
                                    double density, double dt, int parts, DragState& state);
 
