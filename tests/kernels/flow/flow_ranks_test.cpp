@@ -175,10 +175,23 @@ std::vector<Case> cases() {
   return all;
 }
 
-/// Whether two arrays agree within `tolerance`, relative to the larger of their values and 1.
+/// Whether two arrays agree within `tolerance`, relative to the larger of their values and 1, or within
+/// `round_off`.
 void expect_near(const std::vector<double>& expected, const std::vector<double>& found,
-                 const std::string& what) {
-  EXPECT_LT(largest_difference(expected, found), tolerance * std::max(1.0, largest(expected))) << what;
+                 const std::string& what, double round_off = 0.0) {
+  EXPECT_LT(largest_difference(expected, found),
+            std::max(round_off, tolerance * std::max(1.0, largest(expected))))
+      << what;
+}
+
+/// Error of the pressure, m^2/s^2, with which implicit diffusion starts: it acts for 5e-3 of the first dt,
+/// which divides the round-off of the projected velocity.
+double round_off_of_first_pressure(const Parameters& p, double speed, double first_dt) {
+  if (p.diffusion != Diffusion::crank_nicolson) return 0.0;
+  EXPECT_GT(first_dt, 0.0);
+  double extent = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) extent = std::max(extent, p.high[axis] - p.low[axis]);
+  return 4.0 * std::numeric_limits<double>::epsilon() * speed * extent / (5e-3 * first_dt);
 }
 
 void expect_same_totals(const Totals& a, const Totals& b, const std::string& what) {
@@ -243,8 +256,14 @@ void expect_steps_of_one_rank(const Case& each, int ranks) {
       EXPECT_EQ(Stop::pause, shared->advance(endless, step, {})) << what;
     }
     const auto expected = single.state(), found = shared.state();
-    for (std::size_t i = 0; i < expected.size(); ++i)
-      if (i < 4 || step > 0) expect_near(expected[i], found[i], what + ", array " + std::to_string(i));
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const bool is_first_pressure = i == 3 && step == 0;
+      if (i < 4 || step > 0)
+        expect_near(expected[i], found[i], what + ", array " + std::to_string(i),
+                    is_first_pressure
+                        ? round_off_of_first_pressure(p, largest(expected[0]), single->progress().longest_dt)
+                        : 0.0);
+    }
     expect_same_totals(single->totals(), shared->totals(), what);
     expect_same_extremes(single->extremes(), shared->extremes(), what);
     for (const std::size_t c : {0U, 1U, 2U})
@@ -274,6 +293,21 @@ TEST_F(FlowRanks, TakeTheStepsOfOneRankByDiagonalization) {
   }
 }
 
+/// The cases with several planes along z: a prime number of them, in which ranks have slabs of unequal size.
+std::vector<Case> slab_cases() {
+  std::vector<Case> all;
+  for (Case each : cases()) {
+    Parameters& p = each.parameters;
+    if (p.cells[2] == 1) continue;
+    p.cells[2] = 13;
+    if (!p.faces[2].empty()) set_random_widths(p, 3.0, 4);
+    p.slabs = true;
+    each.name += ", slabs";
+    all.push_back(each);
+  }
+  return all;
+}
+
 /// The case with implicit diffusion that exceeds the limit of explicit steps.
 Case with_implicit_diffusion(Case each) {
   each.name += ", implicit diffusion";
@@ -288,6 +322,24 @@ TEST_F(FlowRanks, DiffuseImplicitlyAsOneRank) {
   Case flat = with_implicit_diffusion(cases()[5]);
   flat.parameters.pressure_solver = PressureSolver::diagonalization;
   for (const int ranks : {2, 3, 4}) expect_steps_of_one_rank(flat, ranks);
+}
+
+TEST_F(FlowRanks, TakeTheStepsOfOneRankInSlabs) {
+  int ranks = 2;
+  for (Case each : slab_cases()) {
+    expect_steps_of_one_rank(each, ranks);
+    ranks = 2 + (ranks + 2) % 3;
+    each.parameters.pressure_solver = PressureSolver::diagonalization;
+    expect_steps_of_one_rank(each, ranks);
+  }
+}
+
+TEST_F(FlowRanks, DiffuseImplicitlyInSlabsAsOneRank) {
+  int ranks = 2;
+  for (const Case& each : slab_cases()) {
+    expect_steps_of_one_rank(with_implicit_diffusion(each), ranks);
+    ranks = 2 + (ranks + 2) % 3;
+  }
 }
 
 #if defined(DROGUE_HAVE_HYPRE)
