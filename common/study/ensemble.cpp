@@ -20,9 +20,11 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_runs = 10000, most_jobs = 1024;
 constexpr double least_factor = 0.1, most_factor = 10.0, least_ratio = 1.1;
 
-[[noreturn]] void refuse(const std::string& what) { throw Failure(ExitCode::usage, "--study: " + what); }
+[[noreturn]] void refuse_ensemble(const std::string& what) {
+  throw Failure(ExitCode::usage, "--study: " + what);
+}
 
-std::vector<std::string> split(const std::string& text, char separator) {
+std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
   for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
@@ -40,23 +42,25 @@ std::optional<Number> number_of(const std::string& text) {
 int count_of(const std::string& key, const std::string& text, int most) {
   const std::optional<int> count = number_of<int>(text);
   if (!count || *count < 1 || *count > most)
-    refuse(key + "=" + text + " is not an integer between 1 and " + std::to_string(most));
+    refuse_ensemble(key + "=" + text + " is not an integer between 1 and " + std::to_string(most));
   return *count;
 }
 
 std::vector<double> factors_of(const std::string& text) {
   std::vector<double> factors;
-  for (const std::string& part : split(text, ':')) {
+  for (const std::string& part : parts_of(text, ':')) {
     const std::optional<double> factor = number_of<double>(part);
     if (!factor || !(*factor >= least_factor && *factor <= most_factor))
-      refuse("cells=" + text + ": '" + part + "' is no factor of the numbers of cells between 0.1 and 10");
+      refuse_ensemble("cells=" + text + ": '" + part +
+                      "' is no factor of the numbers of cells between 0.1 and 10");
     factors.push_back(*factor);
   }
-  if (factors.size() > 2) refuse("cells=" + text + " names more than two grids");
+  if (factors.size() > 2) refuse_ensemble("cells=" + text + " names more than two grids");
   if (factors.size() == 2 && factors[1] < least_ratio * factors[0])
-    refuse("cells=" + text +
-           ": the second grid must have at least 1.1 times as many cells along each axis as the first; "
-           "closer ones show scatter alone");
+    refuse_ensemble(
+        "cells=" + text +
+        ": the second grid must have at least 1.1 times as many cells along each axis as the first; "
+        "closer ones show scatter alone");
   return factors;
 }
 
@@ -127,7 +131,7 @@ std::string key_of(std::string name) {
 }  // namespace
 
 bool is_ensemble(const std::string& text) {
-  return std::ranges::any_of(split(text, ','), [](const std::string& part) {
+  return std::ranges::any_of(parts_of(text, ','), [](const std::string& part) {
     const std::string key = part.substr(0, part.find('='));
     return key == "ensemble" || key == "cells" || key == "jobs";
   });
@@ -136,14 +140,14 @@ bool is_ensemble(const std::string& text) {
 EnsembleAxes parse_ensemble(const std::string& text) {
   EnsembleAxes axes;
   std::map<std::string, int> named;
-  for (const std::string& part : split(text, ',')) {
+  for (const std::string& part : parts_of(text, ',')) {
     const std::size_t equals = part.find('=');
     const std::string key = part.substr(0, equals),
                       value = equals == std::string::npos ? "" : part.substr(equals + 1);
     if (key != "ensemble" && key != "cells" && key != "jobs")
-      refuse("'" + key + "' is not one of ensemble, cells, jobs");
-    if (value.empty()) refuse("an axis needs values: " + key + "=...");
-    if (named[key]++ > 0) refuse("the axis " + key + " is named twice");
+      refuse_ensemble("'" + key + "' is not one of ensemble, cells, jobs");
+    if (value.empty()) refuse_ensemble("an axis needs values: " + key + "=...");
+    if (named[key]++ > 0) refuse_ensemble("the axis " + key + " is named twice");
     if (key == "ensemble") axes.runs = count_of(key, value, most_runs);
     if (key == "jobs") axes.jobs = count_of(key, value, most_jobs);
     if (key == "cells") axes.factors = factors_of(value);
@@ -154,15 +158,21 @@ EnsembleAxes parse_ensemble(const std::string& text) {
 void read_member(const std::filesystem::path& result, int exit_code, const std::string& log, Member& member) {
   std::ifstream stream(result);
   const Json json = Json::parse(stream, nullptr, false);
+  member.code = code_of(exit_code);
   if (!json.is_object()) {
-    member.code = code_of(exit_code);
     // A process that ends well leaves the file.
     if (member.is_finished()) member.code = ExitCode::io_error;
     member.message =
         log.empty() ? "it ended with code " + std::to_string(exit_code) + " and left no result.json" : log;
     return;
   }
-  member.code = code_of(json.value("exit_code", exit_code));
+  if (json.value("exit_code", exit_code) != exit_code) {
+    member.code = exit_code == 0 ? ExitCode::io_error : member.code;
+    member.message = log.empty() ? "it ended with code " + std::to_string(exit_code) +
+                                       ", which its result.json does not have"
+                                 : log;
+    return;
+  }
   member.message = json.value("message", "");
   member.backend = json.value("backend", "");
   member.device = json.value("device", "");
@@ -239,11 +249,12 @@ void describe(const EnsembleAxes& axes, const std::vector<Member>& members,
   for (const StudyQuantity& quantity : quantities) {
     const std::string name = key_of(quantity.name);
     const run::Distribution& fine = quantity.grids.back();
+    const bool lacks_grid = quantity.grids.size() > 1 && quantity.grids.front().runs == 0;
     set(name, quantity.bar.value);
-    set(name + "_error", quantity.bar.half_width);
+    set(name + "_error", lacks_grid ? unknown : quantity.bar.half_width);
     set(name + "_sampling", quantity.bar.sampling);
     if (quantity.grids.size() > 1) {
-      set(name + "_grid", quantity.bar.grid);
+      set(name + "_grid", lacks_grid ? unknown : quantity.bar.grid);
       set(name + "_coarse", quantity.grids.front().runs > 0 ? quantity.grids.front().mean : unknown);
     }
     set(name + "_runs", static_cast<std::int64_t>(fine.runs));

@@ -66,7 +66,7 @@ struct StudyQuantity {
 [[nodiscard]] std::vector<StudyQuantity> summarize(const std::vector<Member>& members,
                                                    const std::vector<double>& factors);
 
-/// "0.790 +- 0.020 (sampling 0.01, grid 0.017)", and of `peak` quantities their distribution.
+/// "0.790 +- 0.035 (sampling 0.012, grid 0.033)", and of `peak` quantities their distribution.
 [[nodiscard]] std::string text_of(const StudyQuantity& quantity);
 
 /// runs.csv: a row for each run.

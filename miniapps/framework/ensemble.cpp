@@ -87,13 +87,14 @@ class EnsembleStudy {
     }
     process.command.insert(process.command.end(), _options.kokkos.begin(), _options.kokkos.end());
     process.log = log_of(run.member);
+    // That of an earlier study would stand for a run that fails before it begins.
+    std::filesystem::remove(folder_of(run.member) / "result.json");
     std::filesystem::create_directories(process.log.parent_path());
     // Runs at once share the cores; threads that are bound to them would all take the same ones.
-    if (_jobs > 1 && std::getenv("OMP_NUM_THREADS") == nullptr) {
+    if (_jobs > 1) process.environment["OMP_PROC_BIND"] = "false";
+    if (_jobs > 1 && std::getenv("OMP_NUM_THREADS") == nullptr)
       process.environment["OMP_NUM_THREADS"] =
           std::to_string(std::max(1, device::host_cores().allowed / _jobs));
-      process.environment["OMP_PROC_BIND"] = "false";
-    }
     return process;
   }
 

@@ -83,18 +83,18 @@ void declare_perturbation(Table& table, Perturbation& perturbation) {
 }
 
 void declare_line_drag(Table& table, CylinderDrag& drag) {
-  table.value("diameter", drag.diameter, "Diameter of a line", {.unit = "m", .range = positive});
+  table.value("diameter", drag.diameter, "Diameter of a line", {.unit = "m", .range = between(1e-6, 1.0)});
   table.value("coefficient", drag.coefficient,
               "Drag coefficient of the flow across a line, of its length times its diameter",
-              {.range = not_negative});
+              {.range = between(0.0, 10.0)});
   table.value("friction", drag.friction, "Drag coefficient of the flow along a line, of the same area",
-              {.range = not_negative});
+              {.range = between(0.0, 10.0)});
 }
 
 void declare_payload_drag(Table& table, PayloadDrag& drag) {
-  table.value("area", drag.area, "Area", {.unit = "m^2", .range = positive, .required = true});
+  table.value("area", drag.area, "Area", {.unit = "m^2", .range = between(1e-9, 1e6), .required = true});
   table.value("coefficient", drag.coefficient, "Drag coefficient of this area, the same from all sides",
-              {.range = not_negative});
+              {.range = between(0.0, 10.0)});
 }
 
 void declare_lines(Table& table, SuspensionLines& lines, const Condition& fluid) {

@@ -45,6 +45,14 @@ void note_blockage(FlowScene& scene) {
       rough_text(100.0 * most_blockage), " %"));
 }
 
+/// Notes a drop in a grid at rest, out of which it falls.
+void note_unfollowed_drop(FlowScene& scene) {
+  if (scene.drop && scene.frame != Frame::follow)
+    scene.notices.push_back(
+        "grid.frame: a drop falls out of a grid at rest, which ends the run; \"follow\" moves the grid with "
+        "it");
+}
+
 /// Notes sides across the stream along which a grid does not follow a canopy that glides.
 void note_unfollowed_glide(FlowScene& scene) {
   const CanopyPayload& payload = scene.canopies.front().payload;
@@ -56,10 +64,10 @@ void note_unfollowed_glide(FlowScene& scene) {
     sides.push_back(sentence(axis_names[axis], " = \"outflow\""));
   }
   if (axes.empty()) return;
-  scene.notices.push_back(sentence("grid.boundary: the grid does not follow canopy[0] along ",
-                                   joined(axes, " and "),
-                                   ", and a free canopy glides: it may leave the grid, which ends the run; ",
-                                   joined(sides, ", "), " lets the grid follow"));
+  scene.notices.push_back(
+      sentence("grid.boundary: the grid does not follow canopy[0] along ", joined(axes, " and "),
+               ", and a free canopy glides: it may leave the grid, which ends the run; with ",
+               joined(sides, ", "), " the grid follows"));
 }
 
 /// Notes the canopy with the fewest cells across.
@@ -175,6 +183,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
   const std::size_t coarsest = *std::ranges::min_element(flying, {}, cells);
   note_blockage(scene);
   note_sides(scene);
+  note_unfollowed_drop(scene);
   note_unfollowed_glide(scene);
   note_coarse_cells(scene, coarsest);
   for (const std::size_t i : flying) {

@@ -230,6 +230,8 @@ std::string ensemble_report(const MiniAppOptions& options, const std::filesystem
   for (const FlowScene& scene : scenes) {
     if (!scene.has_fluid()) return text;
     const RunTime one = run_time(scene);
+    if (one.two_cores == 0.0)
+      return text + "             time not known: it depends on the speed of the fluid\n";
     all.two_cores += ensemble.axes.runs * one.two_cores;
     all.h200 += ensemble.axes.runs * one.h200;
     text +=

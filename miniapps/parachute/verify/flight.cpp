@@ -43,6 +43,9 @@ Vector direction_of(const FlowScene& scene, std::size_t i) {
   return direction;
 }
 
+/// True for the direction across which `projected_area` is.
+bool is_along_z(const Vector& direction) { return std::abs(direction[2]) > 1.0 - 1e-9; }
+
 /// Area of the domain across a direction, m^2; infinite for one along no axis, whose section varies.
 double section_of(const flow::Parameters& p, const Vector& direction) {
   double section = 1.0;
@@ -52,6 +55,17 @@ double section_of(const flow::Parameters& p, const Vector& direction) {
       section *= p.high[axis] - p.low[axis];
     }
   return section;
+}
+
+/// True if the relation of `blockage_factor` holds: closed sides across the direction hold the stream
+/// together, and the canopy is on its axis. One that glides has another factor (docs/parachute-notebook.md,
+/// blockage).
+bool is_blocked_by_sides(const FlowScene& scene, std::size_t i, const Vector& direction) {
+  const CanopyPayload& payload = owner_of(scene, i).payload;
+  if (!payload.fixed && !payload.guided) return false;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (direction[axis] == 0.0 && scene.open_axes()[axis]) return false;
+  return true;
 }
 
 /// Begin of the interval of the means, s.
@@ -153,21 +167,24 @@ std::vector<std::pair<std::string, Statistic>> means_of(const FlowScene& scene, 
     return 1.0 + blockage_factor * 2.0 * rows.all_forces(from, to) /
                      (density * std::pow(rows.speed(from, to), 2) * section);
   };
+  const bool is_blocked = is_blocked_by_sides(scene, i, direction);
   std::vector<std::pair<std::string, Statistic>> means;
   if (falls(scene, i)) {
     means.emplace_back("rate_of_descent", [&rows](double from, double to) { return rows.speed(from, to); });
-    means.emplace_back("rate_of_descent_free_air", [=, &rows](double from, double to) {
-      return rows.speed(from, to) * std::sqrt(pressure_ratio(from, to));
-    });
+    if (is_blocked)
+      means.emplace_back("rate_of_descent_free_air", [=, &rows](double from, double to) {
+        return rows.speed(from, to) * std::sqrt(pressure_ratio(from, to));
+      });
     means.emplace_back("drift", [&rows](double from, double to) { return rows.across(from, to); });
   }
   means.emplace_back("drag_coefficient", drag);
-  means.emplace_back("drag_coefficient_free_air",
-                     [=](double from, double to) { return drag(from, to) / pressure_ratio(from, to); });
-  if (std::abs(direction[2]) > 1.0 - 1e-9)
-    means.emplace_back("inflated_diameter_ratio", [=, &rows](double from, double to) {
-      return std::sqrt(rows.column("projected_area", from, to) / area);
-    });
+  if (is_blocked)
+    means.emplace_back("drag_coefficient_free_air",
+                       [=](double from, double to) { return drag(from, to) / pressure_ratio(from, to); });
+  if (!is_along_z(direction)) return means;
+  means.emplace_back("inflated_diameter_ratio", [=, &rows](double from, double to) {
+    return std::sqrt(rows.column("projected_area", from, to) / area);
+  });
   means.emplace_back("leak", [&rows](double from, double to) {
     return rows.column("leak", from, to) /
            (rows.column("airspeed", from, to) * rows.column("projected_area", from, to));
@@ -196,7 +213,8 @@ void describe_means(const FlowScene& scene, const run::History& history, std::si
     set("touchdown_time", time);
     set("touchdown_speed", speed);
   }
-  set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
+  if (is_along_z(direction_of(scene, i)))
+    set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
 }
 
 /// Keys of a group with their titles, in the order in which they are printed.

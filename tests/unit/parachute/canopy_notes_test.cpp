@@ -124,7 +124,7 @@ TEST(CanopyNotes, NameSidesAlongWhichTheGridDoesNotFollowAGlide) {
                                    "grid.boundary.x=\"outflow\""};
   expect_note(free,
               "grid.boundary: the grid does not follow canopy[0] along y, and a free canopy glides: it may "
-              "leave the grid, which ends the run; y = \"outflow\" lets the grid follow");
+              "leave the grid, which ends the run; with y = \"outflow\" the grid follows");
   free.emplace_back("grid.boundary.y=\"outflow\"");
   EXPECT_TRUE(notes(free).empty());
   EXPECT_TRUE(notes({free[0], "canopy[0].payload={mass=90,guided=true}"}).empty());

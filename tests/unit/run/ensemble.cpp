@@ -91,8 +91,8 @@ TEST(Ensemble, GivesErrorBarsOfTheFinestGrid) {
 TEST(Ensemble, TextNamesThePartsOfABar) {
   StudyQuantity quantity{"C_D0",
                          {run::distribution_of({0.8, 0.81}), run::distribution_of({0.79, 0.79})},
-                         {0.79, 0.0197, 0.01, 0.017}};
-  EXPECT_EQ(text_of(quantity), "0.790 +- 0.020 (sampling 0.01, grid 0.017)");
+                         {0.79, 0.0352, 0.012, 0.033}};
+  EXPECT_EQ(text_of(quantity), "0.790 +- 0.035 (sampling 0.012, grid 0.033)");
   quantity.grids.erase(quantity.grids.begin());
   quantity.bar = {0.79, 0.01, 0.01, 0.0};
   EXPECT_EQ(text_of(quantity), "0.790 +- 0.010 (sampling 0.01, grid not known)");
@@ -118,7 +118,8 @@ TEST_F(MemberFile, HasResultsAndMeasuredChecks) {
   const Member one = read(R"({"exit_code": 5, "message": "a check", "steps": 7, "timing": {"wall_s": 2.5},
     "checks": [{"name": "drag", "measured": 3.0, "error": 0.1}, {"name": "divergence", "value": 1e-15}],
     "canopies": {"vertices": 12},
-    "canopy_0": {"from": 1.0, "drift": 0.5, "drift_error": 0.2, "peak_line_force": 9.0, "leak": null}})");
+    "canopy_0": {"from": 1.0, "drift": 0.5, "drift_error": 0.2, "peak_line_force": 9.0, "leak": null}})",
+                          5);
   EXPECT_TRUE(one.is_finished());
   EXPECT_EQ(one.steps, 7);
   EXPECT_EQ(one.wall_s, 2.5);
@@ -128,6 +129,17 @@ TEST_F(MemberFile, HasResultsAndMeasuredChecks) {
   EXPECT_TRUE(std::isnan(one.quantities[1].half_width));
   EXPECT_EQ(one.quantities[2].name, "drag");
   EXPECT_EQ(one.quantities[2].half_width, 0.1);
+}
+
+TEST_F(MemberFile, OfAnotherRunHasNoResults) {
+  const std::string older = R"({"exit_code": 0, "canopy_0": {"drift": 1.0}})";
+  for (const int code : {2, 137}) {
+    const Member failed = read(older, code);
+    EXPECT_FALSE(failed.is_finished());
+    EXPECT_TRUE(failed.quantities.empty());
+    EXPECT_EQ(failed.message,
+              "it ended with code " + std::to_string(code) + ", which its result.json does not have");
+  }
 }
 
 TEST_F(MemberFile, OfAFailureHasNoResults) {
