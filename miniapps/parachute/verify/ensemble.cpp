@@ -149,8 +149,8 @@ FlowScene read_point(const std::filesystem::path& file, const MiniAppOptions& op
 }
 
 /// The scene of the command line with further assignments.
-FlowScene scene_of(const std::filesystem::path& file, const MiniAppOptions& options,
-                   const std::vector<std::string>& point) {
+FlowScene member_scene(const std::filesystem::path& file, const MiniAppOptions& options,
+                       const std::vector<std::string>& point) {
   if (point.empty()) return read_flow_scene(file, options.set);
   std::vector<std::string> sets = options.set;
   sets.insert(sets.end(), point.begin(), point.end());
@@ -179,14 +179,14 @@ std::vector<FlowScene> scenes_of(const FlowScene& base, const study::EnsembleAxe
                                  const MiniAppOptions& options, const std::filesystem::path& file) {
   std::vector<FlowScene> scenes;
   for (const double factor : axes.factors)
-    scenes.push_back(scene_of(file, options, refinement(base, factor)));
+    scenes.push_back(member_scene(file, options, refinement(base, factor)));
   return scenes;
 }
 
 }  // namespace
 
 framework::Ensemble ensemble_of(const MiniAppOptions& options, const std::filesystem::path& file) {
-  const FlowScene base = scene_of(file, options, {});
+  const FlowScene base = member_scene(file, options, {});
   framework::Ensemble ensemble;
   ensemble.program = "drogue-parachute";
   ensemble.scene = base.name;
@@ -221,7 +221,7 @@ framework::Ensemble ensemble_of(const MiniAppOptions& options, const std::filesy
 std::string ensemble_report(const MiniAppOptions& options, const std::filesystem::path& file) {
   if (!study::is_ensemble(options.study)) return {};
   const framework::Ensemble ensemble = ensemble_of(options, file);
-  const FlowScene base = scene_of(file, options, {});
+  const FlowScene base = member_scene(file, options, {});
   const std::vector<FlowScene> scenes = scenes_of(base, study::parse_ensemble(options.study), options, file);
   std::string text = "study        " + std::to_string(ensemble.runs.size()) + " runs, " +
                      std::to_string(ensemble.axes.runs) + " on each grid, " +
