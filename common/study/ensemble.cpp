@@ -1,15 +1,15 @@
 #include "common/study/ensemble.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+
+#include "common/study/axis_text.hpp"
 
 namespace drogue::study {
 namespace {
@@ -19,48 +19,28 @@ using Json = nlohmann::ordered_json;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_runs = 10000, most_jobs = 1024;
 constexpr double least_factor = 0.1, most_factor = 10.0, least_ratio = 1.1;
-
-[[noreturn]] void refuse_ensemble(const std::string& what) {
-  throw Failure(ExitCode::usage, "--study: " + what);
-}
-
-std::vector<std::string> parts_of(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
-  return parts;
-}
-
-template <class Number>
-std::optional<Number> number_of(const std::string& text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
+const std::vector<std::string> axis_names = {"ensemble", "cells", "jobs"};
 
 int count_of(const std::string& key, const std::string& text, int most) {
   const std::optional<int> count = number_of<int>(text);
   if (!count || *count < 1 || *count > most)
-    refuse_ensemble(key + "=" + text + " is not an integer between 1 and " + std::to_string(most));
+    refuse(key + "=" + text + " is not an integer between 1 and " + std::to_string(most));
   return *count;
 }
 
 std::vector<double> factors_of(const std::string& text) {
   std::vector<double> factors;
-  for (const std::string& part : parts_of(text, ':')) {
+  for (const std::string& part : split(text, ':')) {
     const std::optional<double> factor = number_of<double>(part);
     if (!factor || !(*factor >= least_factor && *factor <= most_factor))
-      refuse_ensemble("cells=" + text + ": '" + part +
-                      "' is no factor of the numbers of cells between 0.1 and 10");
+      refuse("cells=" + text + ": '" + part + "' is no factor of the numbers of cells between 0.1 and 10");
     factors.push_back(*factor);
   }
-  if (factors.size() > 2) refuse_ensemble("cells=" + text + " names more than two grids");
+  if (factors.size() > 2) refuse("cells=" + text + " names more than two grids");
   if (factors.size() == 2 && factors[1] < least_ratio * factors[0])
-    refuse_ensemble(
-        "cells=" + text +
-        ": the second grid must have at least 1.1 times as many cells along each axis as the first; "
-        "closer ones show scatter alone");
+    refuse("cells=" + text +
+           ": the second grid must have at least 1.1 times as many cells along each axis as the first; "
+           "closer ones show scatter alone");
   return factors;
 }
 
@@ -131,26 +111,17 @@ std::string key_of(std::string name) {
 }  // namespace
 
 bool is_ensemble(const std::string& text) {
-  return std::ranges::any_of(parts_of(text, ','), [](const std::string& part) {
-    const std::string key = part.substr(0, part.find('='));
-    return key == "ensemble" || key == "cells" || key == "jobs";
+  return std::ranges::any_of(split(text, ','), [](const std::string& part) {
+    return std::ranges::find(axis_names, part.substr(0, part.find('='))) != axis_names.end();
   });
 }
 
 EnsembleAxes parse_ensemble(const std::string& text) {
   EnsembleAxes axes;
-  std::map<std::string, int> named;
-  for (const std::string& part : parts_of(text, ',')) {
-    const std::size_t equals = part.find('=');
-    const std::string key = part.substr(0, equals),
-                      value = equals == std::string::npos ? "" : part.substr(equals + 1);
-    if (key != "ensemble" && key != "cells" && key != "jobs")
-      refuse_ensemble("'" + key + "' is not one of ensemble, cells, jobs");
-    if (value.empty()) refuse_ensemble("an axis needs values: " + key + "=...");
-    if (named[key]++ > 0) refuse_ensemble("the axis " + key + " is named twice");
-    if (key == "ensemble") axes.runs = count_of(key, value, most_runs);
-    if (key == "jobs") axes.jobs = count_of(key, value, most_jobs);
-    if (key == "cells") axes.factors = factors_of(value);
+  for (const auto& [name, value] : axis_texts(text, axis_names)) {
+    if (name == "ensemble") axes.runs = count_of(name, value, most_runs);
+    if (name == "jobs") axes.jobs = count_of(name, value, most_jobs);
+    if (name == "cells") axes.factors = factors_of(value);
   }
   return axes;
 }

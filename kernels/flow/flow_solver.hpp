@@ -146,7 +146,6 @@ class FlowSolver : public Solver {
   [[nodiscard]] const StateEntry<ExecutionSpace>& find(std::string_view name, std::size_t size) const;
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(const StateEntry<ExecutionSpace>& entry,
                                                     bool to_field) const;
-  Stop advance_alone(const stepping::AdvanceRequest& request, const Poll& poll);
   Stop advance_together(const stepping::AdvanceRequest& request, const Poll& poll);
   Stop advance_by_step(const stepping::AdvanceRequest& request, const Poll& poll);
   void enqueue_extremes(const ExecutionSpace& space);
@@ -467,10 +466,10 @@ struct FlowSolver<ExecutionSpace>::Steps {
 
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
-  const auto run = _step.halo.is_alone()     ? &FlowSolver::advance_alone
-                   : _step.is_asynchronous() ? &FlowSolver::advance_together
-                                             : &FlowSolver::advance_by_step;
-  const Stop stop = (this->*run)({target, pause_step}, poll);
+  const stepping::AdvanceRequest request{target, pause_step};
+  const Stop stop = _step.halo.is_alone()     ? _loop.advance(request, Steps{*this}, poll)
+                    : _step.is_asynchronous() ? advance_together(request, poll)
+                                              : advance_by_step(request, poll);
   if (stop == Stop::failed && _step.boundary.changes()) {
     _step.boundary.enqueue_evaluation(space(), _step.control, _step.constants, {0.0, true});
     space().fence("drogue::flow::advance: sides before the failed step");
@@ -598,11 +597,6 @@ void FlowSolver<ExecutionSpace>::forget_long_step() {
   Control control = read_control();
   control.trial.stop = Stop::pause;
   write_control(control);
-}
-
-template <class ExecutionSpace>
-Stop FlowSolver<ExecutionSpace>::advance_alone(const stepping::AdvanceRequest& request, const Poll& poll) {
-  return _loop.advance(request, Steps{*this}, poll);
 }
 
 /// Step loop of several ranks that wait for no host: the device decides after which step all stop, also for

@@ -26,9 +26,6 @@ class PlaneProducts {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
-  /// Whether a problem has them: always. Does not throw.
-  static bool supports(const PoissonProblem& /*problem*/) { return true; }
-
   /// Allocates one work array; blocks. Throws std::invalid_argument for wrong widths and std::runtime_error
   /// if memory runs out or cuBLAS fails.
   PlaneProducts(const ExecutionSpace& space, const PoissonProblem& problem, int planes, bool /*in_place*/)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "kernels/reference/vectors.hpp"
+
 namespace drogue::reference {
 namespace {
 
@@ -18,8 +20,6 @@ void for_each_drag_point(
 }
 
 using DragMatrix = std::array<Vector, 3>;
-
-double size_of(const Vector& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
 void add_matrix(double factor, const DragMatrix& a, DragMatrix& sum) {
   for (std::size_t i = 0; i < 3; ++i)
@@ -79,19 +79,18 @@ std::vector<Vector> take_drag_step(const std::vector<DragLine>& lines, const std
                 air[point][axis];
     }
     const bool is_body = line.from == line.to;
-    const double length = size_of(chord),
+    const double length = norm(chord),
                  factor = 0.5 * density * (is_body ? 1.0 : length / static_cast<double>(line.points));
     Vector direction{};
     for (std::size_t axis = 0; axis < 3 && !is_body; ++axis) direction[axis] = chord[axis] / length;
-    const double slip = w[0] * direction[0] + w[1] * direction[1] + w[2] * direction[2];
+    const double slip = product(w, direction);
     Vector across{};
     for (std::size_t axis = 0; axis < 3; ++axis) across[axis] = w[axis] - slip * direction[axis];
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j) {
         const double projection = direction[i] * direction[j];
-        at_point[point][i][j] =
-            factor * (line.across * size_of(across) * ((i == j ? 1.0 : 0.0) - projection) +
-                      line.along * std::abs(slip) * projection);
+        at_point[point][i][j] = factor * (line.across * norm(across) * ((i == j ? 1.0 : 0.0) - projection) +
+                                          line.along * std::abs(slip) * projection);
       }
     const Vector force = matrix_times(at_point[point], w);
     add_matrix(1.0 - share, at_point[point], at_vertex[line.from]);

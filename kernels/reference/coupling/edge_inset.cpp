@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "kernels/reference/vectors.hpp"
 
 namespace drogue::reference {
 
@@ -15,12 +16,6 @@ constexpr double rounding = 1e-12;
 Vector combination(double a, const Vector& u, double b, const Vector& v) {
   return {a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]};
 }
-
-double product(const Vector& u, const Vector& v) {
-  return std::inner_product(u.begin(), u.end(), v.begin(), 0.0);
-}
-
-double norm(const Vector& v) { return std::sqrt(product(v, v)); }
 
 Vector normalised(const Vector& v) { return combination(1.0 / norm(v), v, 0.0, v); }
 

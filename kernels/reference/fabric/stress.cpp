@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "kernels/reference/vectors.hpp"
+
 namespace drogue::reference {
 
 namespace {
-
-double product(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 

@@ -131,9 +131,11 @@ std::string run_size_report(const FlowScene& scene) {
   text += sentence("\nmemory       ", rough_text(size.bytes / 1048576.0), " MiB for its arrays\n");
   if (size.steps == 0.0) return text + "time         not known: it depends on the speed of the fluid\n";
   const RunTime time = run_time(scene);
+  const double ratio = speed_ratio(scene);
   return text + sentence("time         about ", duration_text(time.two_cores), " on two cores, ",
                          duration_text(time.h200), " on one H200, an estimate: ", rough_text(size.steps),
-                         " steps at ", speed_ratio(scene) > 1.0 ? "2.5 times " : "", "the speed of the start",
+                         " steps at ", ratio > 1.0 ? rough_text(ratio) + " times " : "",
+                         "the speed of the start",
                          size.cloth_steps > 0.0
                              ? sentence(", each with ", rough_text(size.cloth_steps), " of the cloth")
                              : std::string(),

@@ -203,16 +203,18 @@ std::string Simulation::leaving_vertex_text() {
     }
   const bool is_sharp = _scene.coupling.method == coupling::CouplingMethod::sharp;
   const std::size_t axis = closest / 2;
+  const bool follows = _scene.frame == Frame::follow, is_open = _scene.open_axes()[axis],
+             may_open = std::ranges::none_of(_scene.canopies, [](const Canopy&canopy) {
+               return canopy.payload.guided || canopy.payload.fixed;
+             });
   std::string remedy;
-  const bool may_open = std::ranges::none_of(
-      _scene.canopies, [](const Canopy& canopy) { return canopy.payload.guided || canopy.payload.fixed; });
-  if (_scene.frame == Frame::follow && (_scene.open_axes()[axis] || may_open))
+  if (follows && is_open)
     // A grid that follows takes over the velocity of the payload at the beginning of each block of steps.
-    remedy = _scene.open_axes()[axis]
-                 ? scene::sentence("a smaller ", p.fixed_dt > 0.0 ? "run.dt" : "run.max_dt",
-                                   ", with which the grid follows sooner, ")
-                 : scene::sentence("grid.boundary.", axis_names[axis],
-                                   " = \"outflow\", with which it follows along ", axis_names[axis], ", ");
+    remedy = scene::sentence("a smaller ", p.fixed_dt > 0.0 ? "run.dt" : "run.max_dt",
+                             ", with which the grid follows sooner, ");
+  else if (follows && may_open)
+    remedy = scene::sentence("grid.boundary.", axis_names[axis],
+                             " = \"outflow\", with which it follows along ", axis_names[axis], ", ");
   const bool leaves_core = closest % 2 == 0 ? box.low[axis] > p.low[axis] : box.high[axis] < p.high[axis];
   const char* const beside = leaves_core ? (is_sharp ? "lies beyond" : "comes closer than two cells to")
                                          : (is_sharp ? "lies beyond" : "comes closer than a cell to");

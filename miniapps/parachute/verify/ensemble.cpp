@@ -174,20 +174,16 @@ double finer_by(const FlowScene& scene, const FlowScene& base) {
   return sum / count;
 }
 
-/// The scene of each grid of a study.
-std::vector<FlowScene> scenes_of(const FlowScene& base, const study::EnsembleAxes& axes,
-                                 const MiniAppOptions& options, const std::filesystem::path& file) {
-  std::vector<FlowScene> scenes;
-  for (const double factor : axes.factors)
-    scenes.push_back(member_scene(file, options, refinement(base, factor)));
-  return scenes;
-}
-
-}  // namespace
-
-framework::Ensemble ensemble_of(const MiniAppOptions& options, const std::filesystem::path& file) {
-  const FlowScene base = member_scene(file, options, {});
+/// A study with the scene of each of its grids.
+struct Plan {
   framework::Ensemble ensemble;
+  std::vector<FlowScene> scenes;
+};
+
+Plan plan_of(const MiniAppOptions& options, const std::filesystem::path& file) {
+  const FlowScene base = member_scene(file, options, {});
+  Plan plan;
+  framework::Ensemble& ensemble = plan.ensemble;
   ensemble.program = "drogue-parachute";
   ensemble.scene = base.name;
   ensemble.printed = print_flow_scene(base);
@@ -195,18 +191,20 @@ framework::Ensemble ensemble_of(const MiniAppOptions& options, const std::filesy
   ensemble.axes = study::parse_ensemble(options.study);
   ensemble.title = flight_title;
   const std::vector<double> wanted = ensemble.axes.factors;
-  const std::vector<FlowScene> scenes = scenes_of(base, ensemble.axes, options, file);
-  ensemble.notices = scenes.back().notices;
-  for (std::size_t grid = scenes.size(); grid-- > 0;) {
-    ensemble.useful_threads = std::max(ensemble.useful_threads, threads_of(scenes[grid]));
-    ensemble.axes.factors[grid] = finer_by(scenes[grid], base);
+  for (const double factor : wanted)
+    plan.scenes.push_back(member_scene(file, options, refinement(base, factor)));
+  ensemble.notices = plan.scenes.back().notices;
+  for (std::size_t grid = wanted.size(); grid-- > 0;) {
+    const FlowScene& scene = plan.scenes[grid];
+    ensemble.useful_threads = std::max(ensemble.useful_threads, threads_of(scene));
+    ensemble.axes.factors[grid] = finer_by(scene, base);
+    const std::vector<std::string> finer = refinement(base, wanted[grid]);
     for (int seed = 1; seed <= ensemble.axes.runs; ++seed) {
       framework::EnsembleRun& run = ensemble.runs.emplace_back();
       run.member.folder = "cells-" + scene::rough_text(wanted[grid]) + "/seed-" + std::to_string(seed);
       run.member.grid = grid;
       run.member.seed = seed;
       run.sets = sets_without_fields(options.set);
-      const std::vector<std::string> finer = refinement(base, wanted[grid]);
       run.sets.insert(run.sets.end(), finer.begin(), finer.end());
       const std::vector<std::string> start =
           base.canopies.empty() ? other_velocity(base, seed) : displaced_cloth(base, wanted.back(), seed);
@@ -215,14 +213,18 @@ framework::Ensemble ensemble_of(const MiniAppOptions& options, const std::filesy
       if (seed == 1) (void)read_point(file, options, run.sets);  // refuses what would fail in every run
     }
   }
-  return ensemble;
+  return plan;
+}
+
+}  // namespace
+
+framework::Ensemble ensemble_of(const MiniAppOptions& options, const std::filesystem::path& file) {
+  return plan_of(options, file).ensemble;
 }
 
 std::string ensemble_report(const MiniAppOptions& options, const std::filesystem::path& file) {
   if (!study::is_ensemble(options.study)) return {};
-  const framework::Ensemble ensemble = ensemble_of(options, file);
-  const FlowScene base = member_scene(file, options, {});
-  const std::vector<FlowScene> scenes = scenes_of(base, study::parse_ensemble(options.study), options, file);
+  const auto [ensemble, scenes] = plan_of(options, file);
   std::string text = "study        " + std::to_string(ensemble.runs.size()) + " runs, " +
                      std::to_string(ensemble.axes.runs) + " on each grid, " +
                      std::to_string(framework::jobs_of(options, ensemble)) + " at once here\n";

@@ -79,9 +79,10 @@ double begin_of_means(const FlowScene& scene) {
 /// Rows of one canopy.
 class FlightRows {
  public:
-  FlightRows(const FlowScene& scene, const run::History& history, std::size_t i)
+  /// `direction`: as of `direction_of`.
+  FlightRows(const FlowScene& scene, const run::History& history, std::size_t i, const Vector& direction)
       : _history(history), _name("canopy_" + std::to_string(i) + "_"), _time(history.at("time")) {
-    const Vector direction = direction_of(scene, i), stream = scene.stream().value_or(Vector{});
+    const Vector stream = scene.stream().value_or(Vector{});
     const auto vector_at = [&](const std::string& name, std::size_t row) {
       Vector v{};
       for (std::size_t axis = 0; axis < 3; ++axis) v[axis] = history.at(name + axis_names[axis])[row];
@@ -155,9 +156,8 @@ using Statistic = std::function<double(double from, double to)>;
 
 /// Means of a flight by their keys.
 std::vector<std::pair<std::string, Statistic>> means_of(const FlowScene& scene, const FlightRows& rows,
-                                                        std::size_t i) {
+                                                        std::size_t i, const Vector& direction) {
   const double density = scene.parameters.density, area = scene.canopies[i].nominal_area();
-  const Vector direction = direction_of(scene, i);
   const double section = section_of(scene.parameters, direction);
   const auto drag = [=, &rows](double from, double to) {
     return 2.0 * rows.force(from, to) / (density * std::pow(rows.speed(from, to), 2) * area);
@@ -169,23 +169,26 @@ std::vector<std::pair<std::string, Statistic>> means_of(const FlowScene& scene, 
   };
   const bool is_blocked = is_blocked_by_sides(scene, i, direction);
   std::vector<std::pair<std::string, Statistic>> means;
+  const auto add = [&](std::string key, Statistic statistic) {
+    means.emplace_back(std::move(key), std::move(statistic));
+  };
   if (falls(scene, i)) {
-    means.emplace_back("rate_of_descent", [&rows](double from, double to) { return rows.speed(from, to); });
+    add("rate_of_descent", [&rows](double from, double to) { return rows.speed(from, to); });
     if (is_blocked)
-      means.emplace_back("rate_of_descent_free_air", [=, &rows](double from, double to) {
+      add("rate_of_descent_free_air", [=, &rows](double from, double to) {
         return rows.speed(from, to) * std::sqrt(pressure_ratio(from, to));
       });
-    means.emplace_back("drift", [&rows](double from, double to) { return rows.across(from, to); });
+    add("drift", [&rows](double from, double to) { return rows.across(from, to); });
   }
-  means.emplace_back("drag_coefficient", drag);
+  add("drag_coefficient", drag);
   if (is_blocked)
-    means.emplace_back("drag_coefficient_free_air",
-                       [=](double from, double to) { return drag(from, to) / pressure_ratio(from, to); });
+    add("drag_coefficient_free_air",
+        [=](double from, double to) { return drag(from, to) / pressure_ratio(from, to); });
   if (!is_along_z(direction)) return means;
-  means.emplace_back("inflated_diameter_ratio", [=, &rows](double from, double to) {
+  add("inflated_diameter_ratio", [=, &rows](double from, double to) {
     return std::sqrt(rows.column("projected_area", from, to) / area);
   });
-  means.emplace_back("leak", [&rows](double from, double to) {
+  add("leak", [&rows](double from, double to) {
     return rows.column("leak", from, to) /
            (rows.column("airspeed", from, to) * rows.column("projected_area", from, to));
   });
@@ -194,17 +197,18 @@ std::vector<std::pair<std::string, Statistic>> means_of(const FlowScene& scene, 
 
 void describe_means(const FlowScene& scene, const run::History& history, std::size_t i,
                     run::ResultDocument& result) {
+  const Vector direction = direction_of(scene, i);
   if (history.empty() || !scene.lack_of_airspeed(i).empty() || owner_of(scene, i).payload.release ||
-      direction_of(scene, i) == Vector{})
+      direction == Vector{})
     return;
-  const FlightRows rows(scene, history, i);
+  const FlightRows rows(scene, history, i, direction);
   const std::string group = "canopy_" + std::to_string(i);
   const double from = begin_of_means(scene), to = scene.end_time;
   const auto set = [&](const std::string& name, double value) {
     if (std::isfinite(value)) result.metrics.set(group, name, value);
   };
   set("from", from);
-  for (const auto& [name, statistic] : means_of(scene, rows, i)) {
+  for (const auto& [name, statistic] : means_of(scene, rows, i, direction)) {
     set(name, statistic(from, to));
     set(name + "_error", run::batch_half_width(statistic, from, to));
   }
@@ -213,8 +217,7 @@ void describe_means(const FlowScene& scene, const run::History& history, std::si
     set("touchdown_time", time);
     set("touchdown_speed", speed);
   }
-  if (is_along_z(direction_of(scene, i)))
-    set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
+  if (is_along_z(direction)) set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
 }
 
 /// Keys of a group with their titles, in the order in which they are printed.
