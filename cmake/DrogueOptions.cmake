@@ -5,7 +5,7 @@
 option(DROGUE_EXACT "No fused multiply-add: backends agree bit for bit" OFF)
 option(DROGUE_WARNINGS_AS_ERRORS "Stop at a warning in our own code" OFF)
 option(DROGUE_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
-option(DROGUE_UNITY_TESTS "Compile several sources of a test without kernels as one" ON)
+option(DROGUE_UNITY "Compile several sources without instances of kernels as one" ON)
 option(DROGUE_SYSTEM "Ignore build/deps: take every library from the system" OFF)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -118,6 +118,40 @@ function(drogue_precompile_standard target)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory>
       <optional> <span> <sstream> <stdexcept> <string> <string_view> <utility> <variant> <vector> ${ARGN})
   endif()
+endfunction()
+
+# drogue_share_standard(<target> <other>): takes them from another target with the same options, which precompiles them.
+function(drogue_share_standard target other)
+  if(NOT CMAKE_UNITY_BUILD)
+    target_precompile_headers(${target} REUSE_FROM ${other})
+  endif()
+endfunction()
+
+# drogue_unite(<sources> <name>): replaces the sources in a list, which are no instances of kernels, by fewer ones that include up to
+# eight each, which read their headers once. Unlike CMake's unity builds they name paths relative to the repository, so that the
+# compiler cache serves other clones. tests/layering finds a type of this repository that a source uses without its header.
+function(drogue_unite sources name)
+  if(CMAKE_UNITY_BUILD OR NOT DROGUE_UNITY OR NOT ${sources})
+    return()
+  endif()
+  list(TRANSFORM ${sources} REPLACE "^${PROJECT_SOURCE_DIR}/(.*)" "#include \"\\1\"\n" OUTPUT_VARIABLE _includes)
+  list(LENGTH _includes _count)
+  math(EXPR _parts "(${_count} + 7) / 8")
+  set(_result)
+  foreach(_part RANGE 1 ${_parts})
+    math(EXPR _begin "(${_part} - 1) * ${_count} / ${_parts}")
+    math(EXPR _size "${_part} * ${_count} / ${_parts} - ${_begin}")
+    list(SUBLIST _includes ${_begin} ${_size} _of_part)
+    list(JOIN _of_part "" _content)
+    set(_united "${PROJECT_BINARY_DIR}/generated/united/${name}_${_part}.cpp")
+    file(CONFIGURE OUTPUT "${_united}" CONTENT "${_content}" @ONLY)
+    # An included file is no source for gcc, which warns of anonymous members of its classes.
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      set_source_files_properties("${_united}" PROPERTIES COMPILE_OPTIONS "$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>")
+    endif()
+    list(APPEND _result "${_united}")
+  endforeach()
+  set(${sources} ${_result} PARENT_SCOPE)
 endfunction()
 
 if(DROGUE_CUDA)

@@ -29,33 +29,6 @@ function(drogue_test_headers)
   target_precompile_headers(drogue_test_headers PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
 endfunction()
 
-# drogue_unite_tests(<sources> <name>): replaces the sources in a list by fewer ones that include up to eight each, which read their
-# headers once. Unlike CMake's unity builds they name paths relative to the repository, so that the compiler cache serves other
-# clones. tests/layering finds a type of this repository that a test uses without its header.
-function(drogue_unite_tests sources name)
-  if(CMAKE_UNITY_BUILD OR NOT DROGUE_UNITY_TESTS)
-    return()
-  endif()
-  list(TRANSFORM ${sources} REPLACE "^${PROJECT_SOURCE_DIR}/(.*)" "#include \"\\1\"\n" OUTPUT_VARIABLE _includes)
-  list(LENGTH _includes _count)
-  math(EXPR _parts "(${_count} + 7) / 8")
-  set(_result)
-  foreach(_part RANGE 1 ${_parts})
-    math(EXPR _begin "(${_part} - 1) * ${_count} / ${_parts}")
-    math(EXPR _size "${_part} * ${_count} / ${_parts} - ${_begin}")
-    list(SUBLIST _includes ${_begin} ${_size} _of_part)
-    list(JOIN _of_part "" _content)
-    set(_united "${PROJECT_BINARY_DIR}/generated/tests/${name}_${_part}.cpp")
-    file(CONFIGURE OUTPUT "${_united}" CONTENT "${_content}" @ONLY)
-    # An included file is no source for gcc, which warns of anonymous members of its classes.
-    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      set_source_files_properties("${_united}" PROPERTIES COMPILE_OPTIONS -Wno-subobject-linkage)
-    endif()
-    list(APPEND _result "${_united}")
-  endforeach()
-  set(${sources} ${_result} PARENT_SCOPE)
-endfunction()
-
 # Options of all kernel tests, on any backend.
 function(drogue_kernel_test_options target)
   # Helpers of these tests have the same names in many files: they share precompiled headers instead of a unity source.

@@ -55,9 +55,11 @@ def reason_to_skip(build):
 
 
 def compilation(build, source):
-    """Object file and compile command of the source whose path ends in `source`. Raises LookupError if there is none."""
+    """Object file and compile command of the source whose path ends in `source`, or of the one that includes it with others. Raises
+    LookupError if there is none."""
     for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
-        if entry["file"].endswith(source):
+        path = entry["file"]
+        if path.endswith(source) or ("/united/" in path and source in pathlib.Path(path).read_text(encoding="utf-8")):
             words = shlex.split(entry["command"])
             return pathlib.Path(entry["directory"]) / words[words.index("-o") + 1], words
     raise LookupError(source)
