@@ -106,7 +106,7 @@ std::string duration_text(double seconds) {
 }
 
 RunTime run_time(const FlowScene& scene) {
-  // `drogue-perf run --filter '^flow-step'`, 60 x 60 x 120 tunnel (docs/flow-notebook.md), and c9-flat.
+  // `drogue-perf run --filter '^flow-step'`, 60 x 60 x 120 tunnel (docs/flow-notebook.md), and c9-duct.
   constexpr StepTime two_cores{44e-9, 120e-9, 10e-6, 80e-9}, h200{0.33e-9, 0.4e-9, 25e-6, 0.0};
   const RunSize size = run_size(scene);
   return {time_of(scene, size, two_cores), time_of(scene, size, h200)};
