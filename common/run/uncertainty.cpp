@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <string_view>
 
 namespace drogue::run {
 namespace {
@@ -131,19 +133,26 @@ ErrorBar error_bar(const Distribution& coarse, const Distribution& fine, double 
   return {fine.mean, std::hypot(fine.half_width, grid), fine.half_width, grid};
 }
 
-std::string bar_text(double value, double half_width) {
+std::string number_text(double value, int digits) {
   char text[64];
-  if (!std::isfinite(half_width) || !(half_width > 0.0)) {
-    std::snprintf(text, sizeof text, half_width == 0.0 ? "%.4g +- 0" : "%.4g", value);
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  if (std::abs(value) < 1e9 && std::string_view(text).find("e+") != std::string_view::npos)
+    std::snprintf(text, sizeof text, "%.0f", std::strtod(text, nullptr));
+  return text;
+}
+
+std::string bar_text(double value, double half_width) {
+  if (half_width == 0.0) return number_text(value, 4) + " +- 0";
+  if (!std::isfinite(half_width) || half_width < 0.0) return number_text(value, 4);
+  char text[64];
+  const int behind_point = 1 - static_cast<int>(std::floor(std::log10(half_width)));
+  if (behind_point < 0) {
+    const double unit = std::pow(10.0, -behind_point);
+    std::snprintf(text, sizeof text, "%.0f +- %.0f", std::round(value / unit) * unit,
+                  std::round(half_width / unit) * unit);
     return text;
   }
-  const int digits = 1 - static_cast<int>(std::floor(std::log10(half_width)));
-  const double unit = std::pow(10.0, digits);
-  if (digits < 0)
-    std::snprintf(text, sizeof text, "%.0f +- %.0f", std::round(value * unit) / unit,
-                  std::round(half_width * unit) / unit);
-  else
-    std::snprintf(text, sizeof text, "%.*f +- %.*f", digits, value, digits, half_width);
+  std::snprintf(text, sizeof text, "%.*f +- %.*f", behind_point, value, behind_point, half_width);
   return text;
 }
 

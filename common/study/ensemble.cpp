@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -97,12 +96,6 @@ run::Distribution distribution_on(std::size_t grid, const std::string& name,
   return values.empty() ? run::Distribution{} : run::distribution_of(values, half_widths);
 }
 
-std::string short_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
-
 std::string key_of(std::string name) {
   std::ranges::replace(name, '.', '_');
   return name;
@@ -174,15 +167,13 @@ std::string text_of(const StudyQuantity& quantity) {
   const run::ErrorBar& bar = quantity.bar;
   const run::Distribution& fine = quantity.grids.back();
   const bool has_grid = quantity.grids.size() > 1 && quantity.grids.front().runs > 0;
-  std::string text = run::bar_text(bar.value, bar.half_width) + " (sampling " +
-                     (std::isfinite(bar.sampling) ? short_text(bar.sampling) : "not known") + ", grid " +
-                     (has_grid && std::isfinite(bar.grid) ? short_text(bar.grid) : "not known") + ")";
+  std::string text =
+      run::bar_text(bar.value, bar.half_width) + " (sampling " +
+      (std::isfinite(bar.sampling) ? run::number_text(bar.sampling, 2) : "not known") + ", grid " +
+      (has_grid && std::isfinite(bar.grid) ? run::number_text(bar.grid, 2) : "not known") + ")";
   if (quantity.name.find("peak") == std::string::npos || fine.runs < 2) return text;
-  char distribution[128];
-  std::snprintf(distribution, sizeof distribution,
-                "; of a run: standard deviation %.3g, 5 to 95 %% %.4g to %.4g", fine.deviation, fine.lowest,
-                fine.highest);
-  return text + distribution;
+  return text + "; of a run: standard deviation " + run::number_text(fine.deviation, 3) + ", 5 to 95 % " +
+         run::number_text(fine.lowest, 4) + " to " + run::number_text(fine.highest, 4);
 }
 
 std::string members_csv(const std::vector<Member>& members, const std::vector<double>& factors) {

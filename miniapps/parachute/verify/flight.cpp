@@ -195,31 +195,6 @@ std::vector<std::pair<std::string, Statistic>> means_of(const FlowScene& scene, 
   return means;
 }
 
-void describe_means(const FlowScene& scene, const run::History& history, std::size_t i,
-                    run::ResultDocument& result) {
-  const Vector direction = direction_of(scene, i);
-  if (history.empty() || !scene.lack_of_airspeed(i).empty() || owner_of(scene, i).payload.release ||
-      direction == Vector{})
-    return;
-  const FlightRows rows(scene, history, i, direction);
-  const std::string group = "canopy_" + std::to_string(i);
-  const double from = begin_of_means(scene), to = scene.end_time;
-  const auto set = [&](const std::string& name, double value) {
-    if (std::isfinite(value)) result.metrics.set(group, name, value);
-  };
-  set("from", from);
-  for (const auto& [name, statistic] : means_of(scene, rows, i, direction)) {
-    set(name, statistic(from, to));
-    set(name + "_error", run::batch_half_width(statistic, from, to));
-  }
-  if (scene.drop && scene.drop->height && falls(scene, i)) {
-    const auto [time, speed] = rows.touch_down(*scene.drop->height);
-    set("touchdown_time", time);
-    set("touchdown_speed", speed);
-  }
-  if (is_along_z(direction)) set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
-}
-
 /// Keys of a group with their titles, in the order in which they are printed.
 constexpr std::array<std::array<const char*, 2>, 12> titles = {
     {{"rate_of_descent", "rate of descent, m/s"},
@@ -237,6 +212,46 @@ constexpr std::array<std::array<const char*, 2>, 12> titles = {
 
 std::string canopy_name(const std::string& group) {
   return "canopy[" + group.substr(group.find('_') + 1) + "]";
+}
+
+/// Title of a key; the key if it has none.
+std::string title_of(const std::string& key) {
+  const auto found = std::ranges::find_if(titles, [&](const auto& row) { return row[0] == key; });
+  return found == titles.end() ? key : (*found)[1];
+}
+
+void describe_means(const FlowScene& scene, const run::History& history, std::size_t i,
+                    run::ResultDocument& result) {
+  const Vector direction = direction_of(scene, i);
+  if (history.empty() || !scene.lack_of_airspeed(i).empty() || owner_of(scene, i).payload.release ||
+      direction == Vector{})
+    return;
+  const FlightRows rows(scene, history, i, direction);
+  const std::string group = "canopy_" + std::to_string(i);
+  const double from = begin_of_means(scene), to = scene.end_time;
+  const auto set = [&](const std::string& name, double value) {
+    if (std::isfinite(value)) result.metrics.set(group, name, value);
+  };
+  set("from", from);
+  std::vector<std::string> without_error;
+  for (const auto& [name, statistic] : means_of(scene, rows, i, direction)) {
+    const double value = statistic(from, to), error = run::batch_half_width(statistic, from, to);
+    set(name, value);
+    set(name + "_error", error);
+    if (std::isfinite(value) && !std::isfinite(error)) without_error.push_back(title_of(name));
+  }
+  if (!without_error.empty())
+    result.warnings.push_back(scene::sentence(canopy_name(group), ": means from ", scene::rough_text(from),
+                                              " to ", scene::rough_text(to), " s of ",
+                                              scene::joined(without_error, "; "),
+                                              " have no error bar, since they change too slowly for so short "
+                                              "a time; a longer run.end_time has one"));
+  if (scene.drop && scene.drop->height && falls(scene, i)) {
+    const auto [time, speed] = rows.touch_down(*scene.drop->height);
+    set("touchdown_time", time);
+    set("touchdown_speed", speed);
+  }
+  if (is_along_z(direction)) set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
 }
 
 }  // namespace
@@ -276,9 +291,7 @@ std::string flight_report(const run::ResultDocument& result) {
 std::string flight_title(const std::string& quantity) {
   const std::size_t dot = quantity.find('.');
   if (dot == std::string::npos) return quantity;
-  const std::string key = quantity.substr(dot + 1);
-  const auto found = std::ranges::find_if(titles, [&](const auto& row) { return row[0] == key; });
-  return canopy_name(quantity.substr(0, dot)) + " " + (found == titles.end() ? key : (*found)[1]);
+  return canopy_name(quantity.substr(0, dot)) + " " + title_of(quantity.substr(dot + 1));
 }
 
 }  // namespace drogue::parachute_app

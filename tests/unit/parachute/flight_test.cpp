@@ -102,6 +102,26 @@ TEST(Flight, OfAFallingPayloadHasRateOfDescentAndDrift) {
   EXPECT_FALSE(values.contains("canopy_0.peak_line_force")) << "none was recorded";
 }
 
+TEST(Flight, WarnsOfMeansWithoutAnErrorBar) {
+  const FlowScene scene = SceneFile().read();
+  const double force = 0.8 * 0.5 * 1.25 * 100.0 * nominal;
+  const auto warnings = [&](double period) {
+    run::ResultDocument result;
+    const run::History history =
+        history_of(scene, {{"canopy_0_force_z", [&](double t) {
+                              return force * (1.0 + 0.2 * std::sin(2.0 * std::numbers::pi * t / period));
+                            }}});
+    describe_flights(scene, peaks_of({}), history, result);
+    return result.warnings;
+  };
+  EXPECT_TRUE(warnings(0.3).empty());
+  const std::vector<std::string> slow = warnings(3.0);
+  ASSERT_EQ(slow.size(), 1U);
+  EXPECT_TRUE(
+      slow[0].starts_with("canopy[0]: means from 2 to 4 s of C_D0; C_D0 in free air have no error bar"))
+      << slow[0];
+}
+
 TEST(Flight, WithoutRowsHasThePeakAlone) {
   const FlowScene scene = SceneFile().read({"output.history_every=0"});
   const auto values = described(scene, {}, {10.0, 1.0});

@@ -190,6 +190,10 @@ TEST(Uncertainty, TextHasTwoDigitsOfTheError) {
   EXPECT_EQ(bar_text(9461.0, 23.4), "9461 +- 23");
   EXPECT_EQ(bar_text(1.5, 0.0), "1.5 +- 0");
   EXPECT_EQ(bar_text(1.23456, NAN), "1.235");
+  EXPECT_EQ(bar_text(10034.0, NAN), "10030");
+  EXPECT_EQ(number_text(128.7, 2), "130");
+  EXPECT_EQ(number_text(0.0, 2), "0");
+  EXPECT_EQ(number_text(NAN, 2), "nan");
 }
 
 }  // namespace
