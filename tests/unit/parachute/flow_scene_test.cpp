@@ -232,7 +232,7 @@ TEST(FlowScene, CorrectsTheExchangeUnlessItIsPlain) {
 
 TEST(FlowScene, CourantNumberIsThatOfTheStreamOrTheRun) {
   const auto number = [](const std::vector<std::string>& sets) {
-    return courant_number(read_flow_scene(source / "miniapps/parachute/scenes/c9-flat.toml", sets));
+    return courant_number(read_flow_scene(source / "miniapps/parachute/scenes/c9-duct.toml", sets));
   };
   // 10 m/s and cells of 0.4 m.
   EXPECT_DOUBLE_EQ(number({"run.max_dt=0.001"}), 1.8 * 10.0 * 0.001 / 0.4);
