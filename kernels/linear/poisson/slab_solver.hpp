@@ -7,7 +7,8 @@
 #include "kernels/linear/device_communicator.hpp"
 #include "kernels/linear/poisson/pencil_solver.hpp"
 #include "kernels/linear/poisson/plane_transforms.hpp"
-#include "kernels/linear/poisson/slab_lines.hpp"
+#include "kernels/linear/poisson/slab_factor.hpp"
+#include "kernels/linear/poisson/slab_substitution.hpp"
 
 namespace drogue::linear {
 

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "kernels/device/copy.hpp"
-#include "kernels/linear/poisson/slab_lines.hpp"
+#include "kernels/linear/poisson/slab_factor.hpp"
+#include "kernels/linear/poisson/slab_substitution.hpp"
 #include "kernels/reference/linear/chain.hpp"
 #include "tests/support/profiled.hpp"
 
