@@ -119,6 +119,18 @@ TEST(CanopyNotes, NameTheRoomThatACanopyNeedsInACore) {
   EXPECT_TRUE(notes(wide).empty());
 }
 
+TEST(CanopyNotes, MeasureTheRoomOfACanopyThatStartsAskewFromItsPayload) {
+  // The payload is 5.549 m from the skirt, here straight across.
+  std::vector<std::string> askew = {"grid.core=[[-7.2,7.2],[-7.2,7.2],[-8,8]]", "grid.spacing=0.4",
+                                    "canopy[0].angle=90", "canopy[0].centre=[5.549,0,0]"};
+  EXPECT_TRUE(notes(askew).empty());
+  askew.back() = "canopy[0].centre=[0,0,0]";
+  expect_note(
+      askew,
+      "grid.core leaves canopy[0] 0.851 m along x, and one that leans by 30 degrees needs 5.67 m to each "
+      "side: it may leave the core, which ends the run");
+}
+
 TEST(CanopyNotes, NameSidesAlongWhichTheGridDoesNotFollowAGlide) {
   std::vector<std::string> free = {"grid.frame=\"follow\"", "canopy[0].payload={mass=90}",
                                    "grid.boundary.x=\"outflow\""};
