@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
+#include "common/scene/library.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
@@ -140,6 +142,17 @@ TEST(CanopyNotes, NameSidesAlongWhichTheGridDoesNotFollowAGlide) {
   free.emplace_back("grid.boundary.y=\"outflow\"");
   EXPECT_TRUE(notes(free).empty());
   EXPECT_TRUE(notes({free[0], "canopy[0].payload={mass=90,guided=true}"}).empty());
+}
+
+TEST(CanopyNotes, ShippedScenesHaveNoneButThoseInADuct) {
+  const std::filesystem::path source = DROGUE_SOURCE_DIR;
+  std::set<std::string> noted;
+  for (const auto& entry : scene::list_scenes(source / "miniapps/parachute/scenes"))
+    // Full scenes take long to check.
+    if (!entry.name.ends_with("-full") && !read_flow_scene(entry.file).notices.empty())
+      noted.insert(entry.name);
+  EXPECT_EQ(noted, (std::set<std::string>{"c9-airdrop", "c9-flat", "c9-heavy", "cluster-3", "guide-vent",
+                                          "porous-c9", "reefed"}));
 }
 
 TEST(CanopyNotes, SheetsWithoutLinesHaveNone) {
