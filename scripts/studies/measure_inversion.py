@@ -5,7 +5,7 @@ how often it opens inside out.
     scripts/studies/measure_inversion.py [--angles 15,30,45,60,75,90] [--runs 8] [--amplitude 0.01] [--bin build/host/bin]
                                          [--out out/inversion] [-- ARGUMENT...]
 
-The scene is c9-angled-60 in a longer box, with the payload at one place for all angles. Openings are chaotic, so that a single run
+The scene is c9-angled-60 in a box of 18 m, with the payload at one place for all angles. Openings are chaotic, so that a single run
 means little. For each angle: the inversion index at the end of each run (the share of the lines at whose vertex of the skirt the
 cloth is inside out, `canopy_0_inversion`), their mean, the number of runs above one half, and the median over the runs of the
 largest index and of the largest force of the lines and its time. ARGUMENTs go to the program,
@@ -22,7 +22,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from recording import parse_with_arguments, read_history, run_parachute  # noqa: E402
 
 PAYLOAD = (-3.0, 0.0, -4.4)  # m
-BOX = ("grid.cells=[45, 45, 48]", "grid.domain=[[-9, 9], [-9, 9], [-9.2, 10]]", "verify={divergence = 1e-12}")
+BOX = ("grid.cells=[45, 45, 48]", "grid.domain=[[-9, 9], [-9, 9], [-9.2, 10]]", "canopy[0].edge_length=0.28", "run.cfl=0.25",
+       "run.max_dt=0.01", "verify={divergence = 1e-12}")
 DIAMETER, LINES = 8.534, 7.0  # m, of the scene
 
 

@@ -440,12 +440,14 @@ CanopyMesh make_canopy(const Canopy& canopy) {
   return result;
 }
 
+Vector payload_place(const Canopy& canopy) { return payload_place(canopy, canopy.starting_skirt_radius()); }
+
 void place_at_shared_payloads(std::vector<Canopy>& canopies) {
   for (Canopy& canopy : canopies) {
     if (!canopy.payload.shared || !canopy.riser) continue;
     const Canopy& owner = canopies[static_cast<std::size_t>(*canopy.payload.shared)];
     canopy.centre = axes_of(canopy).place(
-        payload_place(owner, owner.starting_skirt_radius()), 0.0, 0.0,
+        payload_place(owner), 0.0, 0.0,
         canopy.riser->length + meeting_distance(canopy, canopy.starting_skirt_radius()));
   }
 }

@@ -197,6 +197,9 @@ struct Sheets {
   std::vector<double> line_strength;  ///< N, of every line of the mesh; infinite: no limit
 };
 
+/// Place of the payload at the start, m. Does not throw.
+[[nodiscard]] fabric::Vector payload_place(const Canopy& canopy);
+
 /// Sets the centres of canopies that share the payload of an earlier one, so that their lines and risers are
 /// straight at the start. Does not throw.
 void place_at_shared_payloads(std::vector<Canopy>& canopies);

@@ -114,11 +114,13 @@ void note_narrow_core(FlowScene& scene, std::size_t i) {
   const double lean = pi / 6.0, radius = 0.5 * inflated_diameter(canopy),
                along = std::sqrt(std::max(0.0, std::pow(canopy.lines.length, 2) - radius * radius)) +
                        (canopy.riser ? canopy.riser->length : 0.0);
+  const fabric::Vector payload = payload_place(canopy);
   for (const std::size_t axis : {0U, 1U}) {
     if (!flow::is_stretched(p, axis)) continue;
     const bool follows = scene.frame == Frame::follow && scene.open_axes()[axis];
     const auto [low, high] = sheet_extent(p, axis);
-    const double room = std::min(canopy.centre[axis] - low, high - canopy.centre[axis]) - core_width(p, axis),
+    const double pivot = follows ? 0.5 * (payload[axis] + canopy.centre[axis]) : payload[axis],
+                 room = std::min(pivot - low, high - pivot) - core_width(p, axis),
                  needed = (follows ? 0.5 : 1.0) * along * std::sin(lean) + radius * std::cos(lean);
     if (room >= needed) continue;
     scene.notices.push_back(

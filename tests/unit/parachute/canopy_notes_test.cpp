@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
+#include "common/scene/library.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
@@ -119,6 +121,18 @@ TEST(CanopyNotes, NameTheRoomThatACanopyNeedsInACore) {
   EXPECT_TRUE(notes(wide).empty());
 }
 
+TEST(CanopyNotes, MeasureTheRoomOfACanopyThatStartsAskewFromItsPayload) {
+  // The payload is 5.549 m from the skirt, here straight across.
+  std::vector<std::string> askew = {"grid.core=[[-7.2,7.2],[-7.2,7.2],[-8,8]]", "grid.spacing=0.4",
+                                    "canopy[0].angle=90", "canopy[0].centre=[5.549,0,0]"};
+  EXPECT_TRUE(notes(askew).empty());
+  askew.back() = "canopy[0].centre=[0,0,0]";
+  expect_note(
+      askew,
+      "grid.core leaves canopy[0] 0.851 m along x, and one that leans by 30 degrees needs 5.67 m to each "
+      "side: it may leave the core, which ends the run");
+}
+
 TEST(CanopyNotes, NameSidesAlongWhichTheGridDoesNotFollowAGlide) {
   std::vector<std::string> free = {"grid.frame=\"follow\"", "canopy[0].payload={mass=90}",
                                    "grid.boundary.x=\"outflow\""};
@@ -128,6 +142,17 @@ TEST(CanopyNotes, NameSidesAlongWhichTheGridDoesNotFollowAGlide) {
   free.emplace_back("grid.boundary.y=\"outflow\"");
   EXPECT_TRUE(notes(free).empty());
   EXPECT_TRUE(notes({free[0], "canopy[0].payload={mass=90,guided=true}"}).empty());
+}
+
+TEST(CanopyNotes, ShippedScenesHaveNoneButThoseInADuct) {
+  const std::filesystem::path source = DROGUE_SOURCE_DIR;
+  std::set<std::string> noted;
+  for (const auto& entry : scene::list_scenes(source / "miniapps/parachute/scenes"))
+    // Full scenes take long to check.
+    if (!entry.name.ends_with("-full") && !read_flow_scene(entry.file).notices.empty())
+      noted.insert(entry.name);
+  EXPECT_EQ(noted, (std::set<std::string>{"c9-airdrop", "c9-flat", "c9-heavy", "cluster-3", "guide-vent",
+                                          "porous-c9", "reefed"}));
 }
 
 TEST(CanopyNotes, SheetsWithoutLinesHaveNone) {
