@@ -21,9 +21,11 @@ class RunLoop {
         _result(result),
         _wanted(simulation.output()),
         _end(simulation.end_time().time),
-        _now(simulation.now()),
+        _first(simulation.now()),
+        _now(_first),
         _progress(request.quiet),
-        _phases_before(simulation.phases().phases()) {}
+        _phases_before(simulation.phases().phases()),
+        _compute_before(simulation.phases().compute_s) {}
 
   /// However the run ends, the result shows how far it came.
   ~RunLoop() {
@@ -32,6 +34,7 @@ class RunLoop {
     _result.time = now.time;
     _simulation.describe(_result);
     describe_times();
+    describe_speed(now);
     _result.describe_ledger(device::profiling_counters());
   }
   RunLoop(const RunLoop&) = delete;
@@ -61,6 +64,15 @@ class RunLoop {
     timing.compute_s = phases.compute_s, timing.bound_s = phases.bound_s;
     timing.h2d_s = phases.h2d_s, timing.d2h_s = phases.d2h_s;
     timing.io_s = std::max(0.0, _stopwatch.seconds() - (phases.phases() - _phases_before));
+  }
+
+  void describe_speed(const SimulationTime& now) {
+    const double seconds = _result.timing.compute_s - _compute_before;
+    const StepWork work = _simulation.step_work();
+    if (now.step == _first.step || !(seconds > 0.0) || work.items == 0.0) return;
+    _result.metrics.set("figure_of_merit", work.key,
+                        work.items * static_cast<double>(now.step - _first.step) / seconds);
+    _result.metrics.set("figure_of_merit", "simulated_s_per_s", (now.time - _first.time) / seconds);
   }
 
   [[nodiscard]] bool ended() const { return _stop == StopReason::interrupted || _stop == StopReason::failed; }
@@ -131,10 +143,12 @@ class RunLoop {
   run::ResultDocument& _result;
   const OutputRequest& _wanted;
   const double _end;
+  const SimulationTime _first;
   SimulationTime _now;
   std::optional<std::int64_t> _restart_step;  ///< of the restart.h5 of the directory, if known
   ProgressLine _progress;
-  const double _phases_before;  ///< that setup has taken, s
+  const double _phases_before;   ///< that setup has taken, s
+  const double _compute_before;  ///< of it, steps
   const Stopwatch _stopwatch;
   std::optional<RunOutput> _output;
   StopReason _stop = StopReason::target;

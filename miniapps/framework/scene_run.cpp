@@ -225,6 +225,10 @@ class SceneRun {
     std::printf("%s on %s: %lld steps to t = %g s in %.3g s%s\n", _result.scene.c_str(),
                 _result.backend.c_str(), static_cast<long long>(_result.steps), _result.time,
                 _result.timing.wall_s, _app.summary ? _app.summary(_result).c_str() : "");
+    for (const char* unit : {"cell", "vertex"})
+      if (const auto rate = _result.metrics.real("figure_of_merit", std::string(unit) + "_steps_per_s"))
+        std::printf("  %.3g million %s-steps per second of %.3g s of steps\n", 1e-6 * *rate, unit,
+                    _result.timing.compute_s);
     for (const run::Check& check : _result.checks)
       std::printf("  %-*s %.4g  (tolerance %.4g)  %s%s\n", static_cast<int>(width), check.name.c_str(),
                   check.value, check.tolerance, check.passed ? "passed" : "FAILED",

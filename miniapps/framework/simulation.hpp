@@ -51,6 +51,12 @@ struct AdvanceLimits {
   int row_every = 0;             ///< steps between history rows; 0: none
 };
 
+/// What a step computes, for the figure of merit of a run.
+struct StepWork {
+  const char* key = "";  ///< of result.json: "cell_steps_per_s" or "vertex_steps_per_s"
+  double items = 0.0;    ///< cells or vertices; 0: not stated
+};
+
 using RowSink = std::function<void(const HistoryRow&)>;
 
 /// Reports progress. Returns false once the run shall end after the current step.
@@ -62,7 +68,7 @@ using FieldsTask = std::function<void(run::FieldSink&)>;
 
 /// One run of a scene, from its start or a restart file to its end. Every function blocks until its result is
 /// on the host. Every function may throw `Failure`. On several ranks all call the same functions, of which
-/// all but `now`, `phases`, `write_mesh` and those that describe outputs are collective.
+/// all but `now`, `phases`, `step_work`, `write_mesh` and those that describe outputs are collective.
 class Simulation {
  public:
   Simulation() = default;
@@ -126,6 +132,9 @@ class Simulation {
 
   /// Wall times of steps, copies and bounds so far, which do not overlap; the other times are 0.
   [[nodiscard]] virtual run::ResultDocument::WallTimes phases() const { return {}; }
+
+  /// Work of one step. Does not throw.
+  [[nodiscard]] virtual StepWork step_work() const { return {}; }
 
   /// Computes errors and adds the checks of the scene's [verify]. `directory` holds the files of the run;
   /// null if the run writes none and on ranks other than 0, whose checks do not count. Returns `interrupted`

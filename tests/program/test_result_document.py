@@ -57,6 +57,21 @@ class Document(springs_program.SpringsTest):
         self.assertEqual(0, process.returncode, process.stderr)
         yield "options", self.result(".")
 
+    def test_figure_of_merit_is_work_over_its_time(self):
+        work = {"gas": ("cell_steps_per_s", 100), "flow": ("cell_steps_per_s", None), "cloth": ("vertex_steps_per_s", None)}
+        for name, result in self.runs():
+            merit, seconds = result["figure_of_merit"], result["timing"]["compute_s"]
+            if name == "options":
+                self.assertAlmostEqual(1.0, merit["options_per_s"] * seconds)
+                continue
+            key, items = work.get(name, (None, None))
+            self.assertAlmostEqual(result["time"], merit["simulated_s_per_s"] * seconds, delta=1e-9 * result["time"])
+            if key:
+                done = merit[key] * seconds / result["steps"]
+                self.assertAlmostEqual(round(done), done, delta=1e-6 * done)
+                if items:
+                    self.assertEqual(items, round(done))
+
     def test_page_has_every_key(self):
         found = set()
         for name, result in self.runs():

@@ -173,4 +173,8 @@ run::ResultDocument::WallTimes Simulation::phases() const {
   return {.compute_s = phases.compute, .h2d_s = phases.h2d, .d2h_s = phases.d2h};
 }
 
+framework::StepWork Simulation::step_work() const {
+  return {"cell_steps_per_s", static_cast<double>(_scene.parameters.cells)};
+}
+
 }  // namespace drogue::gas_app

@@ -47,6 +47,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;
   [[nodiscard]] run::ResultDocument::WallTimes phases() const override;
+  [[nodiscard]] framework::StepWork step_work() const override;
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
   /// Largest relative change of mass, momentum and energy that the boundary fluxes do not explain.

@@ -49,7 +49,14 @@ void print_summary(const Command& command, const run::ResultDocument& result, co
   else
     text += counted(counts.rows, " rows") + time + counted(ok_rows(counts), " ok, ") +
             counted(counts.coarse, " coarse, ") + counted(counts.invalid, " invalid, ");
-  text += counted(counts.failed, " failed\n") + "prices in " + command.out.string() + "\n";
+  text += counted(counts.failed, " failed\n");
+  if (const auto rate = result.metrics.real("figure_of_merit", "options_per_s")) {
+    char speed[64];
+    std::snprintf(speed, sizeof speed, "  %.3g options per second of %.3g s of pricing\n", *rate,
+                  result.timing.compute_s);
+    text += speed;
+  }
+  text += "prices in " + command.out.string() + "\n";
   if (!command.boundary.empty()) text += "boundaries in " + command.boundary.string() + "\n";
   std::fputs(text.c_str(), stdout);
 }
@@ -84,6 +91,9 @@ void describe_counts(const RowCounts& counts, run::ResultDocument& result) {
   set("invalid", counts.invalid);
   set("ok", ok_rows(counts));
   set("rows", counts.rows);
+  if (const double seconds = result.timing.compute_s; seconds > 0.0)
+    result.metrics.set("figure_of_merit", "options_per_s",
+                       static_cast<double>(ok_rows(counts) + counts.coarse) / seconds);
 }
 
 }  // namespace drogue::options_app

@@ -220,6 +220,10 @@ run::ResultDocument::WallTimes ClothSimulation::phases() const {
   return {.compute_s = _compute_s, .h2d_s = _h2d_s};
 }
 
+framework::StepWork ClothSimulation::step_work() const {
+  return {"vertex_steps_per_s", static_cast<double>(_sheets.positions.size())};
+}
+
 ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
   _peaks.update(*_solver);
   const run::History rows = rows_of(_scene, directory);

@@ -46,6 +46,7 @@ class ClothSimulation final : public framework::Simulation {
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;
   [[nodiscard]] run::ResultDocument::WallTimes phases() const override;
+  [[nodiscard]] framework::StepWork step_work() const override;
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
  private:

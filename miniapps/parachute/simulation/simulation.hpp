@@ -43,6 +43,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;
   [[nodiscard]] run::ResultDocument::WallTimes phases() const override;
+  [[nodiscard]] framework::StepWork step_work() const override;
   ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
   /// Errors against the exact solution of the scene at the present time, by the names of the tolerances. On

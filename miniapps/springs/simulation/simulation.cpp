@@ -286,4 +286,8 @@ run::ResultDocument::WallTimes Simulation::phases() const {
   return {.compute_s = _compute_s, .h2d_s = _h2d_s, .d2h_s = _d2h_s, .bound_s = _bound_s};
 }
 
+framework::StepWork Simulation::step_work() const {
+  return {"vertex_steps_per_s", static_cast<double>(_scene.mesh.rest.size())};
+}
+
 }  // namespace drogue::springs_app
