@@ -28,6 +28,8 @@ Command compare_command(CLI::App& program);
 Command report_command(CLI::App& program);
 Command ladder_command(CLI::App& program);
 Command ncu_command(CLI::App& program);
+Command messages_command(CLI::App& program);
+Command extrapolate_command(CLI::App& program);
 
 /// The backend of a name, or with `auto` all that are present. Throws Failure(no_backend) with the reason if
 /// the named one cannot run here. Call it before Kokkos is initialised.

@@ -19,15 +19,28 @@ std::string interval_text(const Record& record, double scale, int digits) {
   return printed("[%.*f .. %.*f]", digits, scale * time.low, digits, scale * time.high);
 }
 
-std::string scaling_columns(const Record& record, bool weak, int units, const std::optional<double>& of_one) {
+namespace {
+
+/// Columns of messages behind the time of a step, s.
+std::string message_columns(const MessageTimes& messages, double step) {
+  return printed(" %12.2f %7.0f %% %12.2f %12s", 1e6 * messages.measured, 100.0 * messages.measured / step,
+                 1e6 * messages.modelled,
+                 messages.step ? printed("%.2f", 1e6 * *messages.step).c_str() : "-");
+}
+
+}  // namespace
+
+std::string scaling_columns(const Record& record, bool weak, int units, const std::optional<double>& of_one,
+                            const std::optional<MessageTimes>& messages) {
   if (!record.passed())
     return printed("%14s  a check is %.2g times its tolerance\n", failed_text,
                    record.error / record.tolerance);
   const std::string share =
       of_one ? printed("%.0f %%", 100.0 * efficiency(weak, *of_one, run::median(record.samples), units))
              : "-";
-  return printed("%14s  %-28s %11s\n", median_text(record, 1e6, 2).c_str(),
-                 interval_text(record, 1e6, 2).c_str(), share.c_str());
+  return printed("%14s  %-28s %11s%s\n", median_text(record, 1e6, 2).c_str(),
+                 interval_text(record, 1e6, 2).c_str(), share.c_str(),
+                 messages ? message_columns(*messages, run::median(record.samples)).c_str() : "");
 }
 
 std::string speed_up_columns(const std::optional<double>& of_one, double time, int units) {

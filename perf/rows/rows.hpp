@@ -21,10 +21,19 @@ std::string median_text(const Record& record, double scale, int digits);
 /// Interval of the median, "[low .. high]"; empty if the check failed.
 std::string interval_text(const Record& record, double scale, int digits);
 
+/// Messages between ranks in a step, s: measured alone and by the model, and the time of the step by it where
+/// that of one rank is known.
+struct MessageTimes {
+  double measured, modelled;
+  std::optional<double> step;
+};
+
 /// Columns of a scaling table with their line end: time of `record` on some units, us, interval, and
-/// efficiency against the time `of_one` unit, s, `-` where that is not known. A failed record has `FAILED` in
-/// place of the time, and by how much it failed.
-std::string scaling_columns(const Record& record, bool weak, int units, const std::optional<double>& of_one);
+/// efficiency against the time `of_one` unit, s, `-` where that is not known; of several ranks the time of
+/// the messages, us, their share of the step, and both by the model. A failed record has `FAILED` in place of
+/// the time, and by how much it failed.
+std::string scaling_columns(const Record& record, bool weak, int units, const std::optional<double>& of_one,
+                            const std::optional<MessageTimes>& messages = {});
 
 /// Columns of speed-up over one unit and efficiency in strong scaling; `-` where the time of one is not
 /// known.

@@ -18,6 +18,7 @@
 #include "perf/compare/record_file.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/memory/memory.hpp"
+#include "perf/models/messages.hpp"
 #include "perf/models/scaling.hpp"
 #include "perf/problems/streams.hpp"
 #include "perf/process/child_process.hpp"
@@ -112,9 +113,10 @@ struct ScalingPoint {
   int units;
   std::array<int, 3> cells;
   std::filesystem::path scene;
-  std::vector<double> samples;  ///< s per step
-  double error = 0.0;           ///< largest check over its tolerance
-  nlohmann::json result;        ///< of the last run
+  std::vector<double> samples;   ///< s per step
+  double error = 0.0;            ///< largest check over its tolerance
+  nlohmann::json result;         ///< of the last run
+  nlohmann::json messages = {};  ///< facts on the messages of a step; null for one rank, and for threads
 };
 
 /// Throws Failure(no_backend) if no folder of PATH holds mpirun.
@@ -132,26 +134,31 @@ int most_units(const ScalingRequest& request, device::Backend backend) {
   return static_cast<int>(std::thread::hardware_concurrency());
 }
 
-/// Words that start drogue-parachute on the units of a point. A rank has one thread.
-std::vector<std::string> command_of(const ScalingRequest& request, const ScalingPoint& point,
-                                    device::Backend backend, const std::filesystem::path& out) {
-  const bool ranks = request.unit == ScalingUnit::ranks;
-  const std::string units = std::to_string(point.units);
-  std::vector<std::string> words = {"env", "OMP_NUM_THREADS=" + (ranks ? "1" : units)};
-  if (ranks) words.insert(words.end(), {"mpirun", "-n", units});
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "drogue-parachute";
-  words.insert(words.end(), {program.string(), point.scene.string(), "--quiet", "--overwrite", "--backend",
-                             std::string(device::name(backend)), "--out", out.string()});
+/// Words that start a program of this suite on the units of a point. A rank has one thread.
+std::vector<std::string> command_of(ScalingUnit unit, int units, const std::string& program,
+                                    const std::vector<std::string>& arguments) {
+  const bool ranks = unit == ScalingUnit::ranks;
+  const std::string number = std::to_string(units);
+  std::vector<std::string> words = {"env", "OMP_NUM_THREADS=" + (ranks ? "1" : number)};
+  if (ranks) words.insert(words.end(), {"mpirun", "-n", number});
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  words.push_back((folder / program).string());
+  words.insert(words.end(), arguments.begin(), arguments.end());
   return words;
 }
+
+std::string text_of(int units, ScalingUnit unit) { return std::to_string(units) + " " + name(unit); }
 
 /// Runs the program once and adds a sample. Throws Failure as the program does.
 void run_point(const ScalingRequest& request, device::Backend backend, const std::filesystem::path& folder,
                ScalingPoint& point) {
   const std::filesystem::path out = folder / "out", log = folder / "log";
-  const std::string units = std::to_string(point.units) + " " + name(request.unit);
-  const int status = run_on(units, command_of(request, point, backend, out), folder, log, true);
+  const std::string units = text_of(point.units, request.unit);
+  const int status = run_on(units,
+                            command_of(request.unit, point.units, "drogue-parachute",
+                                       {point.scene.string(), "--quiet", "--overwrite", "--backend",
+                                        std::string(device::name(backend)), "--out", out.string()}),
+                            folder, log, true);
   std::ifstream file(out / "result.json");
   point.result = nlohmann::json::parse(file, nullptr, false);
   if (point.result.is_discarded() || point.result.value("ranks", 0) < 1) throw failed_run(units, status, log);
@@ -160,6 +167,41 @@ void run_point(const ScalingRequest& request, device::Backend backend, const std
   for (const nlohmann::json& check : point.result["checks"])
     point.error = std::max(point.error, check["value"].get<double>() / check["tolerance"].get<double>());
   std::filesystem::remove_all(out);
+}
+
+/// Measures the messages of a point alone, and models them. Throws Failure as `drogue-perf messages` does.
+void measure_messages(device::Backend backend, const std::filesystem::path& folder, bool quick,
+                      ScalingPoint& point) {
+  const std::filesystem::path out = folder / "messages.jsonl", log = folder / "log";
+  std::vector<std::string> arguments = {"messages", "--backend",  std::string(device::name(backend)),
+                                        "--out",    out.string(), "--cells"};
+  for (const int cells : point.cells) arguments.push_back(std::to_string(cells));
+  if (quick) arguments.emplace_back("--quick");
+  run_on(text_of(point.units, ScalingUnit::ranks),
+         command_of(ScalingUnit::ranks, point.units, "drogue-perf", arguments), folder, log);
+  const std::vector<MeasuredCase> records = read_records(out.string());
+  const MeasuredCase &shortest = records.at(0), &exchange = records.at(1), &step = records.at(2);
+  if (!step.passed) throw Failure(ExitCode::verification_failed, step.name + ": ranks received wrong values");
+  const Link link = make_link(run::median(shortest.samples), run::median(exchange.samples),
+                              exchange.facts["bytes"].get<double>());
+  const double bytes = step.facts["bytes"].get<double>(), rounds = step.facts["rounds"].get<double>();
+  point.messages = {{"transport", step.facts["transport"]},
+                    {"bytes", bytes},
+                    {"rounds", rounds},
+                    {"latency_s", link.latency},
+                    {"bandwidth", link.bandwidth},
+                    {"messages_s", run::median(step.samples)},
+                    {"model_s", message_time(link, rounds, bytes)}};
+}
+
+/// Times of the messages of a point; none for one rank, and for threads.
+std::optional<MessageTimes> message_times(const ScalingPoint& point, bool weak,
+                                          const std::optional<double>& of_one) {
+  if (point.messages.is_null()) return {};
+  const double model = point.messages["model_s"].get<double>();
+  MessageTimes times{.measured = point.messages["messages_s"].get<double>(), .modelled = model, .step = {}};
+  if (of_one) times.step = *of_one / (weak ? 1 : point.units) + model;
+  return times;
 }
 
 Record record_of(const ScalingRequest& request, device::Backend backend, const ScalingPoint& point) {
@@ -187,25 +229,31 @@ void add_backend(const ScalingRequest& request, device::Backend backend, bool qu
   }
   for (int round = 0; round < (quick ? 3 : 7); ++round)
     for (ScalingPoint& point : points) run_point(request, backend, folder.path(), point);
+  for (ScalingPoint& point : points)
+    if (request.unit == ScalingUnit::ranks && point.units > 1)
+      measure_messages(backend, folder.path(), quick, point);
   std::optional<double> of_one;  // median time on one unit, s
   for (const ScalingPoint& point : points) {
     const Record record = record_of(request, backend, point);
     if (point.units == 1 && record.passed()) of_one = run::median(record.samples);
     const nlohmann::json& from = point.result["provenance"];
-    const nlohmann::json facts = {
+    nlohmann::json facts = {
         {"backend", device::name(backend)},
         {"cells", static_cast<std::int64_t>(point.cells[0]) * point.cells[1] * point.cells[2]},
         {"ranks", point.result["ranks"]},
         {"threads", point.result["threads"]},
         {"scaling", request.weak ? "weak" : "strong"}};
+    if (!point.messages.is_null()) facts.update(point.messages);
     table.add(record,
               provenance({.kokkos_version = device::kokkos_version(),
                           .gpu = from.value("gpu", ""),
                           .driver = from.value("driver", ""),
                           .threads = point.result["threads"].get<int>()}),
               facts);
-    std::printf("%-52s%s", record.name.c_str(),
-                scaling_columns(record, request.weak, point.units, of_one).c_str());
+    std::printf(
+        "%-52s%s", record.name.c_str(),
+        scaling_columns(record, request.weak, point.units, of_one, message_times(point, request.weak, of_one))
+            .c_str());
     std::fflush(stdout);
   }
 }
@@ -217,9 +265,12 @@ const char* name(ScalingUnit unit) { return unit == ScalingUnit::ranks ? "ranks"
 Table print_program_scaling(const ScalingRequest& request, const std::vector<device::Backend>& backends,
                             bool quick) {
   if (request.unit == ScalingUnit::ranks) require_launcher();
-  std::printf("Steps of drogue-parachute, %s scaling over %s\n%-52s%14s  %-28s %11s\n",
+  std::printf("Steps of drogue-parachute, %s scaling over %s\n%-52s%14s  %-28s %11s",
               request.weak ? "weak" : "strong", name(request.unit), "case", "us per step", "95 %",
               "efficiency");
+  if (request.unit == ScalingUnit::ranks)
+    std::printf(" %12s %9s %12s %12s", "messages us", "share", "by model us", "step us");
+  std::printf("\n");
   Table table;
   for (const device::Backend backend : backends) add_backend(request, backend, quick, table);
   return table;

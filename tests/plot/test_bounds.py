@@ -198,6 +198,7 @@ class Scaling(Folder):
         rows = page.tables["AMD EPYC", "Scaling"][1:]
         self.assertEqual([("weak", "1 rank", "100 %"), ("weak", "2 ranks", "50 %")],
                          [(row[2], row[4], row[6]) for row in rows])
+        self.assertEqual([["", ""], ["20 %", "15 %"]], [list(row[7:]) for row in rows])
 
     def test_without_one_unit_there_is_no_efficiency(self):
         page, _ = self.page(records.scaling()[1:2], app="gas")

@@ -2,6 +2,7 @@
 """drogue-parachute on several ranks: the results of one rank, restarts on any number of ranks, an orderly end of all ranks."""
 
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -233,6 +234,28 @@ class Failures(RanksTest):
                 if rank == 0:
                     self.assertIn("out of memory", self.result("out")["message"])
 
+    def test_reports_the_rank_without_a_device(self):
+        words = (PROGRAM, self.write(VORTICES), "--quiet", "--out", "out", "--backend")
+        without = ("env", "CUDA_VISIBLE_DEVICES=", *words, "cuda")
+        for rank, lines in enumerate(((without, (*words, "serial")), ((*words, "serial"), without))):
+            with self.subTest(rank):
+                ended = self.end(self.begin_each(*lines, program=()))
+                self.assertEqual((77, 1), (ended[0], len(ended[1])), ended)
+                self.assertIn("the backend 'cuda'", ended[1][0])
+                self.assertEqual(rank == 1, ended[1][0].endswith("(on rank 1)"))
+
+    def test_ends_all_ranks_if_one_alone_cannot_write(self):
+        """The system refuses rank 1 the second output, which rank 0 has made room for. Its limit leaves room for the memory that
+        ranks of a host share."""
+        limited = ("sh", "-c", 'trap "" XFSZ; ulimit -f 9000; exec "$0" "$@"')
+        words = (PROGRAM, self.write(GUST), *QUIET, "--out", "out")
+        for value in ("grid.cells=[64, 48, 48]", "output.times=[0.01, 0.02]", "run.end_time=0.02", 'output.fields=["velocity"]'):
+            words += ("--set", value)
+        ended = self.end(self.begin_each(words, (*limited, *words), program=()))
+        self.assertEqual((6, 1), (ended[0], len(ended[1])), ended)
+        self.assertRegex(ended[1][0], "fields.h5.*: No space left on device")
+        self.assertEqual("io-error", self.result("out")["status"])
+
     def test_refuses_a_run_directory_on_all_ranks(self):
         scene = self.write(VORTICES)
         (self.folder / "file").write_text("")
@@ -308,6 +331,30 @@ class Failures(RanksTest):
             with self.subTest(victim):
                 self.interrupt(victim)
 
+    def test_a_killed_rank_ends_all_and_leaves_a_restart_file(self):
+        for victim in (0, 1):
+            with self.subTest(victim):
+                process, scene = self.begin_long_run(f"killed{victim}")
+                ranks = processes_of(process)
+                os.kill(ranks[victim], signal.SIGKILL)
+                self.assertNotEqual(0, self.end(process)[0])
+                self.assert_ends(ranks[1 - victim])
+                step = 1 + gas_program.fields(self.folder / f"killed{victim}", "restart.h5").attributes["/"]["step"]
+                self.run_on(4, 1, scene, *QUIET, "--out", f"killed{victim}", "--restart", "auto",
+                            sets=["output.restart_every=5", f"run.max_steps={step}"])
+
+    def assert_ends(self, process):
+        """A process ends within seconds; without a parent that waits for it, it stays as a zombie."""
+        stat = pathlib.Path(f"/proc/{process}/stat")
+        for _ in range(100):
+            try:
+                if stat.read_text().rsplit(")", 1)[1].split()[0] == "Z":
+                    return
+            except (OSError, ValueError, IndexError):
+                return
+            time.sleep(0.05)
+        self.fail(f"process {process} goes on")
+
     def test_ranks_that_wait_leave_their_core_to_others(self):
         """Open MPI lists its parameters that the environment sets."""
         for given, expected in (({}, "true"), ({"OMPI_MCA_mpi_yield_when_idle": "0"}, "false")):
@@ -324,13 +371,19 @@ class Failures(RanksTest):
         """Slurm's --signal=USR1@60 reaches mpirun, which forwards it to all ranks."""
         self.interrupt(None)
 
-    def interrupt(self, victim):
-        out = f"out{victim}"
-        process = self.begin(2, self.write(LONG_GUST), *QUIET, "--out", out, sets=["output.restart_every=5"])
+    def begin_long_run(self, out):
+        """A run on two ranks that has written a restart file, and its scene."""
+        scene = self.write(LONG_GUST)
+        process = self.begin(2, scene, *QUIET, "--out", out, sets=["output.restart_every=5"])
         for _ in range(400):
             time.sleep(0.05)
             if (self.folder / out / "restart.h5").exists():
                 break
+        return process, scene
+
+    def interrupt(self, victim):
+        out = f"out{victim}"
+        process, _ = self.begin_long_run(out)
         if victim is None:
             process.send_signal(signal.SIGUSR1)
         else:

@@ -493,6 +493,20 @@ class Scaling(perf_program.PerfTest):
             self.assertEqual({1, os.cpu_count()} | {2**k for k in range(16) if 2**k < os.cpu_count()}, threads["openmp"])
 
 
+# Stands for mpirun: starts a program once, and writes records for drogue-perf messages. A round takes 2 us, 1 MB 1 ms more, and the
+# messages of a step 0.1 s.
+LAUNCHER_FOR_ONE = """#!{python}
+import json, os, sys
+ranks, program, *words = sys.argv[2:]
+if words[0] != "messages":
+    os.execve(program, [program, *words], {{**os.environ, "RANKS": ranks}})
+with open(words[words.index("--out") + 1], "w") as out:
+    for name, seconds, size in (("latency", 2e-6, 16), ("exchange", 1.002e-3, 1e6), ("flow-step", 0.1, 2e6)):
+        out.write(json.dumps({{
+            "schema": "drogue.perf/1", "case": f"messages/{{name}}", "unit": "s per step", "samples": [seconds], "error": 0.0,
+            "check": "passed", "facts": {{"bytes": size, "rounds": 6, "transport": "mpi"}}, "provenance": {{}}}}) + "\\n")
+"""
+
 # Writes the result of a run of 20 steps in 10 s, which fails its check on one rank.
 SCENE_RUN = """#!{python}
 import json, os, pathlib, sys
@@ -517,12 +531,54 @@ class ProgramScaling(perf_program.PerfTest):
         for ranks, record in enumerate(records, 1):
             self.assertEqual(("passed", 3, "s per step"), (record["check"], len(record["samples"]), record["unit"]))
             self.assertTrue(0.0 < record["error"] < 1.0, record["error"])
-            self.assertEqual((ranks, 1, scaling), tuple(record["facts"][name] for name in ("ranks", "threads", "scaling")))
+            facts = record["facts"]
+            self.assertEqual((ranks, 1, scaling), tuple(facts[name] for name in ("ranks", "threads", "scaling")))
+            if ranks == 1:
+                self.assertNotIn("messages_s", facts)
+                continue
+            # Ghost cells and layers of two sides, two numbers per line, and six rounds.
+            planes = 24 * 24
+            self.assertEqual(("mpi", 6, 8 * (18 * 25 * 25 + 4 * planes)), tuple(facts[name] for name in ("transport", "rounds", "bytes")))
+            self.assertAlmostEqual(6 * facts["latency_s"] + facts["bytes"] / facts["bandwidth"], facts["model_s"], delta=1e-12)
+            self.assertTrue(0.0 < facts["messages_s"] < 1.0, facts)
 
     @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
     def test_ranks_share_the_box_or_add_to_it(self):
         self.assert_records(self.scaled("--over", "ranks"), ("24x24x24", "24x24x24"), "strong")
         self.assert_records(self.scaled("--over", "ranks", "--weak"), ("24x24x24", "24x24x48"), "weak")
+
+    @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
+    def test_messages_of_pencils_and_slabs_arrive(self):
+        for cells, ranks in (("16 16 16", "4"), ("24 8 8", "4"), ("16 16 4", "2")):
+            with self.subTest(cells):
+                line = [LAUNCHER, "--oversubscribe", "-n", ranks, perf_program.PROGRAM, "messages", "--backend", "serial", "--quick",
+                        "--cells", *cells.split(), "--out", "rows.jsonl"]
+                done = subprocess.run(line, cwd=self.folder, capture_output=True, text=True, check=False, timeout=120,
+                                      env=RANK_ENVIRONMENT)
+                self.assertEqual((0, ""), (done.returncode, done.stderr), done.stdout)
+                records = self.records("rows.jsonl")
+                self.assertEqual(["latency", "exchange", "flow-step"], [record["case"].split("/")[1] for record in records])
+                self.assertEqual([("passed", 0)] * 3, [(record["check"], record["error"]) for record in records])
+                self.assertTrue(all(min(record["samples"]) > 0 for record in records))
+
+    def test_one_rank_has_no_messages(self):
+        self.assertIn("one rank has no messages: start several", self.expect(2, "messages").stderr)
+
+    @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
+    def test_messages_of_ranks_without_room_are_refused_once(self):
+        done = subprocess.run([LAUNCHER, "--oversubscribe", "-n", "4", perf_program.PROGRAM, "messages", "--backend", "serial",
+                               "--cells", "8", "4", "8"], capture_output=True, text=True, check=False, env=RANK_ENVIRONMENT)
+        self.assertEqual((2, 1), (done.returncode, done.stderr.count("4 ranks cannot share 4 x 8 cells")), done.stderr)
+        self.assertIn("use 2 ranks", done.stderr)
+
+    def test_extrapolates_by_rounds_and_bytes(self):
+        process = self.expect(0, "extrapolate", "--cells", "100", "10", "8", "--fixed-us", "100", "--cell-ns", "1000", "--link", "100",
+                              "0.001", "--ranks", "1", "2", "4")
+        one, two, four = (line.split() for line in process.stdout.splitlines()[1:])
+        self.assertEqual(["1", "100x10x8", "8.100", "0.000", "0.000", "0.000", "8.100", "1.00x", "100", "%"], one)
+        # 20 and 2 numbers per line at 1 MB/s, and 3, 1 and 2 rounds of 0.1 ms.
+        self.assertEqual(["2", "100x10x8", "4.100", "160.300", "16.100", "0.200", "180.700", "0.04x", "2", "%"], two)
+        self.assertEqual(["4", "100x10x8", "each", "rank", "needs", "3", "planes"], four)
 
     def test_serial_has_one_thread_whatever_the_most(self):
         self.expect(0, "table", "scaling", "--weak", "--most", "2", "--backend", "serial", "--quick", "--out", "rows.jsonl")
@@ -552,7 +608,7 @@ class ProgramScaling(perf_program.PerfTest):
         scene_run = program.with_name("drogue-parachute")
         scene_run.write_text(SCENE_RUN.format(python=sys.executable))
         launcher = self.folder / "mpirun"
-        launcher.write_text('#!/bin/sh\nshift\nexport RANKS="$1"\nshift\nexec "$@"\n')
+        launcher.write_text(LAUNCHER_FOR_ONE.format(python=sys.executable))
         for file in (scene_run, launcher):
             file.chmod(0o755)
         done = subprocess.run([program, "table", "scaling", "--over", "ranks", "--most", "2", "--backend", "serial", "--quick",
@@ -561,12 +617,17 @@ class ProgramScaling(perf_program.PerfTest):
         self.assertEqual((5, ""), (done.returncode, done.stderr), done.stdout)
         _, heading, one, two = done.stdout.splitlines()
         self.assertRegex(one, r"/ranks/1/strong +FAILED  a check is 3 times its tolerance$")
-        self.assertRegex(two, r"/ranks/2/strong +500000.00  \[500000.00 .. 500000.00\] +-$")
+        # 6 rounds of 2 us and 2 MB at 1 GB/s; without a time of one rank there is none of a step.
+        self.assertRegex(two, r"/ranks/2/strong +500000.00  \[500000.00 .. 500000.00\] +- +100000.00 +20 % +2012.00 +-$")
         end = heading.index("us per step") + len("us per step")
         self.assertEqual(["FAILED", "500000.00"], [row[end - 14:end].strip() for row in (one, two)])
         failed, passed = self.records("rows.jsonl")
         self.assertEqual(("failed", [0.5] * 3), (failed["check"], failed["samples"]))
         self.assertEqual("passed", passed["check"])
+        facts = passed["facts"]
+        self.assertEqual(("mpi", 6, 2e6, 0.1), tuple(facts[name] for name in ("transport", "rounds", "bytes", "messages_s")))
+        self.assertAlmostEqual(1e9, facts["bandwidth"], delta=1)
+        self.assertNotIn("messages_s", failed["facts"])
 
     def test_ranks_need_a_launcher(self):
         process = self.expect(77, "table", "scaling", "--over", "ranks", "--backend", "serial",

@@ -13,16 +13,26 @@ namespace drogue::flow {
 /// Fewest cells of a rank along a divided axis: a neighbour needs that many ghost cells from it.
 inline constexpr int least_cells_of_rank = 3;
 
-/// Count, dimensionless, of the numbers that a rank sends in a step of one projection, per cell along x:
-/// ghost cells, and transpositions of a direct pressure solver. Does not throw.
+/// Numbers that a rank between others sends in a step of one projection, without what the ranks agree on:
+/// ghost cells, single layers, and those of a direct pressure solver. That transposes arrays where y is
+/// divided; in slabs it gives two numbers per line along z to each other rank. Does not throw.
 inline double numbers_sent(const std::array<int, 3>& cells, int parts_y, int parts_z) {
-  const double own_y = static_cast<double>(cells[1]) / parts_y,
+  const double x = cells[0], own_y = static_cast<double>(cells[1]) / parts_y,
                own_z = static_cast<double>(cells[2]) / parts_z;
-  constexpr double ghosts = 2.0 * 3.0 * 3.0;  // sides, components, layers
-  const auto along = [&](int parts, double across) {
-    return parts > 1 ? ghosts * across + 2.0 * own_y * own_z * (1.0 - 1.0 / parts) : 0.0;
+  // Ghost cells of the velocity, with the faces on the high sides of axes that are not divided.
+  const auto with_faces = [](int n, int parts, double own) { return parts == 1 && n > 1 ? own + 1.0 : own; };
+  const double faces_x = with_faces(cells[0], 1, x), faces_y = with_faces(cells[1], parts_y, own_y),
+               faces_z = with_faces(cells[2], parts_z, own_z);
+  constexpr double per_edge = 3.0 * 3.0 * 3.0, per_side = 3.0 * 3.0;  // layers and components
+  const double edges = parts_y > 1 && parts_z > 1 ? 4.0 * per_edge * faces_x : 0.0;
+  const auto along = [&](int parts, double faces_across, double across, double solve) {
+    // Both sides; the normal velocity to one and the pressure to the other.
+    return parts > 1 ? 2.0 * per_side * faces_x * faces_across + 2.0 * x * across + solve : 0.0;
   };
-  return along(parts_y, own_z) + along(parts_z, own_y);
+  const auto transposed = [&](int parts) { return 2.0 * x * own_y * own_z * (1.0 - 1.0 / parts); };
+  const double solve_along_z = parts_y == 1 ? 2.0 * x * own_y * (parts_z - 1) : transposed(parts_z);
+  return along(parts_y, faces_z, own_z, transposed(parts_y)) + along(parts_z, faces_y, own_y, solve_along_z) +
+         edges;
 }
 
 /// Division of a grid of cells among ranks along y and z, or along z alone (`slabs`), with the fewest numbers

@@ -88,7 +88,10 @@ _OPTIONAL = {
         "threads_device": float, "thesis": dict, "slots": int, "least_blocks": int, "kernel": str, "limited_by": str,
         "launches": int, "achieved": dict, "device": str,
     },
-    "scaling": {"ranks": int, "scaling": str},
+    "scaling": {
+        "ranks": int, "scaling": str, "transport": str, "bytes": float, "rounds": int, "latency_s": float, "bandwidth": float,
+        "messages_s": float, "model_s": float,
+    },
     "abstraction": {"ratio": float, "ratio_low": float, "ratio_high": float, "block": int, "steps": int},
     "gas-transfers": {"thesis": dict, "method": str, "cpu_s": float},
     "springs-solution": {"status": str, "message": str},

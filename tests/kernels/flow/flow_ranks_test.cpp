@@ -561,6 +561,9 @@ TEST(FlowDecomposition, DividesAxesWithTheFewestNumbersSent) {
   EXPECT_EQ((std::array<int, 3>{1, 8, 8}), decompose({64, 64, 64}, 64, 0).parts);
   EXPECT_EQ((std::array<int, 3>{1, 4, 1}), decompose({64, 64, 16}, 4, 0).parts);
   EXPECT_EQ((std::array<int, 3>{1, 2, 2}), decompose({64, 11, 11}, 4, 0).parts);
+  // Slabs transpose nothing, and pay off before their sides are the smaller ones.
+  EXPECT_EQ((std::array<int, 3>{1, 1, 2}), decompose({64, 64, 48}, 2, 0).parts);
+  EXPECT_EQ((std::array<int, 3>{1, 2, 1}), decompose({64, 64, 24}, 2, 0).parts);
   EXPECT_EQ((std::array<int, 3>{1, 4, 1}), decompose({64, 12, 1}, 4, 0).parts);
   EXPECT_EQ((std::array<int, 3>{0, 1, 1}), decompose({64, 11, 11}, 4, 3).place);
   EXPECT_EQ((std::array<int, 3>{1, 1, 1}), decompose({4, 1, 1}, 1, 0).parts);

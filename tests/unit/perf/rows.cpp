@@ -57,6 +57,14 @@ TEST(Rows, ScalingHasNoEfficiencyWithoutATimeOfOneUnit) {
   EXPECT_EQ(speed_up_columns(std::nullopt, 1e-3, 4), "        -           -\n");
 }
 
+TEST(Rows, ScalingShowsTheShareOfMessages) {
+  EXPECT_EQ(
+      scaling_columns(record(1e-3, true), false, 2, 1e-3,
+                      MessageTimes{.measured = 2e-4, .modelled = 1e-4, .step = 6e-4}),
+      "       1000.00  [1000.00 .. 1000.00]                50 %       200.00      20 %       100.00       "
+      "600.00\n");
+}
+
 TEST(Rows, FailedRecordHasNeitherMedianNorInterval) {
   EXPECT_EQ(median_text(record(1e-3, true), 1e3, 4), "1.0000");
   EXPECT_EQ(interval_text(record(1e-3, true), 1e3, 4), "[1.0000 .. 1.0000]");
