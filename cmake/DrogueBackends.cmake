@@ -39,6 +39,7 @@ if(NOT Kokkos_ENABLE_OPENMP)
 endif()
 drogue_backend(serial SERIAL Kokkos::Serial "${DROGUE_SERIAL}")
 drogue_backend(openmp OPENMP Kokkos::OpenMP "${_openmp}")
+drogue_backend(hip HIP Kokkos::HIP "${DROGUE_HIP}" DEVICE)
 drogue_backend(cuda CUDA Kokkos::Cuda "${DROGUE_CUDA}" DEVICE)
 # The entries of the sources, in the same words.
 set(_header "${PROJECT_SOURCE_DIR}/kernels/device/backend_list.hpp")
@@ -53,7 +54,7 @@ if(NOT _lines STREQUAL _words)
                       "  ${_words}\nand those of kernels/device/backend_list.hpp\n  ${_lines}\nMake both lists agree.")
 endif()
 if(NOT DROGUE_BACKENDS)
-  message(FATAL_ERROR "No backend is left: turn DROGUE_SERIAL, DROGUE_OPENMP or DROGUE_CUDA on.")
+  message(FATAL_ERROR "No backend is left: turn DROGUE_SERIAL, DROGUE_OPENMP, DROGUE_HIP or DROGUE_CUDA on.")
 endif()
 
 # drogue_instantiate(sources <file>): appends one generated source per backend, which includes the file with
@@ -91,21 +92,22 @@ function(drogue_includes_kokkos result file)
   endforeach()
 endfunction()
 
-# Sources that include Kokkos go through nvcc in a CUDA build.
+# Sources that include Kokkos go through nvcc in a CUDA build; in a HIP build all do through its compiler.
 function(drogue_use_device_language)
   if(DROGUE_CUDA)
     set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
   endif()
+  set_source_files_properties(${ARGN} PROPERTIES DROGUE_DEVICE_SOURCE ON)
 endfunction()
 
-# drogue_unite_device(sources name): replaces those of `sources` that nvcc compiles by one that includes them. A unity build of
-# CMake leaves CUDA out before version 3.31, and nvcc takes longest to read Kokkos.
+# drogue_unite_device(sources name): replaces those of `sources` that are compiled for a device by one that includes them. A unity
+# build of CMake leaves CUDA and instances out, and compilers of devices take longest to read Kokkos.
 function(drogue_unite_device sources name)
   set(_kept)
   set(_includes)
   foreach(_source IN LISTS ${sources})
-    get_source_file_property(_language "${_source}" LANGUAGE)
-    if(_language STREQUAL "CUDA")
+    get_source_file_property(_is_for_device "${_source}" DROGUE_DEVICE_SOURCE)
+    if(_is_for_device)
       string(APPEND _includes "#include \"${_source}\"\n")
     else()
       list(APPEND _kept "${_source}")

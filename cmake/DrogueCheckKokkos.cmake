@@ -7,6 +7,13 @@ endif()
 if(Kokkos_ENABLE_CUDA AND NOT DROGUE_CUDA)
   message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} is a CUDA build: configure with -DDROGUE_CUDA=ON (preset cuda).")
 endif()
+if(DROGUE_HIP AND NOT Kokkos_ENABLE_HIP)
+  message(FATAL_ERROR "DROGUE_HIP=ON, but the Kokkos in ${Kokkos_DIR} has no HIP: run scripts/setup.sh --hip, or point "
+                      "Kokkos_ROOT at a HIP build.")
+endif()
+if(Kokkos_ENABLE_HIP AND NOT DROGUE_HIP)
+  message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} is a HIP build: configure with -DDROGUE_HIP=ON (preset hip).")
+endif()
 if(NOT Kokkos_ENABLE_SERIAL)
   message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} lacks the Serial backend, which the tests compare against: "
                       "build it with Kokkos_ENABLE_SERIAL=ON.")

@@ -69,6 +69,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
   endif()
 endif()
+# Clang's -Wconversion warns of indices of another signedness, which that of gcc does not.
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  drogue_host_option(drogue_private INTERFACE -Wno-sign-conversion)
+endif()
 # nvcc only warns of a host function that a kernel calls, and the kernel then does nothing.
 target_compile_options(drogue_private INTERFACE "$<$<COMPILE_LANGUAGE:CUDA>:--diag-error=20011,20013,20014,20015>")
 if(DROGUE_WARNINGS_AS_ERRORS)

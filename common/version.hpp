@@ -20,7 +20,7 @@ struct BuildInfo {
   std::string_view hypre;           ///< "none" without it
   std::string_view nccl;            ///< "none" without it
   std::string_view backends;        ///< compiled in, separated by blanks: "serial openmp"
-  std::string_view known_backends;  ///< that the sources support, likewise: "serial openmp cuda"
+  std::string_view known_backends;  ///< that the sources support, likewise: "serial openmp hip cuda"
   bool exact;                       ///< no fused multiply-add: backends agree bit for bit
 };
 

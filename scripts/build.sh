@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Configures and builds one preset into build/PRESET.
 #
-#   scripts/build.sh [PRESET] [--system] [-DNAME=VALUE ...] [--target NAME ...]      PRESET: host (default), cuda, exact, cuda-exact, asan, debug
+#   scripts/build.sh [PRESET] [--system] [-DNAME=VALUE ...] [--target NAME ...]      PRESET: host (default), cuda, hip, exact, cuda-exact, asan, debug
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 
 preset=host options=() targets=()
@@ -22,6 +22,11 @@ case "$preset" in
   cuda*)
     [ -n "$nvcc" ] || fail "preset $preset needs nvcc: install the CUDA toolkit, or build preset host."
     options+=("-DDROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH:-90}")
+    ;;
+  hip)
+    hipcc="$(find_hipcc)"
+    [ -n "$hipcc" ] || fail "preset $preset needs hipcc: run scripts/setup.sh --hip, or build preset host."
+    options+=("-DCMAKE_CXX_COMPILER=$hipcc")
     ;;
 esac
 # The log is short when all is well; on failure the part that matters is shown.

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs what Drogue needs; does nothing, in a second, when it is there. Never prompts.
 #
-#   scripts/setup.sh [--system] [--no-cuda] [--developer] [--bundle]
+#   scripts/setup.sh [--system] [--no-cuda] [--hip] [--developer] [--bundle]
 #     --system     install nothing: only check that the tools are there; libraries come from find_package
 #     --no-cuda    no CUDA build of Kokkos although nvcc is there
+#     --hip        the compiler of HIP and a HIP build of Kokkos, for AMD GPUs of architecture gfx90a
 #     --developer  the formatter and the linter too
 #     --bundle     the portable builds of Kokkos that scripts/bundle.sh links as well
 #
@@ -14,11 +15,12 @@
 . "$root/scripts/lib/kokkos.sh"
 . "$root/scripts/dependencies.env"
 
-system=no cuda=yes developer=no bundle=no
+system=no cuda=yes hip=no developer=no bundle=no
 for argument in "$@"; do
   case "$argument" in
     --system) system=yes ;;
     --no-cuda) cuda=no ;;
+    --hip) hip=yes ;;
     --developer) developer=yes ;;
     --bundle) bundle=yes ;;
     -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" && exit 0 ;;
@@ -57,6 +59,8 @@ fi
 
 [ -z "${DROGUE_KOKKOS_ARCHIVE:-}" ] || check_archive "$DROGUE_KOKKOS_ARCHIVE"
 packages="$APT_PACKAGES"
+# A ROCm of the system comes first.
+[ "$hip" = no ] || [ -n "$(find_hipcc)" ] || packages="$packages $APT_HIP_PACKAGES"
 [ "$developer" = no ] || packages="$packages $APT_DEVELOPER_PACKAGES"
 mkdir -p "$deps" 2>/dev/null && [ -w "$deps" ] || fail "cannot write to $deps: choose another folder with DROGUE_DEPS."
 # shellcheck disable=SC2086  # one word a package
@@ -79,5 +83,6 @@ if [ "$cuda" = yes ] && [ -n "$nvcc" ]; then
   variants+=(cuda)
   [ "$bundle" = no ] || variants+=(bundle-cuda)
 fi
+[ "$hip" = no ] || variants+=(hip)
 build_variants "$arch" "${variants[@]}"
 wait_for_background

@@ -52,6 +52,12 @@ bool is_present(Backend backend) {
     return cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0;
   }
 #endif
+#if defined(KOKKOS_ENABLE_HIP)
+  if (backend == Backend::hip) {
+    int devices = 0;
+    return hipGetDeviceCount(&devices) == hipSuccess && devices > 0;
+  }
+#endif
   return true;
 }
 

@@ -10,6 +10,7 @@
 namespace Kokkos {
 class Serial;
 class OpenMP;
+class HIP;
 class Cuda;
 }  // namespace Kokkos
 
@@ -30,6 +31,14 @@ class Cuda;
 #define DROGUE_COMPILED_OPENMP false
 #define DROGUE_EXTERN_OPENMP(...)
 #endif
+#if defined(DROGUE_HAVE_HIP)
+#define DROGUE_COMPILED_HIP true
+#define DROGUE_EXTERN_HIP(Class, ...) \
+  extern template Class<Kokkos::HIP __VA_OPT__(, __VA_ARGS__<Kokkos::HIP>)>;
+#else
+#define DROGUE_COMPILED_HIP false
+#define DROGUE_EXTERN_HIP(...)
+#endif
 #if defined(DROGUE_HAVE_CUDA)
 #define DROGUE_COMPILED_CUDA true
 #define DROGUE_EXTERN_CUDA(Class, ...) \
@@ -44,12 +53,13 @@ class Cuda;
 #define DROGUE_EXTERN_INSTANCES(...) \
   DROGUE_EXTERN_SERIAL(__VA_ARGS__)  \
   DROGUE_EXTERN_OPENMP(__VA_ARGS__)  \
+  DROGUE_EXTERN_HIP(__VA_ARGS__)     \
   DROGUE_EXTERN_CUDA(__VA_ARGS__)
 
 namespace drogue::device {
 
 /// Backends that the sources support, slowest first. A build contains some of them.
-enum class Backend { serial, openmp, cuda };
+enum class Backend { serial, openmp, hip, cuda };
 
 /// Entry of the backend list: the identifier, its name on the command line, the preset that builds it,
 /// whether it starts on no machine without a device, whether this build has it, and its execution space. The
@@ -72,6 +82,15 @@ struct OpenMPBackend {
   using ExecutionSpace = Kokkos::OpenMP;
 };
 
+struct HipBackend {
+  static constexpr Backend backend = Backend::hip;
+  static constexpr std::string_view name = "hip";
+  static constexpr std::string_view preset = "hip";
+  static constexpr bool needs_device = true;
+  static constexpr bool is_compiled = DROGUE_COMPILED_HIP;
+  using ExecutionSpace = Kokkos::HIP;
+};
+
 struct CudaBackend {
   static constexpr Backend backend = Backend::cuda;
   static constexpr std::string_view name = "cuda";
@@ -82,7 +101,7 @@ struct CudaBackend {
 };
 
 /// Supported backends in the order of `Backend`.
-using KnownBackends = std::tuple<SerialBackend, OpenMPBackend, CudaBackend>;
+using KnownBackends = std::tuple<SerialBackend, OpenMPBackend, HipBackend, CudaBackend>;
 
 namespace implementation {
 

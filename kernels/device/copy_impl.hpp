@@ -8,13 +8,17 @@
 
 namespace drogue::device {
 
-/// Throws std::runtime_error if CUDA rejected a kernel since the last call: Kokkos does not report that, and
+/// Throws std::runtime_error if a GPU rejected a kernel since the last call: Kokkos does not report that, and
 /// the arrays would keep their old values.
 inline void check_launches() {
 #if defined(KOKKOS_ENABLE_CUDA)
   const cudaError_t error = cudaGetLastError();
   if (error != cudaSuccess)
     throw std::runtime_error(std::string("CUDA could not launch a kernel: ") + cudaGetErrorString(error));
+#elif defined(KOKKOS_ENABLE_HIP)
+  const hipError_t error = hipGetLastError();
+  if (error != hipSuccess)
+    throw std::runtime_error(std::string("HIP could not launch a kernel: ") + hipGetErrorString(error));
 #endif
 }
 

@@ -19,6 +19,17 @@ GpuHardware gpu_hardware() {
   }
   cudaDeviceGetAttribute(&hardware.clock_khz, cudaDevAttrClockRate, device);
 #endif
+#if defined(KOKKOS_ENABLE_HIP)
+  hipDeviceProp_t properties;
+  if (hipGetDeviceProperties(&properties, Kokkos::HIP().hip_device()) == hipSuccess) {
+    hardware.multiprocessors = properties.multiProcessorCount;
+    hardware.memory = static_cast<std::int64_t>(properties.totalGlobalMem);
+    hardware.constant = static_cast<std::int64_t>(properties.totalConstMem);
+    hardware.shared = static_cast<std::int64_t>(properties.maxSharedMemoryPerMultiProcessor);
+    hardware.l2 = properties.l2CacheSize;
+    hardware.clock_khz = properties.clockRate;
+  }
+#endif
   return hardware;
 }
 

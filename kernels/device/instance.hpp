@@ -3,18 +3,19 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/host_cores.hpp"
+#include "kernels/device/memory.hpp"
 #include "kernels/device/runtime.hpp"
 
 namespace drogue::device {
 
-/// Instance of an execution space: on CUDA a stream of its own, for OpenMP a pool of at most `most_threads`
+/// Instance of an execution space: on a GPU a stream of its own, for OpenMP a pool of at most `most_threads`
 /// threads, fewer on shared cores (`cores_are_shared`), elsewhere the default instance. An instance
 /// constructed from an execution space shares it.
 template <class ExecutionSpace>
 class Instance {
  public:
-  /// The default instance. Does not throw.
-  explicit Instance(int /*most_threads*/) {}
+  /// The default instance of a host, or a stream of its own. Throws std::runtime_error for an error of HIP.
+  explicit Instance(int /*most_threads*/) : _space(make_space()) {}
 
   /// Shares `space`. Does not throw.
   explicit Instance(const ExecutionSpace& space) : _space(space) {}
@@ -23,6 +24,13 @@ class Instance {
   [[nodiscard]] const ExecutionSpace& space() const { return _space; }
 
  private:
+  static ExecutionSpace make_space() {
+    if constexpr (is_host<ExecutionSpace>)
+      return ExecutionSpace();
+    else
+      return Kokkos::Experimental::partition_space(ExecutionSpace(), 1)[0];
+  }
+
   ExecutionSpace _space;
 };
 

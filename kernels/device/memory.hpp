@@ -10,12 +10,16 @@ template <class ExecutionSpace>
 inline constexpr bool is_host = Kokkos::SpaceAccessibility<Kokkos::DefaultHostExecutionSpace,
                                                            typename ExecutionSpace::memory_space>::accessible;
 
-/// Host memory that kernels of `ExecutionSpace` write directly; page-locked on CUDA. Running kernels report
+/// Host memory that kernels of `ExecutionSpace` write directly; page-locked for a GPU. Running kernels report
 /// their progress through it.
 #if defined(KOKKOS_ENABLE_CUDA)
 template <class ExecutionSpace>
 using HostPinnedSpace =
     std::conditional_t<is_host<ExecutionSpace>, Kokkos::HostSpace, Kokkos::CudaHostPinnedSpace>;
+#elif defined(KOKKOS_ENABLE_HIP)
+template <class ExecutionSpace>
+using HostPinnedSpace =
+    std::conditional_t<is_host<ExecutionSpace>, Kokkos::HostSpace, Kokkos::HIPHostPinnedSpace>;
 #else
 template <class ExecutionSpace>
 using HostPinnedSpace = Kokkos::HostSpace;

@@ -7,14 +7,15 @@
 #include <limits>
 #include <type_traits>
 
-#if defined(__AVX512F__) && !defined(__CUDACC__)
+#if defined(__AVX512F__) && !defined(__CUDACC__) && !defined(__HIPCC__)
 #include <immintrin.h>
 #endif
 
 // Kokkos::Experimental::simd derives its width from KOKKOS_ARCH_AVX2/AVX512XEON, which Kokkos_ARCH_NATIVE
 // does not define, and cannot convert packs between double and float. Vector types of GCC and Clang do both,
-// but nvcc rejects them, so host backends of CUDA builds use one lane.
-#if defined(__GNUC__) && !defined(__CUDACC__)
+// but nvcc rejects them, and a compiler of HIP sees another width for the device than for the host, so host
+// backends of CUDA and HIP builds use one lane.
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__HIPCC__)
 #define DROGUE_HOST_VECTORS 1
 #else
 #define DROGUE_HOST_VECTORS 0

@@ -194,6 +194,13 @@ DeviceFacts device_facts() {
   if (cudaDriverGetVersion(&driver) == cudaSuccess)
     facts.driver = std::to_string(driver / 1000) + "." + std::to_string(driver % 1000 / 10);
 #endif
+#if defined(KOKKOS_ENABLE_HIP)
+  hipDeviceProp_t properties;
+  if (hipGetDeviceProperties(&properties, Kokkos::HIP().hip_device()) == hipSuccess) {
+    facts.gpu = properties.name;
+    facts.capability = properties.gcnArchName;
+  }
+#endif
   return facts;
 }
 

@@ -116,6 +116,13 @@ std::array<std::uint64_t, 2> DeviceCommunicator<ExecutionSpace>::device_identity
     static_assert(sizeof properties.uuid == sizeof identity);
     std::memcpy(identity.data(), &properties.uuid, sizeof identity);
   }
+#elif defined(KOKKOS_ENABLE_HIP)
+  if constexpr (!on_host) {
+    hipUUID uuid;
+    KOKKOS_IMPL_HIP_SAFE_CALL(hipDeviceGetUuid(&uuid, space.hip_device()));
+    static_assert(sizeof uuid == sizeof identity);
+    std::memcpy(identity.data(), &uuid, sizeof identity);
+  }
 #endif
   return identity;
 }

@@ -73,6 +73,9 @@ find_nvcc() {
   done
 }
 
+# find_hipcc: prints the path of hipcc, or nothing.
+find_hipcc() { PATH="$PATH:${ROCM_PATH:-/opt/rocm}/bin" command -v hipcc || true; }
+
 # nvcc_compression: the option by which nvcc makes small files of machine code, which unpack when a program starts.
 nvcc_compression() {
   if [[ "$("$(find_nvcc)" --help)" == *--compress-mode* ]]; then echo --compress-mode=size; else echo -Xfatbin=-compress-all; fi

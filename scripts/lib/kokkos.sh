@@ -83,11 +83,11 @@ variant_stamp() {
     "${CXX:-c++}" -dumpfullversion -dumpmachine
     [ "$1" = bundle ] || grep -m 1 '^flags' /proc/cpuinfo
     cat "$root/cmake/kokkos_in_one.cmake"
-    case "$1" in *cuda*) printf '%s\n' "$2" && cat "$root/cmake/cuda13_kokkos45.hpp" && "$nvcc" --version ;; esac
+    case "$1" in *cuda*) printf '%s\n' "$2" && cat "$root/cmake/cuda13_kokkos45.hpp" && "$nvcc" --version ;; hip) "$(find_hipcc)" --version ;; esac
   } 2>/dev/null | sha256sum
 }
 
-# build_variants ARCH VARIANT...: installs host, cuda, bundle or bundle-cuda into $deps/VARIANT where it is not there, all at
+# build_variants ARCH VARIANT...: installs host, cuda, hip, bundle or bundle-cuda into $deps/VARIANT where it is not there, all at
 # once: much of each is work for one core.
 build_variants() {
   local arch="$1" variant stamp free
@@ -132,6 +132,13 @@ build_kokkos() {
         "-DKokkos_ARCH_$(kokkos_architecture "$arch")=ON")
       kernels+=(-DKokkosKernels_ENABLE_TPL_CUBLAS=OFF -DKokkosKernels_ENABLE_TPL_CUSPARSE=OFF
         -DKokkosKernels_ENABLE_TPL_CUSOLVER=OFF)
+      ;;
+    hip)
+      # Without OpenMP and other libraries of ROCm, which Debian 12 lacks. As C++17: Clang 15 crashes in <regex> of gcc 12 as C++20 for a device.
+      common+=("-DCMAKE_CXX_COMPILER=$(find_hipcc)" -DCMAKE_CXX_STANDARD=17)
+      kokkos+=(-DKokkos_ENABLE_HIP=ON -DKokkos_ARCH_AMD_GFX90A=ON -DKokkos_ENABLE_OPENMP=OFF -DKokkos_ENABLE_ROCTHRUST=OFF)
+      kernels+=(-DKokkosKernels_ENABLE_TPL_ROCBLAS=OFF -DKokkosKernels_ENABLE_TPL_ROCSPARSE=OFF
+        -DKokkosKernels_ENABLE_TPL_ROCSOLVER=OFF)
       ;;
   esac
   if command -v ccache >/dev/null; then

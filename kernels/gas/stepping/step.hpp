@@ -37,9 +37,9 @@ struct StepFunctor {
     StepInput now;
     KOKKOS_FUNCTION void finish_previous_step() const {}
     KOKKOS_FUNCTION StepInput input() const { return now; }
-    KOKKOS_FUNCTION ConservedVector<R> load(const double* in, const BoundaryConditions& boundaries,
+    KOKKOS_FUNCTION ConservedVector<R> load(const double* in, const BoundaryConditions& ends,
                                             std::int64_t cell) const {
-      return load_state<R>(in, boundaries, cell);
+      return load_state<R>(in, ends, cell);
     }
     template <class P>
     KOKKOS_FUNCTION void state_stored(std::int64_t, const ConservedVector<P>&) const {}

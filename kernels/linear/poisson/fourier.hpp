@@ -211,6 +211,27 @@ class FourierSolver {
   List _eigenvalues[3];
 };
 
+/// On a device without a library of transforms: products with matrices solve all problems there
+/// (`DiagonalizationSolver`).
+template <class ExecutionSpace>
+requires(!device::is_host<ExecutionSpace>) class FourierSolver<ExecutionSpace> {
+ public:
+  using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+
+  /// Supports no problem. Does not throw.
+  static bool supports(const PoissonProblem& /*problem*/) { return false; }
+
+  /// Throws std::invalid_argument.
+  FourierSolver(const ExecutionSpace& /*space*/, const PoissonProblem& /*problem*/,
+                bool /*in_place*/ = false) {
+    throw std::invalid_argument("this backend has no fast transforms");
+  }
+
+  /// Never called: there is no object.
+  void enqueue_solve(const List& /*right_hand_side*/, const List& /*solution*/,
+                     const SpectralOperator& /*spectral_operator*/ = {}) const {}
+};
+
 #if defined(KOKKOS_ENABLE_CUDA)
 using CufftPlan = std::shared_ptr<cufftHandle>;
 

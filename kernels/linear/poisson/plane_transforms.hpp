@@ -122,6 +122,22 @@ class PlaneTransforms {
   std::vector<AxisTransforms<ExecutionSpace>> _transforms;  ///< of axes of several cells
 };
 
+/// On a device without a library of transforms: products with matrices serve all problems there
+/// (`PlaneProducts`).
+template <class ExecutionSpace>
+requires(!device::is_host<ExecutionSpace>) class PlaneTransforms<ExecutionSpace>
+    : public PlaneProducts<ExecutionSpace> {
+ public:
+  /// Supports no problem. Does not throw.
+  static bool supports(const PoissonProblem& /*problem*/) { return false; }
+
+  /// Throws std::invalid_argument.
+  PlaneTransforms(const ExecutionSpace& space, const PoissonProblem& problem, int planes, bool in_place)
+      : PlaneProducts<ExecutionSpace>(space, problem, planes, in_place) {
+    throw std::invalid_argument("this backend has no fast transforms");
+  }
+};
+
 #if defined(KOKKOS_ENABLE_CUDA)
 /// By cuFFT, for problems that are periodic along x and y: a batch of real transforms in up to two
 /// dimensions.
