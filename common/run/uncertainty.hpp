@@ -70,8 +70,8 @@ struct ErrorBar {
 /// means and s that of its 95 % interval: a difference that scatter may hide does not count as none.
 [[nodiscard]] ErrorBar error_bar(const Distribution& coarse, const Distribution& fine, double ratio);
 
-/// A number to that many digits, "0.0123" or "10030": without an exponent below 10^9 where it has no
-/// fraction. Throws only std::bad_alloc.
+/// A number to that many digits, "0.0123" or "10030": as by "%g", but without an exponent from 1 to 10^9.
+/// Throws only std::bad_alloc.
 [[nodiscard]] std::string number_text(double value, int digits);
 
 /// "0.790 +- 0.012": a value and the half width of its interval to two digits of the latter; the value alone,

@@ -8,10 +8,10 @@ from .forms import EVIDENCE, error_of, passed, table, time_of, wrapped
 HEAD = """# Results
 
 Checks of all shipped scenes and times of steps. `scripts/publish_records.py --tables` writes this page from the records that
-the commands below wrote. Errors and tolerances have the unit of their quantity; seconds are from start to exit. What the
-numbers mean, and other machines: the notebooks of [gas](gas-notebook.md), [springs](springs-notebook.md),
-[options](options-notebook.md), [flow](flow-notebook.md), [coupling](coupling-notebook.md) and
-[parachutes](parachute-notebook.md). Cases of `drogue-perf` are named by their size and
+the commands below wrote, with the scenes of the commits that they name. Errors and tolerances have the unit of their
+quantity; seconds are from start to exit. What the numbers mean, and other machines: the notebooks of
+[gas](gas-notebook.md), [springs](springs-notebook.md), [options](options-notebook.md), [flow](flow-notebook.md),
+[coupling](coupling-notebook.md) and [parachutes](parachute-notebook.md). Cases of `drogue-perf` are named by their size and
 [variant](perf-records.md#records), with an [error of their kind](perf-reference.md#cases). Speed beside error is in the
 [README](../README.md#speed-beside-error), on [transfers](transfers.md) and [ladders](lessons/tables.md) there are pages.
 """

@@ -45,6 +45,8 @@ class Drop(gas_program.GasTest):
                                                                "fluid.velocity=[0,0,0]"], out="given")
         self.assertEqual(-8.0, still[0]["canopy_0_payload_velocity_z [m/s]"])
         self.assertEqual(8.0, still[0]["canopy_0_airspeed [m/s]"])
+        for row in still:
+            self.assertAlmostEqual(-row["canopy_0_payload_velocity_z [m/s]"], row["canopy_0_rate_of_descent [m/s]"], places=12)
         for name in ("peak_line_force", "peak_line_force_time", "rate_of_descent", "drag_coefficient"):
             for other in (in_stream, given):
                 self.assertAlmostEqual(1.0, dropped["canopy_0"][name] / other["canopy_0"][name], places=6, msg=name)

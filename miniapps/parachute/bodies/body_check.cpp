@@ -10,7 +10,7 @@
 namespace drogue::parachute_app {
 namespace {
 
-using scene::Place, scene::rounded_text, scene::sentence;
+using scene::Place, scene::rough_text, scene::rounded_text, scene::sentence;
 
 constexpr double most_vertices = 1048576.0;  // 2^20
 
@@ -178,6 +178,22 @@ void check_retraction(const Place& at, const FlowScene& scene, const Body& body)
   }
 }
 
+/// Notes a round body that acts farther outwards than its surface: docs/bodies.md, retraction.
+void note_missing_retraction(const Place& at, FlowScene& scene, const Body& body) {
+  const bool is_sphere = body.kind == BodyKind::sphere;
+  if (!(is_sphere || body.kind == BodyKind::cylinder) || body.slips() || is_sharp(scene) || scene.contact ||
+      at.given("retraction"))
+    return;
+  const double fit = is_sphere ? 0.3 : 0.2, cells = 2.0 * body.radius / std::ranges::max(body.spacing),
+               wider = 1.0 + 2.0 * fit / cells;
+  const long excess = std::lround(100.0 * ((is_sphere ? wider * wider : wider) - 1.0));
+  if (excess < 2) return;
+  scene.notices.push_back(sentence(
+      at.path("retraction"), " = 0: on ", rough_text(cells), " cells across, the body acts on the fluid ",
+      fit, " cells outside of its surface, so that its drag is some ", excess,
+      " % too large; retraction = ", fit, " makes up for it, and retraction = 0 says that none is wanted"));
+}
+
 void check_motion(const Place& at, const flow::Parameters& p, const Body& body) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string key = std::string("motion.") + axis_names[axis];
@@ -241,6 +257,7 @@ void complete_and_check_bodies(const Place& root, FlowScene& scene) {
     check_edges(at, p, body);
     check_mount(root, at, scene, body);
     check_retraction(at, scene, body);
+    note_missing_retraction(at, scene, body);
     check_places(at, scene, body);
     check_motion(at, p, body);
   }

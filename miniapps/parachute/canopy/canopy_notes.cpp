@@ -131,6 +131,10 @@ void note_narrow_core(FlowScene& scene, std::size_t i) {
   }
 }
 
+bool blows_along(const FlowScene& scene, std::size_t axis) {
+  return constant_value(scene.velocity[axis]).value_or(0.0) != 0.0;
+}
+
 /// Notes sides that hold the stream up or the air together.
 void note_sides(FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
@@ -139,7 +143,8 @@ void note_sides(FlowScene& scene) {
     const BoundaryKind kind = p.boundary[side].kind;
     if (kind == BoundaryKind::wall)
       walls.emplace_back(side_names[side]);
-    else if (side >= 4 && !is_open(kind))
+    else if (!is_open(kind) &&
+             (side >= 4 || (kind != BoundaryKind::periodic && blows_along(scene, side / 2))))
       closed.emplace_back(side_names[side]);
   }
   if (!walls.empty())
@@ -150,7 +155,32 @@ void note_sides(FlowScene& scene) {
     scene.notices.push_back(sentence(
         "grid.boundary: no air passes ", joined(closed, " and "),
         ", so that a canopy drives the air of the domain along and its drag and speed are not those in "
-        "free air; z = [\"inflow\", \"outflow\"] lets it pass"));
+        "free air; [\"inflow\", \"outflow\"] along the stream lets it pass"));
+}
+
+/// Notes a canopy that does not trail its payload in the air that meets it at the start.
+void note_axis_across_the_air(FlowScene& scene, std::size_t i) {
+  constexpr double largest_angle = 80.0;  // degrees: the largest of [Shi] is 75
+  const Canopy& canopy = scene.canopies[i];
+  const auto stream = scene.stream();
+  if (!stream) return;
+  const fabric::Vector payload = payload_place(canopy);
+  double along = 0.0, length = 0.0, speed = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double up = canopy.centre[axis] - payload[axis],
+                 air = (*stream)[axis] - canopy.start_velocity[axis];
+    along += up * air;
+    length = std::hypot(length, up);
+    speed = std::hypot(speed, air);
+  }
+  if (!(speed > 0.0)) return;
+  const double angle = 180.0 / pi * std::acos(std::clamp(along / (length * speed), -1.0, 1.0));
+  if (angle <= largest_angle) return;
+  scene.notices.push_back(sentence(element("canopy", i), ".angle: the air meets the canopy at the start at ",
+                                   std::lround(angle),
+                                   " degrees from its axis, which leads from the payload to the cloth: it "
+                                   "does not trail its payload; angle "
+                                   "and azimuth turn it"));
 }
 
 /// Notes dimensions of a C-9 that a canopy of another diameter has by default.
@@ -189,6 +219,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
   note_unfollowed_glide(scene);
   note_coarse_cells(scene, coarsest);
   for (const std::size_t i : flying) {
+    note_axis_across_the_air(scene, i);
     note_short_wake(scene, i);
     note_narrow_core(scene, i);
     note_defaults_of_another_canopy(root, scene, i);

@@ -74,13 +74,21 @@ std::optional<std::array<double, 3>> FlowScene::stream() const {
   return stream;
 }
 
+std::size_t FlowScene::owner_of(std::size_t canopy) const {
+  return static_cast<std::size_t>(canopies[canopy].payload.shared.value_or(static_cast<int>(canopy)));
+}
+
+bool FlowScene::descends(std::size_t canopy) const {
+  return has_fluid() && canopies[canopy].has_lines() && !canopies[owner_of(canopy)].payload.fixed &&
+         gravity != std::array<double, 3>{};
+}
+
 std::string FlowScene::lack_of_airspeed(std::size_t canopy) const {
   if (!has_fluid()) return "which needs [fluid]";
   const std::optional<std::array<double, 3>> constant = stream();
   if (!constant) return "which needs a fluid.velocity that does not vary";
   const bool is_drum = canopies[canopy].kind == CanopyKind::drum;
-  const auto owner =
-      static_cast<std::size_t>(canopies[canopy].payload.shared.value_or(static_cast<int>(canopy)));
+  const std::size_t owner = owner_of(canopy);
   const bool moves = !is_drum && !(canopies[owner].has_lines() && canopies[owner].payload.fixed);
   if (moves || *constant != std::array<double, 3>{}) return "";
   return "which is 0: fluid.velocity is 0 and canopy[" + std::to_string(is_drum ? canopy : owner) + "]" +

@@ -221,6 +221,10 @@ struct FlowScene {
   /// Clause on why the fluid far upstream has no speed relative to a canopy, or one that is 0 all the time;
   /// empty if it has one. Throws only std::bad_alloc.
   [[nodiscard]] std::string lack_of_airspeed(std::size_t canopy) const;
+  /// Canopy whose payload carries this one: itself, or that of `payload.shared`. Does not throw.
+  [[nodiscard]] std::size_t owner_of(std::size_t canopy) const;
+  /// True if gravity pulls the payload of a canopy through the fluid. Does not throw.
+  [[nodiscard]] bool descends(std::size_t canopy) const;
   [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty() || !flags.empty(); }
   /// Courant number, the default one if none is given. Does not throw.
   [[nodiscard]] double cfl() const {

@@ -71,7 +71,7 @@ void check_history(const Place& root, const FlowScene& scene) {
   if (checks.empty()) return;
   for (std::size_t i = 0; i < checks.size(); ++i)
     for (std::size_t canopy = 0; canopy < scene.canopies.size(); ++canopy)
-      for (const char* column : {"_airspeed", "_drag_coefficient"})
+      for (const char* column : {"_airspeed", "_drag_coefficient", "_rate_of_descent"})
         if (checks[i].column == "canopy_" + std::to_string(canopy) + column)
           require_airspeed(root.at("verify.history", i), scene, canopy);
   framework::require_measurable(root, checks, scene.output, {scene.end_time, "run.end_time"},

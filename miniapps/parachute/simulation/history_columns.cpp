@@ -42,8 +42,10 @@ void append_canopy(const FlowScene& scene, std::size_t i, Columns& columns) {
   append_vector(columns, name + "payload_velocity", "m/s");
   columns.push_back({name + "projected_area", "m^2"});
   if (scene.has_fluid()) columns.push_back({name + "leak", "m^3/s"});
-  if (scene.lack_of_airspeed(i).empty())
+  if (scene.lack_of_airspeed(i).empty()) {
     columns.insert(columns.end(), {{name + "airspeed", "m/s"}, {name + "drag_coefficient", ""}});
+    if (scene.descends(i)) columns.push_back({name + "rate_of_descent", "m/s"});
+  }
   columns.insert(columns.end(), {{name + "largest_strain", ""}, {name + "inversion", ""}});
   if (scene.canopies[i].lines.drag) append_vector(columns, name + "line_drag", "N");
   if (scene.canopies[i].payload.drag) append_vector(columns, name + "payload_drag", "N");

@@ -18,25 +18,20 @@ using fabric::Vector;
 /// Factor of Maskell's relation for a single parachute (Macha and Buffington, SAND89-1485, 1990).
 constexpr double blockage_factor = 1.85;
 
+/// Largest ratio of dynamic pressures that it corrects. Boxes in which it is at most that agree with wider
+/// ones (docs/parachute-notebook.md, drag); at 1.9, in `c9-duct`, the corrected drag is a fifth too small.
+constexpr double largest_pressure_ratio = 1.3;
+
 /// Part of the area in flight that a canopy has at the start if it opens at all.
 constexpr double closed_area = 0.9;
 
 double length_of(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
 
-const Canopy& owner_of(const FlowScene& scene, std::size_t i) {
-  return scene
-      .canopies[static_cast<std::size_t>(scene.canopies[i].payload.shared.value_or(static_cast<int>(i)))];
-}
-
-bool falls(const FlowScene& scene, std::size_t i) {
-  return !owner_of(scene, i).payload.fixed && length_of(scene.gravity) > 0.0;
-}
-
 /// Direction in which the air passes a canopy in steady flight: upwards if its payload falls, else that of
 /// the stream; zero without either.
 Vector direction_of(const FlowScene& scene, std::size_t i) {
   Vector direction = scene.stream().value_or(Vector{});
-  if (falls(scene, i))
+  if (scene.descends(i))
     for (std::size_t axis = 0; axis < 3; ++axis) direction[axis] = -scene.gravity[axis];
   const double length = length_of(direction);
   for (double& component : direction) component = length > 0.0 ? component / length : 0.0;
@@ -61,7 +56,7 @@ double section_of(const flow::Parameters& p, const Vector& direction) {
 /// together, and the canopy is on its axis. One that glides has another factor (docs/parachute-notebook.md,
 /// blockage).
 bool is_blocked_by_sides(const FlowScene& scene, std::size_t i, const Vector& direction) {
-  const CanopyPayload& payload = owner_of(scene, i).payload;
+  const CanopyPayload& payload = scene.canopies[scene.owner_of(i)].payload;
   if (!payload.fixed && !payload.guided) return false;
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (direction[axis] == 0.0 && scene.open_axes()[axis]) return false;
@@ -167,12 +162,13 @@ std::vector<std::pair<std::string, Statistic>> means_of(const FlowScene& scene, 
     return 1.0 + blockage_factor * 2.0 * rows.all_forces(from, to) /
                      (density * std::pow(rows.speed(from, to), 2) * section);
   };
-  const bool is_blocked = is_blocked_by_sides(scene, i, direction);
+  const bool is_blocked = is_blocked_by_sides(scene, i, direction) &&
+                          pressure_ratio(begin_of_means(scene), scene.end_time) <= largest_pressure_ratio;
   std::vector<std::pair<std::string, Statistic>> means;
   const auto add = [&](std::string key, Statistic statistic) {
     means.emplace_back(std::move(key), std::move(statistic));
   };
-  if (falls(scene, i)) {
+  if (scene.descends(i)) {
     add("rate_of_descent", [&rows](double from, double to) { return rows.speed(from, to); });
     if (is_blocked)
       add("rate_of_descent_free_air", [=, &rows](double from, double to) {
@@ -195,15 +191,22 @@ std::vector<std::pair<std::string, Statistic>> means_of(const FlowScene& scene, 
   return means;
 }
 
-/// Keys of a group with their titles, in the order in which they are printed.
-constexpr std::array<std::array<const char*, 2>, 12> titles = {
-    {{"rate_of_descent", "rate of descent, m/s"},
-     {"rate_of_descent_free_air", "rate of descent in free air, m/s"},
-     {"drift", "drift, m/s"},
-     {"drag_coefficient", "C_D0"},
-     {"drag_coefficient_free_air", "C_D0 in free air"},
-     {"inflated_diameter_ratio", "D_p/D_0"},
-     {"leak", "flow through the cloth/(U A)"},
+/// A key of a group.
+struct Title {
+  const char* key;
+  const char* text;
+  bool is_mean = false;
+};
+
+/// Keys of a group in the order in which they are printed.
+constexpr std::array<Title, 12> titles = {
+    {{"rate_of_descent", "rate of descent, m/s", true},
+     {"rate_of_descent_free_air", "rate of descent in free air, m/s", true},
+     {"drift", "drift, m/s", true},
+     {"drag_coefficient", "C_D0", true},
+     {"drag_coefficient_free_air", "C_D0 in free air", true},
+     {"inflated_diameter_ratio", "D_p/D_0", true},
+     {"leak", "flow through the cloth/(U A)", true},
      {"opening_time", "opening time, s"},
      {"peak_line_force", "peak line force, N"},
      {"peak_line_force_time", "peak line force at, s"},
@@ -216,15 +219,15 @@ std::string canopy_name(const std::string& group) {
 
 /// Title of a key; the key if it has none.
 std::string title_of(const std::string& key) {
-  const auto found = std::ranges::find_if(titles, [&](const auto& row) { return row[0] == key; });
-  return found == titles.end() ? key : (*found)[1];
+  const auto found = std::ranges::find_if(titles, [&](const Title& title) { return title.key == key; });
+  return found == titles.end() ? key : found->text;
 }
 
 void describe_means(const FlowScene& scene, const run::History& history, std::size_t i,
                     run::ResultDocument& result) {
   const Vector direction = direction_of(scene, i);
-  if (history.empty() || !scene.lack_of_airspeed(i).empty() || owner_of(scene, i).payload.release ||
-      direction == Vector{})
+  if (history.empty() || !scene.lack_of_airspeed(i).empty() ||
+      scene.canopies[scene.owner_of(i)].payload.release || direction == Vector{})
     return;
   const FlightRows rows(scene, history, i, direction);
   const std::string group = "canopy_" + std::to_string(i);
@@ -233,23 +236,18 @@ void describe_means(const FlowScene& scene, const run::History& history, std::si
     if (std::isfinite(value)) result.metrics.set(group, name, value);
   };
   set("from", from);
-  std::vector<std::string> without_error;
   for (const auto& [name, statistic] : means_of(scene, rows, i, direction)) {
-    const double value = statistic(from, to), error = run::batch_half_width(statistic, from, to);
-    set(name, value);
-    set(name + "_error", error);
-    if (std::isfinite(value) && !std::isfinite(error)) without_error.push_back(title_of(name));
+    set(name, statistic(from, to));
+    set(name + "_error", run::batch_half_width(statistic, from, to));
   }
-  if (!without_error.empty())
-    result.warnings.push_back(scene::sentence(canopy_name(group), ": means from ", scene::rough_text(from),
-                                              " to ", scene::rough_text(to), " s of ",
-                                              scene::joined(without_error, "; "),
-                                              " have no error bar, since they change too slowly for so short "
-                                              "a time; a longer run.end_time has one"));
-  if (scene.drop && scene.drop->height && falls(scene, i)) {
+  if (scene.drop && scene.drop->height && scene.descends(i)) {
     const auto [time, speed] = rows.touch_down(*scene.drop->height);
     set("touchdown_time", time);
     set("touchdown_speed", speed);
+    if (std::isnan(time))
+      result.warnings.push_back(
+          scene::sentence("drop.height = ", scene::rough_text(*scene.drop->height),
+                          " m is not reached before run.end_time = ", scene::rough_text(to), " s"));
   }
   if (is_along_z(direction)) set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
 }
@@ -266,6 +264,10 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
     const std::string group = "canopy_" + std::to_string(i);
     result.metrics.set(group, "peak_line_force", force);
     result.metrics.set(group, "peak_line_force_time", time);
+    if (time > 0.98 * scene.end_time)
+      result.warnings.push_back(canopy_name(group) +
+                                ": the largest line force is that of the end of the run, and may still grow; "
+                                "a longer run.end_time shows the peak");
   }
 }
 
@@ -278,11 +280,13 @@ std::string flight_report(const run::ResultDocument& result) {
     if (const auto from = value("from"))
       text += ", means from " + scene::rough_text(*from) + " s on; +- is 95 % by the scatter in this run";
     text += '\n';
-    for (const auto& [key, title] : titles) {
+    for (const auto& [key, title, is_mean] : titles) {
       const std::string name = key;
-      if (const auto number = value(name))
-        text += "  " + std::string(title) + std::string(34 - std::string(title).size(), ' ') +
-                run::bar_text(*number, value(name + "_error").value_or(NAN)) + '\n';
+      const auto number = value(name), error = value(name + "_error");
+      if (!number) continue;
+      text += "  " + std::string(title) + std::string(34 - std::string(title).size(), ' ') +
+              run::bar_text(*number, error.value_or(NAN)) +
+              (is_mean && !error ? "  (no error bar: too short a run)" : "") + '\n';
     }
   }
   return text;

@@ -67,8 +67,8 @@ TEST(CanopyNotes, NameSidesThatHoldTheAir) {
       "in free air; \"slip\" sides, far away, do not");
   expect_note({"grid.boundary.z=\"periodic\""},
               "grid.boundary: no air passes z_low and z_high, so that a canopy drives the air of the domain "
-              "along and its drag and speed are not those in free air; z = [\"inflow\", \"outflow\"] lets it "
-              "pass");
+              "along and its drag and speed are not those in free air; [\"inflow\", \"outflow\"] along the "
+              "stream lets it pass");
 }
 
 TEST(CanopyNotes, NameAWakeThatTheDomainCutsOff) {
@@ -153,6 +153,23 @@ TEST(CanopyNotes, ShippedScenesHaveNoneButThoseInADuct) {
       noted.insert(entry.name);
   EXPECT_EQ(noted, (std::set<std::string>{"c9-airdrop", "c9-duct", "c9-heavy", "cluster-3", "guide-vent",
                                           "porous-c9", "reefed"}));
+}
+
+TEST(CanopyNotes, CanopiesThatDoNotTrailTheirPayload) {
+  EXPECT_TRUE(notes({"canopy[0].angle=75", "canopy[0].centre=[3,0,4]"}).empty());
+  const auto across = notes({"fluid.velocity=[10,0,0]", "grid.boundary.x=[\"inflow\",\"outflow\"]"});
+  ASSERT_EQ(across.size(), 1U);
+  EXPECT_TRUE(across[0].starts_with("canopy[0].angle: the air meets the canopy at the start at 90 degrees"))
+      << across[0];
+  EXPECT_TRUE(std::ranges::any_of(notes({"fluid.velocity=[0,0,-10]"}), [](const std::string& note) {
+    return note.starts_with("canopy[0].angle: the air meets the canopy at the start at 180 degrees");
+  }));
+}
+
+TEST(CanopyNotes, AStreamIntoClosedSides) {
+  EXPECT_TRUE(std::ranges::any_of(notes({"fluid.velocity=[1,0,10]"}), [](const std::string& note) {
+    return note.starts_with("grid.boundary: no air passes x_low and x_high");
+  }));
 }
 
 TEST(CanopyNotes, SheetsWithoutLinesHaveNone) {

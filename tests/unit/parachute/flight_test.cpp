@@ -102,24 +102,29 @@ TEST(Flight, OfAFallingPayloadHasRateOfDescentAndDrift) {
   EXPECT_FALSE(values.contains("canopy_0.peak_line_force")) << "none was recorded";
 }
 
-TEST(Flight, WarnsOfMeansWithoutAnErrorBar) {
+TEST(Flight, CorrectsNoBlockageThatIsTooLarge) {
   const FlowScene scene = SceneFile().read();
-  const double force = 0.8 * 0.5 * 1.25 * 100.0 * nominal;
-  const auto warnings = [&](double period) {
+  const auto has_free_air = [&](double drag) {
+    const double force = drag * 0.5 * 1.25 * 100.0 * nominal;
+    return described(scene, history_of(scene, {{"canopy_0_force_z", [&](double) { return force; }}}))
+        .contains("canopy_0.drag_coefficient_free_air");
+  };
+  const double largest = 0.3 * 1296.0 / (1.85 * nominal);
+  EXPECT_TRUE(has_free_air(0.99 * largest));
+  EXPECT_FALSE(has_free_air(1.01 * largest));
+}
+
+TEST(Flight, WarnsOfALargestForceAtTheEnd) {
+  const FlowScene scene = SceneFile().read();
+  const auto warnings = [&](double time) {
     run::ResultDocument result;
-    const run::History history =
-        history_of(scene, {{"canopy_0_force_z", [&](double t) {
-                              return force * (1.0 + 0.2 * std::sin(2.0 * std::numbers::pi * t / period));
-                            }}});
-    describe_flights(scene, peaks_of({}), history, result);
+    describe_flights(scene, peaks_of({9000.0, time}), {}, result);
     return result.warnings;
   };
-  EXPECT_TRUE(warnings(0.3).empty());
-  const std::vector<std::string> slow = warnings(3.0);
-  ASSERT_EQ(slow.size(), 1U);
-  EXPECT_TRUE(
-      slow[0].starts_with("canopy[0]: means from 2 to 4 s of C_D0; C_D0 in free air have no error bar"))
-      << slow[0];
+  EXPECT_TRUE(warnings(0.9 * scene.end_time).empty());
+  ASSERT_EQ(warnings(scene.end_time).size(), 1U);
+  EXPECT_TRUE(warnings(scene.end_time)[0].starts_with("canopy[0]: the largest line force"))
+      << warnings(scene.end_time)[0];
 }
 
 TEST(Flight, WithoutRowsHasThePeakAlone) {
@@ -140,10 +145,14 @@ TEST(Flight, ReportPrintsWhatThereIs) {
   result.metrics.set("canopy_0", "from", 2.0);
   result.metrics.set("canopy_0", "drag_coefficient", 0.8123);
   result.metrics.set("canopy_0", "drag_coefficient_error", 0.0251);
+  result.metrics.set("canopy_0", "inflated_diameter_ratio", 0.6712);
+  result.metrics.set("canopy_0", "peak_line_force", 10034.0);
   result.metrics.set("canopies", "vertices", std::int64_t{3});
   EXPECT_EQ(flight_report(result),
             "canopy[0], means from 2 s on; +- is 95 % by the scatter in this run\n"
-            "  C_D0                              0.812 +- 0.025\n");
+            "  C_D0                              0.812 +- 0.025\n"
+            "  D_p/D_0                           0.6712  (no error bar: too short a run)\n"
+            "  peak line force, N                10030\n");
   EXPECT_EQ(flight_title("canopy_1.peak_line_force"), "canopy[1] peak line force, N");
   EXPECT_EQ(flight_title("body_0_force_x_mean"), "body_0_force_x_mean");
   EXPECT_EQ(flight_report({}), "");
