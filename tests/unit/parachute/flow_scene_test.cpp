@@ -178,7 +178,8 @@ TEST(FlowScene, ImplicitDiffusionTakesItsTimeSchemeByItself) {
 }
 
 TEST(FlowScene, SheetsInImplicitDiffusionBoundTheTimeStep) {
-  const std::string body = "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1}]",
+  const std::string body =
+                        "body=[{kind=\"sphere\",centre=[1,0.5,0.5],radius=0.2,edge_length=0.1,retraction=0}]",
                     implicit = "flow.diffusion=crank-nicolson", stiff = "fluid.viscosity=100";
   const auto max_dt = [&](const std::vector<std::string>& sets) {
     return read_text(least, sets).parameters.max_dt;
