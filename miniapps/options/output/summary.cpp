@@ -91,9 +91,9 @@ void describe_counts(const RowCounts& counts, run::ResultDocument& result) {
   set("invalid", counts.invalid);
   set("ok", ok_rows(counts));
   set("rows", counts.rows);
-  if (const double seconds = result.timing.compute_s; seconds > 0.0)
-    result.metrics.set("figure_of_merit", "options_per_s",
-                       static_cast<double>(ok_rows(counts) + counts.coarse) / seconds);
+  const std::int64_t priced = ok_rows(counts) + counts.coarse;
+  if (const double seconds = result.timing.compute_s; priced > 0 && seconds > 0.0)
+    result.metrics.set("figure_of_merit", "options_per_s", static_cast<double>(priced) / seconds);
 }
 
 }  // namespace drogue::options_app
