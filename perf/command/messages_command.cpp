@@ -38,7 +38,7 @@ struct TimedMessages {
 
 /// Seconds of the slowest rank, the same on all.
 double slowest_time(const linear::RankGroup& group, const std::function<void()>& work) {
-  group.all(true);  // all ranks begin together
+  static_cast<void>(group.all(true));  // all ranks begin together
   const device::Stopwatch watch;
   work();
   auto bits = std::bit_cast<std::uint64_t>(watch.seconds());  // ordered as the numbers, which are positive
