@@ -89,10 +89,8 @@ Airstream::Airstream(const FlowScene& scene) : velocity(scene.stream().value_or(
   const double gravity = std::hypot(scene.gravity[0], scene.gravity[1], scene.gravity[2]);
   for (std::size_t axis = 0; axis < 3; ++axis)
     up[axis] = gravity > 0.0 ? -scene.gravity[axis] / gravity : 0.0;
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
     has_speed.push_back(scene.lack_of_airspeed(i).empty());
-    has_descent.push_back(has_speed[i] && scene.descends(i));
-  }
 }
 
 void append_measures(const FlowScene& scene, const Airstream& stream, const Sheets& sheets,
@@ -119,7 +117,7 @@ void append_measures(const FlowScene& scene, const Airstream& stream, const Shee
       row.values.insert(row.values.end(), {std::hypot(relative[0], relative[1], relative[2]),
                                            drag_coefficient(one.force, relative, scene.parameters.density,
                                                             canopy.nominal_area())});
-    if (stream.has_descent[i])
+    if (stream.has_speed[i] && scene.descends(i))
       row.values.push_back(relative[0] * stream.up[0] + relative[1] * stream.up[1] +
                            relative[2] * stream.up[2]);
     row.values.insert(row.values.end(), {one.largest_strain, one.inversion});

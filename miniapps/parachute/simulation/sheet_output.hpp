@@ -14,14 +14,14 @@
 namespace drogue::parachute_app {
 
 /// Fluid far upstream of canopies, which rows of history.csv need: its velocity, m/s, and whether it has a
-/// speed relative to each canopy, and whether that descends. The expressions of a scene are evaluated once.
+/// speed relative to each canopy. The expressions of a scene are evaluated once.
 /// Throws only std::bad_alloc.
 struct Airstream {
   explicit Airstream(const FlowScene& scene);
 
   fabric::Vector velocity;
   fabric::Vector up;  ///< unit vector against gravity; zero without
-  std::vector<bool> has_speed, has_descent;
+  std::vector<bool> has_speed;
 };
 
 /// Appends the measures of all canopies in the order of `history_columns`. The frame of `state` has its

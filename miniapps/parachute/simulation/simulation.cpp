@@ -312,10 +312,6 @@ run::ResultDocument::WallTimes Simulation::phases() const {
   return {.compute_s = _compute_s, .h2d_s = _h2d_s};
 }
 
-framework::StepWork Simulation::step_work() const {
-  const flow::Parameters& p = _scene.parameters;
-  return {"cell_steps_per_s", static_cast<double>(p.cells[0]) * static_cast<double>(p.cells[1]) *
-                                  static_cast<double>(p.cells[2])};
-}
+framework::StepWork Simulation::step_work() const { return {"cell_steps_per_s", _scene.cells()}; }
 
 }  // namespace drogue::parachute_app
