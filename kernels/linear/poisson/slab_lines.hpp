@@ -48,8 +48,9 @@ struct LineEquation {
 template <class ExecutionSpace>
 struct SlabLines {
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
-  /// Nodes whose loads are under way together: the recurrences do not wait for each.
-  static constexpr int batch = 20;
+  /// Nodes whose loads are under way together: the recurrences do not wait for each. With more, the registers
+  /// of a device do not suffice for all loads of a batch.
+  static constexpr int batch = 8;
 
   int length;            ///< nodes of a line in the slab, the separator first
   int parts;             ///< 1, or on a device 2: real and imaginary parts

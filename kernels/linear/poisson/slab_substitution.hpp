@@ -16,6 +16,9 @@ namespace drogue::linear {
 template <class ExecutionSpace>
 inline constexpr int lines_per_item = device::is_host<ExecutionSpace> ? 64 : 1;
 
+/// Small blocks, since a plane has a few warps for each multiprocessor, of which it holds 16 at once.
+using SlabBounds = Kokkos::LaunchBounds<32, 16>;
+
 /// Eliminates the interior of lines with a source f, which it replaces by eliminated sources but for that of
 /// the separator. Sends the sources that it leaves at the own separator and at the next one; of singular
 /// lines also the sum of w u in the interior, between separators with the value zero.
@@ -44,16 +47,16 @@ struct ReduceSlabFunctor {
       high[a] = 0.0;
       coupling[a] = diffusivity * slab.conductances(1);
     }
-    for (int begin = 1; begin < n; begin += batch) {
+    const auto batch_of = [&]<bool is_full>(int begin) {
       double f[batch][width], pivot[batch][width];
       for (int k = 0; k < batch; ++k)
-        if (begin + k < n)
+        if (is_full || begin + k < n)
           for (int a = 0; a < count; ++a) {
             f[k][a] = values[static_cast<std::int64_t>(begin + k) * lines + first + a];
             pivot[k][a] = slab.inverse_pivots(slab.at(begin + k - 1, mode + a));
           }
       for (int k = 0; k < batch; ++k)
-        if (begin + k < n) {
+        if (is_full || begin + k < n) {
           const double factor = source * slab.lengths(begin + k),
                        above = diffusivity * slab.conductances(begin + k + 1);
           for (int a = 0; a < count; ++a) {
@@ -70,10 +73,13 @@ struct ReduceSlabFunctor {
           }
         }
       for (int k = 0; k < batch; ++k)
-        if (begin + k < n)
+        if (is_full || begin + k < n)
           for (int a = 0; a < count; ++a)
             values[static_cast<std::int64_t>(begin + k) * lines + first + a] = f[k][a];
-    }
+    };
+    int begin = 1;
+    for (; begin + batch <= n; begin += batch) batch_of.template operator()<true>(begin);
+    if (begin < n) batch_of.template operator()<false>(begin);
     for (int a = 0; a < count; ++a) {
       sources[first + a] = low[a];
       sources[lines + first + a] = slab.has_high_end ? 0.0 : high[a];
@@ -128,12 +134,12 @@ struct SubstituteSlabFunctor {
       values[first + a] = low[a];
       carried[a] *= slab.has_high_end ? 0.0 : diffusivity * slab.conductances(n);
     }
-    for (int of_batch = slab.batches(); of_batch-- > 0;) {
+    const auto batch_of = [&]<bool is_full>(int of_batch) {
       const int begin = 1 + of_batch * batch;
       double f[batch][width], pivot[batch][width], coupling[width];
       for (int a = 0; a < count; ++a) coupling[a] = slab.couplings(slab.at(of_batch, mode + a));
       for (int k = 0; k < batch; ++k)
-        if (begin + k < n)
+        if (is_full || begin + k < n)
           for (int a = 0; a < count; ++a) {
             f[k][a] = values[static_cast<std::int64_t>(begin + k) * lines + first + a];
             pivot[k][a] = slab.inverse_pivots(slab.at(begin + k - 1, mode + a));
@@ -141,7 +147,7 @@ struct SubstituteSlabFunctor {
       double uniform = 0.0;
       if constexpr (has_mean) uniform = slab.uniform(of_batch);
       for (int k = 0; k < batch; ++k)
-        if (begin + k < n) {
+        if (is_full || begin + k < n) {
           const double above = diffusivity * slab.conductances(begin + k + 1);
           for (int a = 0; a < count; ++a) {
             f[k][a] += coupling[a] * low[a];
@@ -153,7 +159,7 @@ struct SubstituteSlabFunctor {
           }
         }
       for (int k = batch - 1; k >= 0; --k)
-        if (begin + k < n) {
+        if (is_full || begin + k < n) {
           const double below = diffusivity * slab.conductances(begin + k);
           for (int a = 0; a < count; ++a) {
             f[k][a] = pivot[k][a] * (f[k][a] + carried[a]);
@@ -161,10 +167,13 @@ struct SubstituteSlabFunctor {
           }
         }
       for (int k = 0; k < batch; ++k)
-        if (begin + k < n)
+        if (is_full || begin + k < n)
           for (int a = 0; a < count; ++a)
             values[static_cast<std::int64_t>(begin + k) * lines + first + a] = f[k][a];
-    }
+    };
+    int of_batch = slab.batches();
+    if (of_batch * batch > n - 1) batch_of.template operator()<false>(--of_batch);
+    while (of_batch-- > 0) batch_of.template operator()<true>(of_batch);
   }
 };
 
@@ -174,9 +183,8 @@ template <class ExecutionSpace>
 void reduce_slab(const ExecutionSpace& space, const SlabLines<ExecutionSpace>& slab,
                  const typename SlabLines<ExecutionSpace>::List& values, double* sources) {
   constexpr int width = lines_per_item<ExecutionSpace>;
-  device::launch_each<Kokkos::LaunchBounds<32, 1>>(
-      space, "drogue::linear::reduce_slab", (slab.lines() + width - 1) / width,
-      ReduceSlabFunctor<ExecutionSpace>{slab, values.data(), sources});
+  device::launch_each<SlabBounds>(space, "drogue::linear::reduce_slab", (slab.lines() + width - 1) / width,
+                                  ReduceSlabFunctor<ExecutionSpace>{slab, values.data(), sources});
 }
 
 /// Replaces what `reduce_slab` left by the unknowns, from the sources of all slabs, one after the other.
@@ -186,7 +194,7 @@ void substitute_slab(const ExecutionSpace& space, const SlabLines<ExecutionSpace
                      const SlabSeparators<ExecutionSpace>& separators,
                      const typename SlabLines<ExecutionSpace>::List& values, const double* sources) {
   constexpr int width = lines_per_item<ExecutionSpace>;
-  device::launch_each<Kokkos::LaunchBounds<32, 1>>(
+  device::launch_each<SlabBounds>(
       space, "drogue::linear::substitute_slab", (slab.lines() + width - 1) / width,
       SubstituteSlabFunctor<ExecutionSpace>{slab, separators, sources, values.data()});
 }
