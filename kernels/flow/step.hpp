@@ -47,7 +47,7 @@ struct Step {
     else
       enqueue_rk3(space);
     evaluate_eddy_viscosity(space, fields.velocity);  // here, because it limits the next dt
-    halo.agree(space, control, checks_inflow, true);
+    halo.agree(space, control, checks_inflow);
     Kokkos::parallel_for("drogue::flow::finish_step", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
                          FinishStepFunctor<ExecutionSpace>{control, status, constants});
   }
@@ -94,8 +94,8 @@ struct Step {
   void project(const ExecutionSpace& space, const Values& result, double fraction) {
     const ProjectionSetup<ExecutionSpace> setup = projection_setup(result, fraction);
     solve_pressure(space, setup);
-    halo.agree(space, control, checks_inflow);  // no rank may overwrite the state if another one has failed
-    halo.exchange_pressure(space, fields.solution);
+    // No rank may overwrite the state if another one has failed.
+    halo.exchange_pressure_and_agree(space, fields.solution, control, checks_inflow);
     launch_correction(space, setup);
     begin_ghosts(space, result);
   }
@@ -122,9 +122,10 @@ struct Step {
   [[nodiscard]] bool outdates_ghosts() const {
     return parameters.turbulence == Turbulence::none && !parameters.watches_extremes;
   }
-  /// Ghost cells at the sides of the domain.
-  void enqueue_side_ghosts(const ExecutionSpace& space, const Values& velocity) const {
-    launch_ghosts(space, grid, boundary.conditions(), velocity, control);
+  /// Ghost cells at the sides of the domain; only those in layers of ghost cells along `first_axis` or a
+  /// later axis.
+  void enqueue_side_ghosts(const ExecutionSpace& space, const Values& velocity, int first_axis = 0) const {
+    launch_ghosts(space, grid, boundary.conditions(), velocity, control, first_axis);
   }
 
   /// Eddy viscosity of a velocity field, if there is a model.
@@ -164,7 +165,9 @@ struct Step {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       // The cells inside need the ghost cells at the sides of the domain.
       if (i == 0 && parts.size() > 1) enqueue_side_ghosts(space, setup.stage);
-      if (i == 1 || parts.size() == 1) finish_ghosts(space, setup.stage);
+      if (parts.size() == 1) finish_ghosts(space, setup.stage);
+      if (i == 1 && halo.finish_velocity(space, setup.stage))
+        enqueue_side_ghosts(space, setup.stage, halo.first_divided_axis());
       setup.grid = parts[i];
       if (grid.is_stretched())
         dispatch_stretched_momentum(space, setup, parameters.advection);

@@ -65,8 +65,10 @@ class DeviceCommunicator {
   /// their place in `all`.
   void gather(const ExecutionSpace& space, const double* mine, double* all, std::size_t count) const;
 
-  /// Replaces each value, of any unit, by its maximum over the ranks.
-  void maximize(const ExecutionSpace& space, std::uint64_t* values, std::size_t count) const;
+  /// Replaces each value, of any unit, by its maximum over the ranks, and sends and receives messages as
+  /// `exchange` does: by one kernel of NCCL.
+  void maximize(const ExecutionSpace& space, std::span<std::uint64_t> values,
+                std::span<const Message> messages = {}) const;
 
  private:
   /// Number that a message brings to a device from page-locked memory.
@@ -256,21 +258,24 @@ void DeviceCommunicator<ExecutionSpace>::gather(const ExecutionSpace& space, con
 }
 
 template <class ExecutionSpace>
-void DeviceCommunicator<ExecutionSpace>::maximize(const ExecutionSpace& space, std::uint64_t* values,
-                                                  std::size_t count) const {
+void DeviceCommunicator<ExecutionSpace>::maximize(const ExecutionSpace& space,
+                                                  std::span<std::uint64_t> values,
+                                                  std::span<const Message> messages) const {
   if (!_state) return;
 #if defined(DROGUE_HAVE_NCCL)
   if constexpr (!on_host)
-    if (_state->nccl) return _state->nccl->maximize(space.cuda_stream(), values, count);
+    if (_state->nccl) return _state->nccl->maximize(space.cuda_stream(), values, messages);
 #endif
+  if (!messages.empty()) exchange(space, messages);
   const bool stages = _transport == Transport::host_staging;
-  auto* const staged =
-      stages ? reinterpret_cast<std::uint64_t*>(staging(space, count)) : values;  // NOLINT: of one size
+  auto* const staged = stages ? reinterpret_cast<std::uint64_t*>(staging(space, values.size()))
+                              : values.data();  // NOLINT: of one size
   if (stages)
-    device::copy_bytes(space, device::CopyKind::to_host_pinned, staged, values, count * sizeof *values);
+    device::copy_bytes(space, device::CopyKind::to_host_pinned, staged, values.data(), values.size_bytes());
   space.fence("drogue::linear::device_communicator: to be maximized");
-  _group.maximize({staged, count});
-  if (stages) device::copy_bytes(space, device::CopyKind::to_device, values, staged, count * sizeof *values);
+  _group.maximize({staged, values.size()});
+  if (stages)
+    device::copy_bytes(space, device::CopyKind::to_device, values.data(), staged, values.size_bytes());
 }
 
 DROGUE_EXTERN_INSTANCES(class DeviceCommunicator)

@@ -144,9 +144,8 @@ class MessagesOf final : public Messages {
     else
       communicator().gather(s, _sources.data() + _halo.group().rank() * source_count(), _sources.data(),
                             static_cast<std::size_t>(source_count()));
+    _halo.exchange_pressure_and_agree(s, _pressure, _control, false);
     _halo.agree(s, _control, false);
-    _halo.exchange_pressure(s, _pressure);
-    _halo.agree(s, _control, false, true);
   }
 
   /// `count` numbers to each of both neighbours.

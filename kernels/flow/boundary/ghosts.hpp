@@ -102,11 +102,12 @@ struct GhostFunctor {
   }
 };
 
-/// Enqueues the fill of the ghost cells and boundary faces of a velocity field. Asynchronous.
+/// Enqueues the fill of the ghost cells and boundary faces of a velocity field, but for those that are in no
+/// layer of ghost cells along `first_axis` or a later axis. Asynchronous.
 template <class ExecutionSpace>
 void launch_ghosts(const ExecutionSpace& space, const MacGrid& g,
                    const BoundaryConditions<ExecutionSpace>& boundary, const List<ExecutionSpace>& velocity,
-                   const ControlView<ExecutionSpace>& control) {
+                   const ControlView<ExecutionSpace>& control, int first_axis = 0) {
   GhostFunctor<ExecutionSpace> functor{.grid = g,
                                        .boundary = boundary,
                                        .velocity = velocity,
@@ -114,7 +115,7 @@ void launch_ghosts(const ExecutionSpace& space, const MacGrid& g,
                                        .slab = {},
                                        .slab_cells = {}};
   std::int64_t total = 0;  // below 2^31 for any grid that fits a device
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = first_axis; axis < 3; ++axis) {
     // Layers -ghost .. 0 and n .. n + ghost - 1: the low boundary face belongs to the slab.
     functor.slab[axis] = g.ghost[axis] > 0 ? g.ghost[axis] + 1 : 0;
     if (g.ghost[axis] == 0) continue;

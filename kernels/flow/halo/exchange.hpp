@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Kokkos_Core.hpp>
@@ -21,22 +22,38 @@ struct ArrayBox {
   [[nodiscard]] KOKKOS_FUNCTION int size() const { return extent[0] * extent[1] * extent[2] * components; }
 };
 
-/// Copies the numbers of a box to a contiguous buffer, or back.
+/// Copies the numbers of boxes of an array to contiguous buffers, or back.
 struct BoxCopyFunctor {
-  ArrayBox box;
-  bool to_buffer;
-  double *array, *buffer;
+  static constexpr int most = 8;  ///< one for each neighbour among ranks that divide y and z
+  int boxes = 0;
+  Kokkos::Array<ArrayBox, most> box;
+  Kokkos::Array<double*, most> buffer;
+  bool to_buffers;
+  double* array = nullptr;
 
-  KOKKOS_FUNCTION void operator()(const int entry) const {
-    const int i = entry % box.extent[0], rows = entry / box.extent[0];
-    const int j = rows % box.extent[1], planes = rows / box.extent[1];
-    const int k = planes % box.extent[2], c = planes / box.extent[2];
+  void add(const ArrayBox& added, double* its_buffer) {
+    box[boxes] = added;
+    buffer[boxes++] = its_buffer;
+  }
+  [[nodiscard]] int size() const {
+    int sum = 0;
+    for (int b = 0; b < boxes; ++b) sum += box[b].size();
+    return sum;
+  }
+
+  KOKKOS_FUNCTION void operator()(int entry) const {
+    int b = 0;
+    while (entry >= box[b].size()) entry -= box[b++].size();
+    const ArrayBox& own = box[b];
+    const int i = entry % own.extent[0], rows = entry / own.extent[0];
+    const int j = rows % own.extent[1], planes = rows / own.extent[1];
+    const int k = planes % own.extent[2], c = planes / own.extent[2];
     const std::int64_t place =
-        box.first + i * box.stride[0] + j * box.stride[1] + k * box.stride[2] + c * box.component;
-    if (to_buffer)
-      buffer[entry] = array[place];
+        own.first + i * own.stride[0] + j * own.stride[1] + k * own.stride[2] + c * own.component;
+    if (to_buffers)
+      buffer[b][entry] = array[place];
     else
-      array[place] = buffer[entry];
+      array[place] = buffer[b][entry];
   }
 };
 
@@ -51,7 +68,7 @@ class Exchange {
   /// memory runs out.
   void add_send(int peer, int tag, const ArrayBox& box) {
     const Buffer buffer = make_buffer(box.size());
-    _sent.push_back({box, buffer});
+    _pack.add(box, buffer.data());
     _messages.push_back({.peer = peer,
                          .send_tag = tag,
                          .receive_tag = 0,
@@ -60,14 +77,12 @@ class Exchange {
   }
   /// Adds a message from `peer`, as `add_send`; `box` is its place in the array.
   void add_receive(int peer, int tag, const ArrayBox& box) {
-    static_cast<void>(add_receive(peer, tag, box.size()));
-    _received.back().box = box;
+    _unpack.add(box, add_receive(peer, tag, box.size()));
   }
   /// Adds a message of `size` numbers from `peer` that stays in a buffer. Returns the buffer, which lives as
   /// long as this object.
-  const double* add_receive(int peer, int tag, int size) {
+  double* add_receive(int peer, int tag, int size) {
     const Buffer buffer = make_buffer(size);
-    _received.push_back({ArrayBox{}, buffer});
     _messages.push_back({.peer = peer,
                          .send_tag = 0,
                          .receive_tag = tag,
@@ -81,46 +96,42 @@ class Exchange {
 
   /// Begins to send and receive all messages, from `array`.
   void begin(const ExecutionSpace& space, const Communicator& communicator, double* array) const {
-    pack(space, array);
+    copy(space, _pack, array);
     if (has_messages()) communicator.begin(space, _messages);
   }
 
   /// Completes what `begin` began, and fills `array` from the messages.
   void finish(const ExecutionSpace& space, const Communicator& communicator, double* array) const {
     if (has_messages()) communicator.finish(space);
-    unpack(space, array);
+    copy(space, _unpack, array);
   }
 
-  /// Sends and receives all messages.
-  void run(const ExecutionSpace& space, const Communicator& communicator, double* array) const {
-    pack(space, array);
-    if (has_messages()) communicator.exchange(space, _messages);
-    unpack(space, array);
+  /// Sends and receives all messages, and replaces the values, if any, by their maxima over the ranks.
+  void run(const ExecutionSpace& space, const Communicator& communicator, double* array,
+           std::span<std::uint64_t> maximized = {}) const {
+    copy(space, _pack, array);
+    if (!maximized.empty())
+      communicator.maximize(space, maximized, _messages);
+    else if (has_messages())
+      communicator.exchange(space, _messages);
+    copy(space, _unpack, array);
   }
 
  private:
   using Buffer = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
-  struct Port {
-    ArrayBox box;
-    Buffer buffer;
-  };
 
-  static Buffer make_buffer(int size) {
-    return Buffer("drogue::flow::message", static_cast<std::size_t>(size));
+  Buffer make_buffer(int size) {
+    return _buffers.emplace_back("drogue::flow::message", static_cast<std::size_t>(size));
   }
-  void pack(const ExecutionSpace& space, double* array) const {
-    for (const Port& port : _sent) copy(space, port, array, true);
-  }
-  void unpack(const ExecutionSpace& space, double* array) const {
-    for (const Port& port : _received)
-      if (port.box.size() > 0) copy(space, port, array, false);
-  }
-  static void copy(const ExecutionSpace& space, const Port& port, double* array, bool to_buffer) {
-    device::launch_each(space, to_buffer ? "drogue::flow::pack" : "drogue::flow::unpack", port.box.size(),
-                        BoxCopyFunctor{port.box, to_buffer, array, port.buffer.data()});
+  static void copy(const ExecutionSpace& space, BoxCopyFunctor functor, double* array) {
+    if (functor.boxes == 0) return;
+    functor.array = array;
+    device::launch_each(space, functor.to_buffers ? "drogue::flow::pack" : "drogue::flow::unpack",
+                        functor.size(), functor);
   }
 
-  std::vector<Port> _sent, _received;
+  std::vector<Buffer> _buffers;
+  BoxCopyFunctor _pack{.to_buffers = true}, _unpack{.to_buffers = false};
   std::vector<linear::Message> _messages;
 };
 

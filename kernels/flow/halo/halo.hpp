@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "kernels/device/launch.hpp"
@@ -73,6 +74,15 @@ class Halo {
   /// others. All cells in one part if these are too few to be divided, or no other rank needs any.
   [[nodiscard]] const std::vector<MacGrid>& parts() const { return _parts; }
 
+  /// First axis that has ghost cells towards other ranks; 3 if none has. Does not throw.
+  [[nodiscard]] int first_divided_axis() const {
+    int axis = 0;
+    while (axis < 3 && !_borders[static_cast<std::size_t>(2 * axis)] &&
+           !_borders[static_cast<std::size_t>(2 * axis + 1)])
+      ++axis;
+    return axis;
+  }
+
   /// Fills the normal components on the high faces that belong to other ranks.
   void exchange_high_faces(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) const {
     _faces.run(space, _communicator, velocity.data());
@@ -91,25 +101,23 @@ class Halo {
   /// collective. Does not throw.
   void ask_for_interrupt(bool wish) const { device::relaxed_store(_interrupt.data(), wish ? 1 : 0); }
 
-  /// Gives all ranks the least failed cell, the largest `StepMaxima`, and the failures of a pressure solver
-  /// and a side. `checks_inflow`: whether to fail for the net inflow of all ranks. `ends_step`: whether to
-  /// find out if a rank has asked for an interrupt.
-  void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view, bool checks_inflow,
-             bool ends_step = false) const {
+  /// Gives all ranks the least failed cell, the largest `StepMaxima`, the failures of a pressure solver and a
+  /// side, and whether a rank has asked for an interrupt. `checks_inflow`: whether to fail for the net inflow
+  /// of all ranks.
+  void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view, bool checks_inflow) const {
     if (is_alone()) return;
-    constexpr std::size_t values = sizeof(Agreement) / sizeof(std::uint64_t);
-    static_assert(values * sizeof(std::uint64_t) == sizeof(Agreement));
-    device::launch_each(
-        space, "drogue::flow::contribute", 1,
-        ContributeFunctor<ExecutionSpace>{view, _agreement.data(), ends_step ? _interrupt.data() : nullptr});
-    _communicator.maximize(space, &_agreement.data()->next_rate_bits, values);
-    device::launch_each(space, "drogue::flow::adopt", 1,
-                        AdoptFunctor<ExecutionSpace>{view, _agreement.data()});
-    if (!checks_inflow) return;
-    // The net inflow and its magnitude.
-    _communicator.gather(space, &view.data()->net_inflow, _of_ranks.data(), 2);
-    device::launch_each(space, "drogue::flow::check_inflow_of_ranks", 1,
-                        CheckInflowOfRanksFunctor<ExecutionSpace>{view, _of_ranks.data(), group().size()});
+    contribute(space, view, _interrupt.data());
+    _communicator.maximize(space, agreed_values());
+    adopt(space, view, checks_inflow);
+  }
+
+  /// Fills `pressure_below`, and lets the ranks agree as `agree` does, but on no interrupt.
+  void exchange_pressure_and_agree(const ExecutionSpace& space, const List<ExecutionSpace>& pressure,
+                                   const ControlView<ExecutionSpace>& view, bool checks_inflow) const {
+    if (is_alone()) return;
+    contribute(space, view, nullptr);
+    _pressure.run(space, _communicator, pressure.data(), agreed_values());
+    adopt(space, view, checks_inflow);
   }
 
   /// Gives all ranks the energies of all, in the order of the ranks.
@@ -138,6 +146,29 @@ class Halo {
   }
 
  private:
+  /// What the ranks agree on, as numbers of which each becomes the largest.
+  [[nodiscard]] std::span<std::uint64_t> agreed_values() const {
+    constexpr std::size_t values = sizeof(Agreement) / sizeof(std::uint64_t);
+    static_assert(values * sizeof(std::uint64_t) == sizeof(Agreement));
+    return {&_agreement.data()->next_rate_bits, values};
+  }
+  /// Writes what this rank contributes. `interrupt`: its wish; null: none.
+  void contribute(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view,
+                  const int* interrupt) const {
+    device::launch_each(space, "drogue::flow::contribute", 1,
+                        ContributeFunctor<ExecutionSpace>{view, _agreement.data(), interrupt});
+  }
+  /// Takes over what the ranks agreed on.
+  void adopt(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view, bool checks_inflow) const {
+    device::launch_each(space, "drogue::flow::adopt", 1,
+                        AdoptFunctor<ExecutionSpace>{view, _agreement.data()});
+    if (!checks_inflow) return;
+    // The net inflow and its magnitude.
+    _communicator.gather(space, &view.data()->net_inflow, _of_ranks.data(), 2);
+    device::launch_each(space, "drogue::flow::check_inflow_of_ranks", 1,
+                        CheckInflowOfRanksFunctor<ExecutionSpace>{view, _of_ranks.data(), group().size()});
+  }
+
   /// The grid as `parts`.
   [[nodiscard]] std::vector<MacGrid> divided() const {
     std::vector<MacGrid> parts;

@@ -110,8 +110,13 @@ void NcclCommunicator::gather(Stream stream, const double* mine, double* all, st
   check(ncclAllGather(mine, all, count, ncclFloat64, _handles->communicator, stream));
 }
 
-void NcclCommunicator::maximize(Stream stream, std::uint64_t* values, std::size_t count) const {
-  check(ncclAllReduce(values, values, count, ncclUint64, ncclMax, _handles->communicator, stream));
+void NcclCommunicator::maximize(Stream stream, std::span<std::uint64_t> values,
+                                std::span<const Message> messages) const {
+  check(ncclGroupStart());
+  check(ncclAllReduce(values.data(), values.data(), values.size(), ncclUint64, ncclMax,
+                      _handles->communicator, stream));
+  exchange(stream, messages);
+  check(ncclGroupEnd());
 }
 
 }  // namespace drogue::linear

@@ -36,7 +36,7 @@ class NcclCommunicator {
   /// As `DeviceCommunicator::gather`.
   void gather(Stream stream, const double* mine, double* all, std::size_t count) const;
   /// As `DeviceCommunicator::maximize`.
-  void maximize(Stream stream, std::uint64_t* values, std::size_t count) const;
+  void maximize(Stream stream, std::span<std::uint64_t> values, std::span<const Message> messages) const;
 
  private:
   struct Handles;

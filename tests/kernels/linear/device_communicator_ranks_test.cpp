@@ -138,7 +138,7 @@ TEST_F(DeviceCommunicatorRanks, FindsMaximaOfIntegersOf64Bits) {
     std::vector<std::uint64_t> numbers = {large + rank, large - rank, 7};
     device::copy_in(space, values, numbers.data(), numbers.size());
     space.fence();
-    communicator.maximize(space, values.data(), values.size());
+    communicator.maximize(space, {values.data(), values.size()});
     device::copy_out(space, numbers.data(), values, numbers.size());
     space.fence();
     EXPECT_EQ((std::vector<std::uint64_t>{large + last, large, 7}), numbers);
