@@ -11,7 +11,7 @@
 namespace drogue::fabric {
 
 /// Number of values that one thread sums.
-inline constexpr int sum_radix = 64;
+inline constexpr int sum_radix = 8;
 
 /// Number of sums: kinetic, elastic, gravity and load energy; momentum; angular momentum.
 inline constexpr int total_count = 10;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "kernels/device/copy.hpp"
 #include "kernels/device/launch.hpp"
@@ -49,8 +50,11 @@ KOKKOS_INLINE_FUNCTION void add_energy(double low, double high, double& energy, 
   squared_speed += mean * mean;
 }
 
-/// Contributions of the cells of a column along z, in order, per unit density and volume of a cell with the
-/// widths `MacGrid::h`.
+/// Number of cells, and of partial sums, that one thread combines.
+inline constexpr int sum_radix = 16;
+
+/// Contributions of up to `sum_radix` cells of a column along z, in order, per unit density and volume of a
+/// cell with the widths `MacGrid::h`.
 template <class ExecutionSpace>
 struct ColumnTotalsFunctor {
   MacGrid grid;
@@ -68,10 +72,12 @@ struct ColumnTotalsFunctor {
   template <class Widths>
   KOKKOS_FUNCTION void add_column(const Widths& widths, const int column) const {
     const MacGrid& g = grid;
+    const int row = column / g.n[0], begin = row / g.n[1] * sum_radix,
+              end = begin + sum_radix < g.n[2] ? begin + sum_radix : g.n[2];
     double sum[total_count] = {};
-    for (int k = 0; k < g.n[2]; ++k) {
+    for (int k = begin; k < end; ++k) {
       double own[total_count];
-      const int cell[3] = {column % g.n[0], column / g.n[0], k};
+      const int cell[3] = {column % g.n[0], row % g.n[1], k};
       of_cell(widths, velocity.data() + g.offset(cell[0], cell[1], cell[2]), cell, own);
       const double volume = widths.relative_volume(cell[0], cell[1], cell[2]);
       for (int q = 0; q < total_sums; ++q) own[q] *= volume;
@@ -113,22 +119,20 @@ struct ColumnTotalsFunctor {
   }
 };
 
-/// Combines the columns of one x in order of y.
+/// Index j combines rows j, j + n_out, ... of the previous level.
 template <class ExecutionSpace>
-struct PlaneTotalsFunctor {
-  int nx, ny;
-  TotalsView<ExecutionSpace> columns, planes;
+struct CombineTotalsFunctor {
+  TotalsView<ExecutionSpace> in, out;
 
-  KOKKOS_FUNCTION void operator()(const int i) const {
+  KOKKOS_FUNCTION void operator()(const int j) const {
+    const int rows = in.extent_int(0), step = out.extent_int(0);
     double sum[total_count] = {};
-    for (int j = 0; j < ny; ++j) {
+    for (int row = j; row < rows; row += step) {
       double own[total_count];
-      for (int q = 0; q < total_count; ++q)
-        own[q] = columns(static_cast<std::size_t>(i + nx * j), static_cast<std::size_t>(q));
+      for (int q = 0; q < total_count; ++q) own[q] = in(row, q);
       combine_totals(sum, own);
     }
-    for (int q = 0; q < total_count; ++q)
-      planes(static_cast<std::size_t>(i), static_cast<std::size_t>(q)) = sum[q];
+    for (int q = 0; q < total_count; ++q) out(j, q) = sum[q];
   }
 };
 
@@ -174,40 +178,38 @@ class TotalsSum {
   /// `scratch` holds the sums of the columns if it is large enough; `enqueue` then overwrites it. Throws
   /// std::bad_alloc.
   TotalsSum(const MacGrid& grid, const List<ExecutionSpace>& scratch) : _grid(grid) {
-    const auto nx = static_cast<std::size_t>(grid.n[0]), columns = nx * static_cast<std::size_t>(grid.n[1]);
-    if (scratch.size() >= total_count * columns)
-      _columns = TotalsView<ExecutionSpace>(scratch.data(), columns);
+    const auto quotient = [](std::size_t rows) { return (rows + sum_radix - 1) / sum_radix; };
+    std::size_t rows = static_cast<std::size_t>(grid.n[0]) * static_cast<std::size_t>(grid.n[1]) *
+                       quotient(static_cast<std::size_t>(grid.n[2]));
+    if (scratch.size() >= total_count * rows)
+      _levels.emplace_back(scratch.data(), rows);
     else
-      _columns = TotalsView<ExecutionSpace>("drogue::flow::column_totals", columns);
-    _planes = TotalsView<ExecutionSpace>("drogue::flow::plane_totals", nx);
+      _levels.emplace_back("drogue::flow::column_totals", rows);
+    while (rows > 1) _levels.emplace_back("drogue::flow::partial_totals", rows = quotient(rows));
     _outflow_rows =
         List<ExecutionSpace>("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(longest_row()));
-    _planes_on_host = Kokkos::create_mirror_view(_planes);
+    _sum_on_host = Kokkos::create_mirror_view(_levels.back());
     _outflow_rows_on_host = Kokkos::create_mirror_view(_outflow_rows);
   }
 
   /// Enqueues the sums of a velocity, m/s, with ghost cells, and their copy to the host. Asynchronous. Throws
   /// only after a failed launch.
   void enqueue(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
-    const int nx = _grid.n[0], ny = _grid.n[1];
-    device::launch_each(space, "drogue::flow::column_totals", nx * ny,
-                        ColumnTotalsFunctor<ExecutionSpace>{_grid, velocity, _columns});
-    device::launch_each(space, "drogue::flow::plane_totals", nx,
-                        PlaneTotalsFunctor<ExecutionSpace>{nx, ny, _columns, _planes});
+    device::launch_each(space, "drogue::flow::column_totals", _levels.front().extent_int(0),
+                        ColumnTotalsFunctor<ExecutionSpace>{_grid, velocity, _levels.front()});
+    for (std::size_t level = 1; level < _levels.size(); ++level)
+      device::launch_each(space, "drogue::flow::combine_totals", _levels[level].extent_int(0),
+                          CombineTotalsFunctor<ExecutionSpace>{_levels[level - 1], _levels[level]});
     device::launch_each(space, "drogue::flow::outflow_rows", 6 * longest_row(),
                         OutflowRowsFunctor<ExecutionSpace>{_grid, velocity, _outflow_rows, longest_row()});
-    device::copy_out(space, _planes_on_host.data(), _planes, _planes.size());
+    device::copy_out(space, _sum_on_host.data(), _levels.back(), _levels.back().size());
     device::copy_out(space, _outflow_rows_on_host.data(), _outflow_rows, _outflow_rows.size());
   }
 
   /// Sums of the last `enqueue`, whose work must be complete; no outflow towards other ranks. Does not throw.
   [[nodiscard]] PartTotals result(const BoundaryKind (&sides)[6]) const {
     PartTotals part;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(_grid.n[0]); ++i) {
-      double own[total_count];
-      for (std::size_t q = 0; q < total_count; ++q) own[q] = _planes_on_host(i, q);
-      combine_totals(part.sum, own);
-    }
+    for (std::size_t q = 0; q < total_count; ++q) part.sum[q] = _sum_on_host(0, q);
     for (int side = 0; side < 6; ++side) {
       if (sides[side] == BoundaryKind::neighbour) continue;
       for (int row = 0; row < longest_row(); ++row)
@@ -220,9 +222,9 @@ class TotalsSum {
   [[nodiscard]] int longest_row() const { return std::max(_grid.n[1], _grid.n[2]); }
 
   MacGrid _grid;
-  TotalsView<ExecutionSpace> _columns, _planes;
+  std::vector<TotalsView<ExecutionSpace>> _levels;  ///< of the sum; the last one has one row
   List<ExecutionSpace> _outflow_rows;
-  typename TotalsView<ExecutionSpace>::HostMirror _planes_on_host;
+  typename TotalsView<ExecutionSpace>::HostMirror _sum_on_host;
   typename List<ExecutionSpace>::HostMirror _outflow_rows_on_host;
 };
 
