@@ -25,7 +25,7 @@ TEST(Scaling, GrowsTheBoxAlongZInWeakScalingAlone) {
 }
 
 TEST(Scaling, KeepsCellsCubesAndTheToleranceOfSecondOrder) {
-  const std::string text = flow_scene({16, 16, 32});
+  const std::string text = flow_scene({16, 16, 32}, 20);
   EXPECT_NE(text.find("cells = [16, 16, 32]"), std::string::npos);
   EXPECT_NE(text.find("[0, 6.2831853071795862], [0, 12.566370614359172]]"), std::string::npos) << text;
   EXPECT_NE(text.find("l2_velocity = 0.000154\n"), std::string::npos) << text;
