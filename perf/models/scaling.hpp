@@ -16,11 +16,8 @@ namespace drogue::perf {
 /// Cells of a flow on several units: `one`, or as many of them along z in weak scaling. Does not throw.
 [[nodiscard]] std::array<int, 3> scaled_cells(const std::array<int, 3>& one, bool weak, int units);
 
-/// Steps of `flow_scene`.
-inline constexpr int flow_scene_steps = 20;
-
 /// Scene of drogue-parachute: steps of drifting Taylor-Green vortices in a periodic box of cubes as cells, 2
 /// pi m along x and y, which checks the exact solution and the divergence. Does not throw.
-[[nodiscard]] std::string flow_scene(const std::array<int, 3>& cells);
+[[nodiscard]] std::string flow_scene(const std::array<int, 3>& cells, int steps);
 
 }  // namespace drogue::perf
