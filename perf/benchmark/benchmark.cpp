@@ -86,8 +86,7 @@ std::vector<std::string> command_of(const Request& request, const Problem& probl
   arguments.insert(arguments.end(),
                    {"--quiet", "--backend", std::string(device::name(request.backend)), "--out"});
   if (problem.puts > 0)
-    arguments.insert(arguments.end(),
-                     {problem.name + "/prices.csv", "--result", problem.name + "/result.json"});
+    arguments.insert(arguments.end(), {problem.name + ".csv", "--result", problem.name + ".json"});
   else
     arguments.insert(arguments.end(), {problem.name, "--overwrite"});
   return program_words(ranks == 1 ? std::vector<std::string>() : request.launcher, request.threads,
@@ -101,14 +100,13 @@ void run_once(const Request& request, const Problem& problem, int ranks,
                               log = request.folder / (problem.name + ".log");
   std::filesystem::remove_all(out);
   std::filesystem::remove(log);
-  if (problem.puts > 0) std::filesystem::create_directory(out);
   const int status = run_child(command, request.folder, log, true);
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
   const std::string units = problem.name + " on " + std::to_string(ranks) + (ranks == 1 ? " rank" : " ranks");
   const bool wrong = status == static_cast<int>(ExitCode::verification_failed) ||
                      status == static_cast<int>(ExitCode::numerical_failure);
   if (status != 0 && !wrong) throw failed_run(units, status, log);
-  std::ifstream file(out / "result.json");
+  std::ifstream file(problem.puts > 0 ? request.folder / (problem.name + ".json") : out / "result.json");
   answers.result = nlohmann::json::parse(file, nullptr, false);
   if (answers.result.is_discarded() || answers.result.value("ranks", 0) < 1)
     throw failed_run(units, status, log);
@@ -117,7 +115,7 @@ void run_once(const Request& request, const Problem& problem, int ranks,
                   units + ": the launcher started " + answers.result["ranks"].dump() + " of them");
   answers.passed = answers.passed && !wrong;
   answers.found =
-      std::max(answers.found, problem.puts > 0 ? error_of_prices(out / "prices.csv")
+      std::max(answers.found, problem.puts > 0 ? error_of_prices(request.folder / (problem.name + ".csv"))
                                                : error_of_check(answers.result, problem.quantity));
   answers.seconds.push_back(answers.result["timing"]["compute_s"].get<double>());
   if (answers.result.contains("figure_of_merit"))
@@ -145,10 +143,8 @@ std::string shown(std::vector<std::string> command, const std::string& program) 
   return text;
 }
 
-constexpr const char* heading =
-    "program           problem       size                     backend  ranks x threads  memory, MB  time, s  "
-    " 95 % of the "
-    "median     figure of merit            error of\n";
+/// Columns of the table.
+constexpr const char* columns = "%-17s %-13s %-24s %-8s %15s %11s %10s  %-22s %-26s %s\n";
 
 void print_row(const Request& request, const Problem& problem, int ranks, const Record& record,
                const Answers& answers) {
@@ -156,14 +152,15 @@ void print_row(const Request& request, const Problem& problem, int ranks, const 
   const std::string rate = record.passed() && !answers.merits.empty()
                                ? printed("%.4g %s", merit.scale * run::median(answers.merits), merit.unit)
                                : "-";
-  const std::string wanted = problem.low > 0.0 ? printed("%.3g .. %.3g", problem.low, problem.high)
-                                               : printed("up to %.3g", problem.high);
-  std::printf("%-17s %-13s %-24s %-8s %15s %11.0f %8s  %-22s %-26s %s: %.3g, expected %s: %s\n",
-              problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
-              std::string(device::name(request.backend)).c_str(),
-              printed("%d x %d", ranks, request.threads).c_str(), 1e-6 * static_cast<double>(answers.bytes),
-              median_text(record, 1.0, 3).c_str(), interval_text(record, 1.0, 3).c_str(), rate.c_str(),
-              problem.quantity.c_str(), answers.found, wanted.c_str(), verdict(record));
+  const std::string answer = printed("%s %.3g, expected %.3g to %.3g: %s", problem.quantity.c_str(),
+                                     answers.found, problem.low, problem.high, verdict(record));
+  std::printf(
+      columns, problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
+      std::string(device::name(request.backend)).c_str(), printed("%d x %d", ranks, request.threads).c_str(),
+      printed("%.0f", 1e-6 * static_cast<double>(answers.bytes)).c_str(), median_text(record, 1.0, 3).c_str(),
+      interval_text(record, 1.0, 3).c_str(), rate.c_str(), answer.c_str());
+  if (const std::string reason = answers.result.value("message", ""); !reason.empty())
+    std::printf("  %s\n", reason.c_str());
   std::fflush(stdout);
 }
 
@@ -206,7 +203,8 @@ std::string add_row(const Request& request, const Problem& problem, int ranks, T
 
 void run(const Request& request, Table& table) {
   std::string commands;
-  std::printf("%s", heading);
+  std::printf(columns, "program", "problem", "size", "backend", "ranks x threads", "memory, MB", "time, s",
+              "95 % of the median", "figure of merit", "error of the answer");
   const auto add = [&](const Problem& problem, int ranks) {
     if (request.wants(problem.name)) commands += "  " + add_row(request, problem, ranks, table) + "\n";
   };
@@ -217,8 +215,7 @@ void run(const Request& request, Table& table) {
   if (table.records.empty()) return;
   const nlohmann::json& from = table.records.back()["provenance"];
   std::printf(
-      "drogue %s, commit %s; Kokkos %s; %s; %s; %s\ncommands, for a folder that holds the batch of "
-      "options:\n%s",
+      "drogue %s, commit %s; Kokkos %s; %s; %s; %s\ncommands, in a folder with the batch of options:\n%s",
       from["version"].get<std::string>().c_str(), from["git"].get<std::string>().c_str(),
       from["kokkos"].get<std::string>().c_str(), from["compiler"].get<std::string>().c_str(),
       table.records.back()["facts"]["device"].get<std::string>().c_str(),

@@ -73,7 +73,8 @@ ExitCode run_benchmark(const BenchmarkOptions& options) {
                              .launcher = launcher_of(options),
                              .folder = options.keep,
                              .wants = [&](const std::string& problem) {
-                               known += (known.empty() ? "" : ", ") + problem;
+                               if (known.find(problem) == std::string::npos)
+                                 known += (known.empty() ? "" : ", ") + problem;
                                return std::regex_search(problem, filter);
                              }};
   run::require_writable(options.out);
