@@ -19,18 +19,17 @@ def merit(facts):
 def row(record):
     """Line of a problem."""
     facts = record.facts
-    low, high = facts["expected"]
-    wanted = f"{number(low)} .. {number(high)}" if low > 0 else f"up to {number(high)}"
     return [f"`{facts['problem']}`", facts["extent"], f"{facts['ranks']} x {facts['threads']}", number(1e-9 * facts["memory_bytes"]),
             number(statistics.median(record.samples)), merit(facts),
-            f"{number(record.error)} ({wanted})"]
+            f"{number(record.error)} ({' .. '.join(map(number, facts['expected']))})"]
 
 
-def place(record):
-    """Device of a record, in words."""
-    here, on_gpu = record.provenance, record.facts["backend"] == "cuda"
-    name = record.device(on_gpu)
-    return f"One {name}, CUDA {here['driver']}" if on_gpu else f"{record.facts['threads']} threads of an {name}"
+def place(records):
+    """Devices of the records of a run, in words."""
+    facts, most = records[0].facts, max(record.facts["ranks"] for record in records)
+    if facts["backend"] == "cuda":
+        return f"{'One' if most == 1 else most} {records[0].device(True)}, CUDA {records[0].provenance['driver']}"
+    return f"{most * facts['threads']} threads of an {records[0].device(False)}"
 
 
 def section(file):
@@ -40,7 +39,7 @@ def section(file):
     options = f"--size {facts['size']} --backend {facts['backend']}"
     if (most := max(record.facts["ranks"] for record in records)) > 1:
         options += f"{' --weak' if records[0].case.endswith('/weak') else ''} --ranks {most}"
-    origin = f"{place(records[0])}, {records[0].run_id[0][:10]}, commit {here['git']} ([record](evidence/{file.name})): `drogue-perf benchmark {options}`."
+    origin = f"{place(records)}, {records[0].run_id[0][:10]}, commit {here['git']} ([record](evidence/{file.name})): `drogue-perf benchmark {options}`."
     heading = ["problem", "size", "ranks x threads", "memory, GB", "time, s", "figure of merit", "error (expected)"]
     return ["", origin, "", *table(heading, map(row, records), (0, 1, 5, 6))]
 
@@ -52,7 +51,7 @@ def summary(evidence):
         records = passed(file)
         if not records[0].case.endswith("/weak"):
             merits = ", ".join(f"{merit(record.facts)} (`{record.facts['problem']}`)" for record in records)
-            lines.append(f"{place(records[0])}, size {records[0].facts['size']} ([record](docs/evidence/{file.name})): {merits}.")
+            lines.append(f"{place(records)}, size {records[0].facts['size']} ([record](docs/evidence/{file.name})): {merits}.")
     return lines
 
 
