@@ -108,7 +108,7 @@ Problem parachute_problem(Size size) {
 /// Boxes of Taylor and Green in a row along z. The energies of one are those of
 /// docs/evidence/taylor-green-1600.txt, and the deviation from them is of second order in the cells.
 Problem flow_problem(Size size, int ranks) {
-  const int finer = of<int>(size, {1, 4, 8}), cells = 64 * finer;
+  const int finer = of<int>(size, {1, 4, 10}), cells = 64 * finer;
   const double error = 2.066e-3 / (finer * finer);
   constexpr double length = 2.0 * std::numbers::pi;
   const auto energy = [&](double of_one) { return printed("%.10g", of_one * ranks); };

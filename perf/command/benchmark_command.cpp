@@ -119,7 +119,7 @@ Command benchmark_command(CLI::App& program) {
   app->add_option("--threads", options->threads, "Threads of a rank; of OpenMP all processors over the ranks")
       ->check(CLI::Range(1, 4096));
   app->add_option("--launcher", options->launcher,
-                  "Words that start the ranks, 'srun -n 8'; mpirun -n RANKS");
+                  "Words that start the ranks, as 'srun -n 8'; default: mpirun -n RANKS");
   app->add_option("--keep", options->keep, "Folder for the files of the runs; without it they are removed");
   app->add_option("--out", options->out, "File for the records, one JSON line a row");
   return {app, [options](const std::vector<std::string>& /*kokkos*/) { return run_benchmark(*options); }};
