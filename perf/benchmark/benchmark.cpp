@@ -76,7 +76,7 @@ double error_of_prices(const std::filesystem::path& file) {
 
 /// Size of the named check; infinite without it.
 double error_of_check(const nlohmann::json& result, const std::string& name) {
-  for (const nlohmann::json& check : result["checks"])
+  for (const nlohmann::json& check : result.value("checks", nlohmann::json::array()))
     if (check["name"] == name && check["value"].is_number()) return std::abs(check["value"].get<double>());
   return std::numeric_limits<double>::infinity();
 }
@@ -96,28 +96,29 @@ std::vector<std::string> command_of(const Request& request, const Problem& probl
 /// One run. Throws Failure as the program does.
 void run_once(const Request& request, const Problem& problem, int ranks,
               const std::vector<std::string>& command, Answers& answers) {
-  const std::filesystem::path out = request.folder / problem.name,
-                              log = request.folder / (problem.name + ".log");
-  std::filesystem::remove_all(out);
-  std::filesystem::remove(log);
+  const std::filesystem::path out = request.folder / problem.name, prices = out.string() + ".csv",
+                              log = out.string() + ".log",
+                              result = out.string() + (problem.puts > 0 ? ".json" : "/result.json");
+  for (const std::filesystem::path& old : {out, prices, log, result}) std::filesystem::remove_all(old);
   const int status = run_child(command, request.folder, log, true);
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
   const std::string units = problem.name + " on " + std::to_string(ranks) + (ranks == 1 ? " rank" : " ranks");
   const bool wrong = status == static_cast<int>(ExitCode::verification_failed) ||
                      status == static_cast<int>(ExitCode::numerical_failure);
   if (status != 0 && !wrong) throw failed_run(units, status, log);
-  std::ifstream file(problem.puts > 0 ? request.folder / (problem.name + ".json") : out / "result.json");
+  std::ifstream file(result);
   answers.result = nlohmann::json::parse(file, nullptr, false);
   if (answers.result.is_discarded() || answers.result.value("ranks", 0) < 1)
     throw failed_run(units, status, log);
   if (answers.result["ranks"] != ranks)
     throw Failure(ExitCode::usage,
                   units + ": the launcher started " + answers.result["ranks"].dump() + " of them");
-  answers.passed = answers.passed && !wrong;
   answers.found =
-      std::max(answers.found, problem.puts > 0 ? error_of_prices(request.folder / (problem.name + ".csv"))
-                                               : error_of_check(answers.result, problem.quantity));
-  answers.seconds.push_back(answers.result["timing"]["compute_s"].get<double>());
+      std::max(answers.found,
+               problem.puts > 0 ? error_of_prices(prices) : error_of_check(answers.result, problem.quantity));
+  const double seconds = answers.result["timing"]["compute_s"].get<double>();
+  answers.passed = answers.passed && !wrong && seconds > 0.0;
+  if (seconds > 0.0) answers.seconds.push_back(seconds);
   if (answers.result.contains("figure_of_merit"))
     answers.merits.push_back(answers.result["figure_of_merit"].value(problem.merit, 0.0));
   const char* place = device::needs_device(request.backend) ? "device" : "host";
