@@ -17,11 +17,17 @@ ExitCode run_program_body(int argc, char** argv) {
   CLI::App app("Measures the kernels: median of the samples with its 95 % interval, beside the error.",
                "drogue-perf");
   app.add_flag("--version", version, "Print the version and what it was built with");
-  const std::vector<perf::Command> commands = {perf::list_command(app),     perf::run_command(app),
-                                               perf::table_command(app),    perf::work_precision_command(app),
-                                               perf::ladder_command(app),   perf::compare_command(app),
-                                               perf::report_command(app),   perf::ncu_command(app),
-                                               perf::messages_command(app), perf::extrapolate_command(app)};
+  const std::vector<perf::Command> commands = {perf::list_command(app),
+                                               perf::run_command(app),
+                                               perf::table_command(app),
+                                               perf::benchmark_command(app),
+                                               perf::work_precision_command(app),
+                                               perf::ladder_command(app),
+                                               perf::compare_command(app),
+                                               perf::report_command(app),
+                                               perf::ncu_command(app),
+                                               perf::messages_command(app),
+                                               perf::extrapolate_command(app)};
   const Arguments arguments = split_arguments(argc, argv);
   if (const std::string help = parse_command_line(app, arguments.program); !help.empty()) {
     std::fputs(help.c_str(), stdout);

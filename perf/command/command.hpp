@@ -21,6 +21,7 @@ struct Command {
 
 /// Subcommands; each registers itself with `program`. Throws CLI::Error if its name is taken.
 Command list_command(CLI::App& program);
+Command benchmark_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command table_command(CLI::App& program);
 Command work_precision_command(CLI::App& program);

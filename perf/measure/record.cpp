@@ -21,6 +21,14 @@ nlohmann::json provenance(const device::DeviceFacts& device) {
           {"date", facts.provenance.date}};
 }
 
+nlohmann::json provenance_of(const nlohmann::json& result) {
+  const nlohmann::json& from = result["provenance"];
+  return provenance({.kokkos_version = device::kokkos_version(),
+                     .gpu = from.value("gpu", ""),
+                     .driver = from.value("driver", ""),
+                     .threads = result["threads"].get<int>()});
+}
+
 nlohmann::json to_json(const Record& record, const nlohmann::json& provenance, const nlohmann::json& facts) {
   nlohmann::json json = {{"schema", "drogue.perf/1"},
                          {"case", record.name},

@@ -13,6 +13,10 @@ namespace drogue::perf {
 /// Facts that all records of a process share: the build, the machine and the date. Does not throw.
 nlohmann::json provenance(const device::DeviceFacts& device);
 
+/// Those of a run of another program of this build, whose result.json is `result`. Throws
+/// nlohmann::json::exception without its provenance.
+nlohmann::json provenance_of(const nlohmann::json& result);
+
 /// JSON object of a record; `facts` are further facts for its reader, null for none. The median and interval
 /// of a record without samples are null. Does not throw.
 nlohmann::json to_json(const Record& record, const nlohmann::json& provenance,

@@ -23,27 +23,6 @@ struct Run {
   options::WallTimes timing;
 };
 
-std::vector<options::Contract> distinct(std::size_t count) {
-  std::mt19937 random(7);
-  const auto between = [&](double low, double high) {
-    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
-  };
-  const KnownPuts& known = thesis_puts();
-  std::vector<options::Contract> contracts(count, known.contract);
-  for (std::size_t i = 0; i < count; ++i) {
-    options::Contract& c = contracts[i];
-    if (i < known.spots.size()) {
-      c.spot = known.spots[i];
-      continue;
-    }
-    c.spot = between(0.8, 1.2), c.rate = between(0.01, 0.1), c.maturity = between(0.25, 2.0);
-    c.variance = between(0.0, 0.4);
-    const double levy[] = {between(-2.0, 2.0), between(6.0, 15.0), between(-4.0, 0.0), between(0.2, 1.0)};
-    std::ranges::copy(levy, c.jump);
-  }
-  return contracts;
-}
-
 /// Known puts first. V(c spot, c strike) = c V turns their spots into strikes at spot 1.
 std::vector<options::Contract> surfaces(const SurfaceSize& size) {
   const KnownPuts& known = thesis_puts();
@@ -120,6 +99,27 @@ Case priced(const std::string& name, device::Backend backend, HostMemory kind,
 }
 
 }  // namespace
+
+std::vector<options::Contract> distinct(std::size_t count) {
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+  };
+  const KnownPuts& known = thesis_puts();
+  std::vector<options::Contract> contracts(count, known.contract);
+  for (std::size_t i = 0; i < count; ++i) {
+    options::Contract& c = contracts[i];
+    if (i < known.spots.size()) {
+      c.spot = known.spots[i];
+      continue;
+    }
+    c.spot = between(0.8, 1.2), c.rate = between(0.01, 0.1), c.maturity = between(0.25, 2.0);
+    c.variance = between(0.0, 0.4);
+    const double levy[] = {between(-2.0, 2.0), between(6.0, 15.0), between(-4.0, 0.0), between(0.2, 1.0)};
+    std::ranges::copy(levy, c.jump);
+  }
+  return contracts;
+}
 
 Case batch(const std::string& name, device::Backend backend, HostMemory memory, std::size_t count,
            const options::Settings& settings, double limit) {

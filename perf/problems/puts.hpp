@@ -24,9 +24,12 @@ constexpr double tolerance(int mesh) {
 /// docs/evidence/options-cos-h100.jsonl.
 inline constexpr double loose_cosine_error = 1.5e-5;
 
-/// Prices `count` distinct puts of strike 1: first those of `thesis_puts`, then random ones with similar
-/// parameters. Contracts and prices stand in `memory`. A sample is the sum of copies and compute; the error
-/// is the largest of the known prices.
+/// Distinct puts of strike 1: first those of `thesis_puts`, then random ones with similar parameters, the
+/// same on every machine. Throws only std::bad_alloc.
+std::vector<options::Contract> distinct(std::size_t count);
+
+/// Prices `count` puts of `distinct`. Contracts and prices stand in `memory`. A sample is the sum of copies
+/// and compute; the error is the largest of the known prices.
 Case batch(const std::string& name, device::Backend backend, HostMemory memory, std::size_t count,
            const options::Settings& settings, double limit);
 

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 #include "common/program/failure.hpp"
 
@@ -121,6 +123,26 @@ Failure failed_run(const std::string& units, int status, const std::filesystem::
   if (status == 1 && !reason.sentence.empty()) return {ExitCode::usage, failed + reason.sentence};
   const std::string end = describe_end(status);
   return {ExitCode::io_error, failed + (reason.sentence.empty() ? end : end + ": " + reason.sentence)};
+}
+
+void require_launcher() {
+  std::istringstream folders(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (std::filesystem::exists(std::filesystem::path(folder) / "mpirun")) return;
+  throw Failure(ExitCode::no_backend, "several ranks need mpirun, and no folder of PATH holds it");
+}
+
+std::vector<std::string> launcher_words(int ranks) { return {"mpirun", "-n", std::to_string(ranks)}; }
+
+std::vector<std::string> program_words(const std::vector<std::string>& launcher, int threads,
+                                       const std::string& program,
+                                       const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"env", "OMP_NUM_THREADS=" + std::to_string(threads)};
+  words.insert(words.end(), launcher.begin(), launcher.end());
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  words.push_back((folder / program).string());
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
 }
 
 }  // namespace drogue::perf

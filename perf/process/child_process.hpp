@@ -21,4 +21,15 @@ int run_child(const std::vector<std::string>& words, const std::filesystem::path
 /// Throws only std::bad_alloc.
 Failure failed_run(const std::string& units, int status, const std::filesystem::path& log);
 
+/// Throws Failure(no_backend) if no folder of PATH holds mpirun.
+void require_launcher();
+
+/// Words that start what follows on some ranks: `mpirun -n RANKS`. Throws only std::bad_alloc.
+std::vector<std::string> launcher_words(int ranks);
+
+/// Words that start a program of this suite, which stands beside this one, with some threads of OpenMP, by
+/// the words of a launcher, if there are any. Throws std::filesystem::filesystem_error without /proc.
+std::vector<std::string> program_words(const std::vector<std::string>& launcher, int threads,
+                                       const std::string& program, const std::vector<std::string>& arguments);
+
 }  // namespace drogue::perf

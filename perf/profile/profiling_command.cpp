@@ -4,6 +4,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/scene/nearest.hpp"
+#include "perf/process/shell_word.hpp"
 #include "perf/profile/kernel_profile.hpp"
 
 namespace drogue::perf {
@@ -43,17 +44,6 @@ constexpr std::array metrics = {"launch__block_size",
                                 "sm__warps_active.avg.pct_of_peak_sustained_active",
                                 "gpu__time_duration.sum"};
 
-/// A word of a command of a shell.
-std::string quoted(const std::string& word) {
-  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+") ==
-          std::string::npos &&
-      !word.empty())
-    return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 std::string_view namespaces_of(const std::string& case_name) {
   const std::string kind = case_name.substr(0, case_name.find('/'));
   const auto found = std::ranges::find(kinds, kind, &decltype(kinds)::value_type::first);
@@ -92,7 +82,7 @@ std::string profiling_command(const std::vector<std::string>& command, const std
       "--clock-control", "none", "--cache-control", "none", "--metrics", names, "--log-file", out};
   words.insert(words.end(), command.begin(), command.end());
   std::string text = "ncu";
-  for (const std::string& word : words) text += " " + quoted(word);
+  for (const std::string& word : words) text += " " + shell_word(word);
   return text;
 }
 

@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -119,14 +117,6 @@ struct ScalingPoint {
   nlohmann::json messages = {};  ///< facts on the messages of a step; null for one rank, and for threads
 };
 
-/// Throws Failure(no_backend) if no folder of PATH holds mpirun.
-void require_launcher() {
-  std::istringstream folders(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (std::filesystem::exists(std::filesystem::path(folder) / "mpirun")) return;
-  throw Failure(ExitCode::no_backend, "several ranks need mpirun, and no folder of PATH holds it");
-}
-
 int most_units(const ScalingRequest& request, device::Backend backend) {
   if (request.unit == ScalingUnit::threads && backend != device::Backend::openmp) return 1;
   if (request.most > 0) return request.most;
@@ -138,13 +128,8 @@ int most_units(const ScalingRequest& request, device::Backend backend) {
 std::vector<std::string> command_of(ScalingUnit unit, int units, const std::string& program,
                                     const std::vector<std::string>& arguments) {
   const bool ranks = unit == ScalingUnit::ranks;
-  const std::string number = std::to_string(units);
-  std::vector<std::string> words = {"env", "OMP_NUM_THREADS=" + (ranks ? "1" : number)};
-  if (ranks) words.insert(words.end(), {"mpirun", "-n", number});
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  words.push_back((folder / program).string());
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  return words;
+  return program_words(ranks ? launcher_words(units) : std::vector<std::string>(), ranks ? 1 : units, program,
+                       arguments);
 }
 
 std::string text_of(int units, ScalingUnit unit) { return std::to_string(units) + " " + name(unit); }
@@ -237,7 +222,6 @@ void add_backend(const ScalingRequest& request, device::Backend backend, bool qu
   for (const ScalingPoint& point : points) {
     const Record record = record_of(request, backend, point);
     if (point.units == 1 && record.passed()) of_one = run::median(record.samples);
-    const nlohmann::json& from = point.result["provenance"];
     nlohmann::json facts = {
         {"backend", device::name(backend)},
         {"cells", static_cast<std::int64_t>(point.cells[0]) * point.cells[1] * point.cells[2]},
@@ -245,12 +229,7 @@ void add_backend(const ScalingRequest& request, device::Backend backend, bool qu
         {"threads", point.result["threads"]},
         {"scaling", request.weak ? "weak" : "strong"}};
     if (!point.messages.is_null()) facts.update(point.messages);
-    table.add(record,
-              provenance({.kokkos_version = device::kokkos_version(),
-                          .gpu = from.value("gpu", ""),
-                          .driver = from.value("driver", ""),
-                          .threads = point.result["threads"].get<int>()}),
-              facts);
+    table.add(record, provenance_of(point.result), facts);
     std::printf(
         "%-52s%s", record.name.c_str(),
         scaling_columns(record, request.weak, point.units, of_one, message_times(point, request.weak, of_one))

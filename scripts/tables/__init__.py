@@ -2,18 +2,20 @@
 
 import sys
 
-from . import lessons, readme, results, transfers
+from . import benchmark, lessons, readme, results, transfers
 from .forms import ROOT
 
-PAGES = {"README.md": readme.renewed, "docs/results.md": results.page, "docs/transfers.md": transfers.page,
-         "docs/transfers-tables.md": transfers.rows_page, "docs/lessons/tables.md": lessons.page}
+# Of pages with marks the text between them is made, of others all.
+MARKED = {"README.md": readme.renewed, "docs/benchmark.md": benchmark.renewed}
+PAGES = {"docs/results.md": results.page, "docs/transfers.md": transfers.page, "docs/transfers-tables.md": transfers.rows_page,
+         "docs/lessons/tables.md": lessons.page}
 
 
 def renew(check=False):
     """Writes all pages; with `check` none, but stops the script if one differs from its records."""
-    for name, page in PAGES.items():
+    for name, page in {**MARKED, **PAGES}.items():
         old = (ROOT / name).read_text(encoding="utf-8")
-        new = page(old) if page is readme.renewed else page()
+        new = page(old) if name in MARKED else page()
         if check and new != old:
             sys.exit(f"{name} differs from its records: run scripts/publish_records.py --tables")
         (ROOT / name).write_text(new, encoding="utf-8")

@@ -10,6 +10,7 @@ from plot.evidence.perf_record import read_file
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EVIDENCE = ROOT / "docs/evidence"
+MARK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)  # around a table of a page
 
 
 def passed(file):

@@ -4,15 +4,13 @@ A table names its records by case. Of several records of a case the latest one c
 script.
 """
 
-import re
 import statistics
 import sys
 
 from plot.evidence.perf_record import read_file
 
-from .forms import EVIDENCE, error_of, table, time_of, wrapped
-
-MARK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
+from . import benchmark
+from .forms import EVIDENCE, MARK, error_of, table, time_of, wrapped
 
 
 class Records:
@@ -137,7 +135,7 @@ def canopy_table(evidence):
     ]
 
 
-TABLES = {"gas": gas_table, "springs": springs_table, "options": options_table, "flow": flow_table, "canopy": canopy_table}
+TABLES = {"merit": benchmark.summary, "gas": gas_table, "springs": springs_table, "options": options_table, "flow": flow_table, "canopy": canopy_table}
 
 
 def renewed(text, evidence=EVIDENCE):

@@ -18,7 +18,7 @@ ROOT = layers.repository(os.environ)
 sys.path.insert(0, str(ROOT / "scripts"))
 import publish_records  # noqa: E402
 from plot.evidence.perf_record import SCHEMA  # noqa: E402
-from tables import forms, readme, results, transfers  # noqa: E402
+from tables import benchmark, forms, readme, results, transfers  # noqa: E402
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -120,6 +120,45 @@ class Results(unittest.TestCase):
     def test_numbers_are_short(self):
         values = {0.0: "0", 2e-3: "2e-3", 2.026e-3: "2.03e-3", 1e-14: "1e-14", 0.0784: "0.0784", 0.325: "0.325", 43.1: "43.1", 2250.0: "2250"}
         self.assertEqual(list(values.values()), [results.number(value) for value in values])
+
+
+class Benchmark(unittest.TestCase):
+    """Records of a problem on one rank, and of weak scaling."""
+
+    PAGE = "A\n<!-- table: benchmark -->\nold\n<!-- end -->\nB\n"
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.evidence = Path(folder.name)
+
+    def write(self, name, case, check="passed", **facts):
+        facts = {"backend": "openmp", "cells": 4096, "problem": "puts", "size": "small", "extent": "4096 options", "ranks": 1, "threads": 2,
+                 "memory_bytes": 23_000_000, "quantity": "price", "expected": [1e-6, 2e-6], "merit": "options_per_s",
+                 "figure_of_merit": 2048.0, "command": "x"} | facts
+        line = {"schema": SCHEMA, "case": f"benchmark/{case}", "check": check, "error": 1.9e-6, "samples": [2.0], "median": 2.0,
+                "interval": [2.0, 2.0], "facts": facts,
+                "provenance": {"gpu": "", "cpu": "core", "driver": "", "date": "2026-01-02T00:00:00Z", "git": "abc"}}
+        (self.evidence / f"benchmark-{name}.jsonl").write_text(json.dumps(line) + "\n", encoding="utf-8")
+
+    def test_table_and_summary_show_figures_with_errors(self):
+        self.write("here", "puts/openmp/small/ranks/1")
+        self.write("weak", "taylor-green/cuda/large/ranks/4/weak", ranks=4, merit="cell_steps_per_s", figure_of_merit=3e9)
+        text = benchmark.renewed(self.PAGE, self.evidence)
+        self.assertIn("| `puts` | 4096 options | 1 x 2 | 0.023 | 2 | 2048 options/s | 1.9e-6 (1e-6 .. 2e-6) |", text)
+        self.assertIn("`drogue-perf benchmark --size small --backend openmp`", text)
+        self.assertIn("--weak --ranks 4`", text)
+        self.assertIn("3000 M cell-steps/s", text)
+        self.assertTrue(text.startswith("A\n") and text.endswith("B\n") and "old" not in text)
+        summary, = benchmark.summary(self.evidence)
+        self.assertIn("2 threads of an core, size small ([record](docs/evidence/benchmark-here.jsonl)): 2048 options/s (`puts`).", summary)
+
+    def test_refuses_wrong_answers_and_no_records(self):
+        with self.assertRaisesRegex(SystemExit, "docs/evidence a file benchmark"):
+            benchmark.renewed(self.PAGE, self.evidence)
+        self.write("here", "puts/openmp/small/ranks/1", check="failed")
+        with self.assertRaisesRegex(SystemExit, "failed its check"):
+            benchmark.renewed(self.PAGE, self.evidence)
 
 
 class Transfers(unittest.TestCase):

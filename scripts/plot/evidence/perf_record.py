@@ -48,6 +48,10 @@ _FACTS = {
     "tridiagonal": {},
     "abstraction": {"backend": str, "cells": int, "version": str, "launches": str},
     "scaling": {"backend": str, "cells": int, "threads": int},
+    "benchmark": {
+        "backend": str, "cells": int, "problem": str, "size": str, "extent": str, "ranks": int, "threads": int, "memory_bytes": int,
+        "quantity": str, "merit": str, "figure_of_merit": float, "command": str,
+    },
     "ladder": {"ladder": str, "rung": str, "backend": str, "cells": int, "predicted_s": float, "predicted_bound": str},
     "machine": {"host": dict},
     "occupancy": {
@@ -152,7 +156,7 @@ class Record:
         What is of no mini-app is on the page `machine`.
         """
         app = self.case.split("/")[_PLACE_OF_KERNEL.get(self.kind, 0)].partition("-")[0]
-        return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow", "occupancy": "machine"}.get(app, app)
+        return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow", "occupancy": "machine", "benchmark": "machine"}.get(app, app)
 
     @property
     def machine(self) -> Machine:

@@ -1,0 +1,64 @@
+"""Reference results of docs/benchmark.md, from the records benchmark-*.jsonl."""
+
+import statistics
+import sys
+
+from .forms import EVIDENCE, MARK, passed, table, wrapped
+from .results import number
+
+_UNITS = {"cell_steps_per_s": (1e-6, "M cell-steps/s"), "vertex_steps_per_s": (1e-6, "M vertex-steps/s"),
+          "options_per_s": (1.0, "options/s"), "simulated_s_per_s": (1.0, "s of flight/s")}
+
+
+def merit(facts):
+    """Figure of merit with its unit."""
+    scale, unit = _UNITS[facts["merit"]]
+    return f"{number(scale * facts['figure_of_merit'])} {unit}"
+
+
+def row(record):
+    """Line of a problem."""
+    facts = record.facts
+    return [f"`{facts['problem']}`", facts["extent"], f"{facts['ranks']} x {facts['threads']}", number(1e-9 * facts["memory_bytes"]),
+            number(statistics.median(record.samples)), merit(facts),
+            f"{number(record.error)} ({' .. '.join(map(number, facts['expected']))})"]
+
+
+def place(records):
+    """Devices of the records of a run, in words."""
+    facts, most = records[0].facts, max(record.facts["ranks"] for record in records)
+    if facts["backend"] == "cuda":
+        return f"{'One' if most == 1 else most} {records[0].device(True)}, CUDA {records[0].provenance['driver']}"
+    return f"{most * facts['threads']} threads of an {records[0].device(False)}"
+
+
+def section(file):
+    """Paragraph and table of a file."""
+    records = passed(file)
+    facts, here = records[0].facts, records[0].provenance
+    options = f"--size {facts['size']} --backend {facts['backend']}"
+    if (most := max(record.facts["ranks"] for record in records)) > 1:
+        options += f"{' --weak' if records[0].case.endswith('/weak') else ''} --ranks {most}"
+    origin = f"{place(records)}, {records[0].run_id[0][:10]}, commit {here['git']} ([record](evidence/{file.name})): `drogue-perf benchmark {options}`."
+    heading = ["problem", "size", "ranks x threads", "memory, GB", "time, s", "figure of merit", "error (expected)"]
+    return ["", origin, "", *table(heading, map(row, records), (0, 1, 5, 6))]
+
+
+def summary(evidence):
+    """Paragraph of the README: figures of merit of all files, but those of weak scaling."""
+    lines = []
+    for file in sorted(evidence.glob("benchmark-*.jsonl")):
+        records = passed(file)
+        if not records[0].case.endswith("/weak"):
+            merits = ", ".join(f"{merit(record.facts)} (`{record.facts['problem']}`)" for record in records)
+            lines.append(f"{place(records)}, size {records[0].facts['size']} ([record](docs/evidence/{file.name})): {merits}.")
+    return lines
+
+
+def renewed(text, evidence=EVIDENCE):
+    """The text of the page with a table for each file of records."""
+    files = sorted(evidence.glob("benchmark-*.jsonl"))
+    if [name for _, name, _ in MARK.findall(text)] != ["benchmark"] or not files:
+        sys.exit("docs/benchmark.md needs one mark for the table benchmark, and docs/evidence a file benchmark-*.jsonl")
+    lines = [line for file in files for line in section(file)]
+    return MARK.sub(lambda found: found[1] + wrapped(lines[1:]) + found[3], text)

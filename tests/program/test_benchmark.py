@@ -1,0 +1,177 @@
+"""drogue-perf benchmark: answers that are right and wrong, records, repeated commands, ranks, and usage errors."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import perf_program
+
+# Stands for a program of the suite: plan.json beside it has the exit code, and what differs in its result. A number of prices by
+# their errors makes prices of the known puts.
+PROGRAM = """#!{python}
+import json, os, pathlib, sys
+words, here = sys.argv[1:], pathlib.Path(sys.argv[0])
+plan = json.loads((here.parent / "plan.json").read_text()).get(here.name, {{}})
+with (here.parent / "calls.jsonl").open("a") as calls:
+    calls.write(json.dumps([here.name, *words]) + "\\n")
+if plan.get("sentence"):
+    sys.exit(print(here.name + ": " + plan["sentence"], file=sys.stderr) or plan["code"])
+out = pathlib.Path(words[words.index("--out") + 1])
+if "price" in words:
+    errors = plan.get("errors", [1.9e-6] * 5)
+    prices = (0.239004005, 0.318658312, 0.275403193, 0.208230166, 0.182096749)
+    out.write_text("id,price,error,status\\n" + "".join(
+        f"{{k}},{{price + error}},{{plan.get('stated', 2e-6)}},ok\\n" for k, (price, error) in enumerate(zip(prices, errors))))
+    result = pathlib.Path(words[words.index("--result") + 1])
+else:
+    out.mkdir()
+    result = out / "result.json"
+check = plan.get("check", ["none", 0.0])
+result.write_text(json.dumps({{
+    "ranks": plan.get("ranks", int(os.environ.get("RANKS", "1"))), "threads": int(os.environ["OMP_NUM_THREADS"]), "device": "a device",
+    "provenance": {{}}, "timing": {{"compute_s": plan.get("seconds", 10.0)}}, "peak_bytes": {{"host": 2000000, "device": 0}},
+    "checks": [{{"name": check[0], "value": check[1], "tolerance": 1.0, "passed": True}}],
+    "figure_of_merit": {{"cell_steps_per_s": 3e6, "vertex_steps_per_s": 4e6, "options_per_s": 50.0, "simulated_s_per_s": 0.25}}}}))
+sys.exit(plan.get("code", 0))
+"""
+LAUNCHER = """#!{python}
+import os, sys
+os.execve(sys.argv[3], sys.argv[3:], {{**os.environ, "RANKS": sys.argv[2]}})
+"""
+
+
+class Benchmark(perf_program.PerfTest):
+    """With the programs of this build."""
+
+    def test_right_answers_pass_and_their_commands_repeat_them(self):
+        text, records = self.recorded("benchmark", "--filter", "^(sod|puts)$", "--backend", "serial")
+        self.assertEqual(["benchmark/sod/serial/small/ranks/1", "benchmark/puts/serial/small/ranks/1"], [record["case"] for record in records])
+        rows = [line for line in text.splitlines() if line.startswith(("drogue-gas ", "drogue-options "))]
+        commands = [line.strip() for line in text.splitlines() if line.startswith("  env ")]
+        self.assertEqual([record["facts"]["command"] for record in records], commands)
+        for record, row in zip(records, rows, strict=True):
+            facts = record["facts"]
+            self.assertEqual(("passed", "s per run"), (record["check"], record["unit"]))
+            self.assertTrue(facts["expected"][0] <= record["error"] <= facts["expected"][1])
+            self.assertTrue(1 <= len(record["samples"]) <= 7 and min(record["samples"]) > 0.0)
+            self.assertRegex(row, r"serial +1 x 1 .* passed$")
+            self.assertGreater(facts["memory_bytes"], 1e6)
+            self.assertIn(facts["extent"], row)
+        work, merit = 12800 * self.steps(commands[0]), records[0]["facts"]["figure_of_merit"]
+        self.assertTrue(0.999 * work / max(records[0]["samples"]) <= merit <= 1.001 * work / min(records[0]["samples"]))
+
+    def steps(self, command):
+        """Steps of a run by a printed command in a new folder."""
+        self.expect_command(command.replace("drogue-gas", str(perf_program.PROGRAM.with_name("drogue-gas"))))
+        return json.loads((self.folder / "sod/result.json").read_text(encoding="utf-8"))["steps"]
+
+    def expect_command(self, command):
+        done = subprocess.run(["sh", "-c", command], cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual((0, ""), (done.returncode, done.stderr))
+
+    def test_bad_input(self):
+        (self.folder / "kept").mkdir()
+        (self.folder / "kept/notes.txt").touch()
+        for code, words, sentence in (
+            (2, ["--size", "huge"], "huge"),
+            (2, ["--filter", "^cloth$"], "no problem matches '^cloth$'; there are sod, drum, puts, taylor-green, c9-flat"),
+            (2, ["--weak", "--filter", "sod"], "no problem matches 'sod'; there are taylor-green"),
+            (2, ["--filter", "("], "is not a valid regular expression"),
+            (2, ["--ranks", "0"], "--ranks"),
+            (2, ["--launcher", "srun"], "--launcher starts several ranks: give their number by --ranks"),
+            (2, ["--backend", "serial", "--threads", "2"], "the backend serial has one thread"),
+            (2, ["--keep", "kept"], "the folder 'kept' of --keep holds files; name a new one"),
+            (6, ["--out", "none/rows.jsonl"], "none/rows.jsonl"),
+        ):
+            with self.subTest(words):
+                self.assertIn(sentence, self.expect(code, "benchmark", *words).stderr)
+        process = self.expect(77, "benchmark", "--ranks", "2", environment={"PATH": str(self.folder)})
+        self.assertIn("need mpirun, and no folder of PATH holds it", process.stderr)
+
+
+class Planned(perf_program.PerfTest):
+    """With programs that stand for those of the suite."""
+
+    def setUp(self):
+        super().setUp()
+        self.bin = self.folder / "bin"
+        self.bin.mkdir()
+        shutil.copy(perf_program.PROGRAM.resolve(), self.bin / "drogue-perf")
+        for name in ("drogue-gas", "drogue-springs", "drogue-options", "drogue-parachute"):
+            self.put(self.bin / name, PROGRAM)
+        self.put(self.folder / "mpirun", LAUNCHER)
+
+    @staticmethod
+    def put(file, text):
+        file.write_text(text.format(python=sys.executable))
+        file.chmod(0o755)
+
+    def benchmark(self, code, plan, *words):
+        """Standard output and error, and records, with a plan; asserts the exit code."""
+        (self.bin / "plan.json").write_text(json.dumps(plan))
+        done = subprocess.run([self.bin / "drogue-perf", "benchmark", "--backend", "serial", "--out", "rows.jsonl", *words], cwd=self.folder,
+                              capture_output=True, text=True, check=False, env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        self.assertEqual(code, done.returncode, f"{done.stdout}{done.stderr}")
+        rows = self.folder / "rows.jsonl"
+        return done.stdout, done.stderr, self.records("rows.jsonl") if rows.exists() else []
+
+    def verdicts(self, code, plan, *words):
+        return [record["check"] for record in self.benchmark(code, plan, *words)[2]]
+
+    def calls(self):
+        return [json.loads(line) for line in (self.bin / "calls.jsonl").read_text().splitlines()]
+
+    def test_wrong_answer_fails_and_the_other_problems_run(self):
+        for error in (1.0, 1e-9):  # too large, and too small for the scheme on this mesh
+            with self.subTest(error):
+                text, _, (gas, puts) = self.benchmark(5, {"drogue-gas": {"check": ["l1_density", error]}}, "--filter", "sod|puts")
+                row = next(line for line in text.splitlines() if line.startswith("drogue-gas"))
+                self.assertRegex(row, rf" FAILED +- +l1_density {error:g}, expected \S+ to \S+: FAILED$")
+                self.assertNotIn("cell-steps/s", row)
+                self.assertEqual(("failed", "passed"), (gas["check"], puts["check"]))
+
+    def test_answer_that_is_missing_fails(self):
+        self.assertEqual(["failed"], self.verdicts(5, {"drogue-gas": {"check": ["l2_density", 7e-5]}}, "--filter", "sod"))
+
+    def test_program_that_computes_nonsense_fails_its_row(self):
+        for code, seconds in ((4, 0.0), (5, 10.0)):
+            plan = {"drogue-parachute": {"code": code, "seconds": seconds, "check": ["canopy_0_drag_coefficient_mean", 0.01]}}
+            record, = self.benchmark(5, plan, "--filter", "c9-flat")[2]
+            self.assertEqual(("failed", [seconds] if seconds else []), (record["check"], record["samples"]))
+
+    def test_prices_are_compared_with_known_ones_and_with_their_stated_errors(self):
+        for code, plan in ((0, {}), (5, {"errors": [0, 0, 0, 0, 3e-6], "stated": 1.0}), (5, {"errors": [0, 2.1e-6, 0, 0, 0]})):
+            self.benchmark(code, {"drogue-options": plan}, "--filter", "puts", "--keep", f"kept-{plan}")
+        self.assertEqual(16385, len((self.folder / "kept-{}/puts-16384.csv").read_text().splitlines()))
+
+    def test_program_that_refuses_ends_it_with_the_rows_until_then(self):
+        plan = {"drogue-options": {"code": 3, "sentence": "batch.csv:2: no such column"}}
+        _, sentence, records = self.benchmark(3, plan, "--filter", "drum|puts|c9")
+        self.assertIn("puts on 1 rank failed: drogue-options: batch.csv:2: no such column", sentence)
+        self.assertEqual(["drum"], [record["facts"]["problem"] for record in records])
+
+    def test_program_that_is_missing_is_named(self):
+        (self.bin / "drogue-springs").unlink()
+        self.assertIn("bin/drogue-springs", self.benchmark(6, {}, "--filter", "drum")[1])
+
+    def test_weak_scaling_gives_each_rank_a_cube(self):
+        plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3]}}
+        records = self.benchmark(0, plan, "--weak", "--ranks", "2")[2]
+        self.assertEqual([f"benchmark/taylor-green/serial/small/ranks/{ranks}/weak" for ranks in (1, 2)], [record["case"] for record in records])
+        self.assertEqual([64**3, 2 * 64**3], [record["facts"]["cells"] for record in records])
+        one, two = ([word for word in call if "grid." in word or "verify" in word] for call in {call[5]: call for call in self.calls()}.values())
+        self.assertIn("grid.cells=[64,64,64]", one)
+        self.assertIn("grid.cells=[64,64,128]", two)
+        self.assertIn("12.56637061435917]]", " ".join(two))
+        self.assertIn("[1,61.77208]", " ".join(two))
+        self.assertNotIn("mpirun", records[0]["facts"]["command"])
+        self.assertTrue(records[1]["facts"]["command"].startswith("env OMP_NUM_THREADS=1 mpirun -n 2 drogue-parachute taylor-green-3d --set "))
+
+    def test_launcher_of_the_user_must_start_the_ranks(self):
+        plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3]}}
+        words = ("--filter", "taylor-green", "--ranks", "4", "--launcher")
+        self.assertEqual(4, self.benchmark(0, plan, *words, "mpirun -n 4")[2][0]["facts"]["ranks"])
+        self.assertIn("taylor-green on 4 ranks: the launcher started 2 of them", self.benchmark(2, plan, *words, "mpirun -n 2")[1])
