@@ -103,10 +103,16 @@ std::string key_of(std::string name) {
 
 }  // namespace
 
-bool is_ensemble(const std::string& text) {
-  return std::ranges::any_of(split(text, ','), [](const std::string& part) {
-    return std::ranges::find(axis_names, part.substr(0, part.find('='))) != axis_names.end();
-  });
+bool is_ensemble(const std::string& text, const std::vector<std::string>& others) {
+  std::vector<std::string> all = axis_names;
+  all.insert(all.end(), others.begin(), others.end());
+  bool is_one = false;
+  for (const std::string& part : split(text, ',')) {
+    const std::string name = part.substr(0, part.find('='));
+    require_one_of(name, all);
+    is_one = is_one || std::ranges::find(axis_names, name) != axis_names.end();
+  }
+  return is_one;
 }
 
 EnsembleAxes parse_ensemble(const std::string& text) {

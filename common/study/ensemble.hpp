@@ -19,8 +19,9 @@ struct EnsembleAxes {
   int jobs = 0;                       ///< runs at once; 0: as many as suit the backend
 };
 
-/// True if `--study` names one of these axes. Does not throw.
-[[nodiscard]] bool is_ensemble(const std::string& text);
+/// True if `--study` names one of these axes. Throws `Failure` (usage) for a name that is neither one of them
+/// nor among `others`, the axes of the other studies of a program.
+[[nodiscard]] bool is_ensemble(const std::string& text, const std::vector<std::string>& others);
 
 /// Parses them. Throws `Failure` (usage).
 [[nodiscard]] EnsembleAxes parse_ensemble(const std::string& text);

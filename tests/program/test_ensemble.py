@@ -113,11 +113,13 @@ history = [{ column = "body_0_force_x", statistic = "mean", from = 0.1, value = 
         self.assertFalse((self.folder / "study").exists())
 
     def test_reports_usage_errors(self):
-        for lists, words in (("ensemble=0", "ensemble=0 is not an integer"), ("ensemble=2,meshes=8", "'meshes' is not one of"),
-                             ("cells=0.1:1", "grid.cells")):
-            with self.subTest(lists):
-                self.assertIn(words, self.study(2, lists).stderr)
-                self.assertFalse((self.folder / "study").exists())
+        for lists, words in (("ensemble=0", "ensemble=0 is not an integer"), ("ensemble=2,meshes=8", "unknown name 'meshes'"),
+                             ("cells=0.1:1", "grid.cells"), ("ensembel=2", 'did you mean "ensemble"?'), ("ensemble=2,", "a part is empty"),
+                             ("meshes=8:16", "verify.exact")):
+            for check in ((), ("--check",), ("--check", "--quiet")):
+                with self.subTest(lists, check=check):
+                    self.assertIn(words, self.study(2, lists, *check).stderr)
+                    self.assertFalse((self.folder / "study").exists())
 
     def test_an_existing_study_is_kept(self):
         self.study(0, "ensemble=1", "--quiet", sets=SHORT)
