@@ -172,6 +172,20 @@ TEST(CanopyNotes, AStreamIntoClosedSides) {
   }));
 }
 
+TEST(CanopyNotes, SpeedsNearThatOfSoundInAirAndWaterAlone) {
+  const std::string end =
+      ", beyond the 0.3 up to which an incompressible flow stands for it: drag and forces lack its "
+      "compressibility, and shocks";
+  expect_note({"fluid.velocity=[0,0,120]"}, "fluid.velocity: 120 m/s are Mach 0.353 in air" + end);
+  expect_note({"fluid.velocity=[0,0,\"10+110*t\"]"}, "fluid.velocity: 120 m/s are Mach 0.353 in air" + end);
+  expect_note({"canopy[0].payload={velocity=[0,0,-100]}"},
+              "canopy[0].payload.velocity: 110 m/s are Mach 0.324 in air" + end);
+  expect_note({"fluid.velocity=[0,0,500]", "fluid.density=1000", "fluid.viscosity=1e-3"},
+              "fluid.velocity: 500 m/s are Mach 0.338 in water" + end);
+  EXPECT_TRUE(notes({"fluid.velocity=[0,0,101]"}).empty());
+  EXPECT_TRUE(notes({"fluid.velocity=[0,0,120]", "fluid.viscosity=1"}).empty()) << "no air";
+}
+
 TEST(CanopyNotes, SheetsWithoutLinesHaveNone) {
   EXPECT_TRUE(notes({"canopy=[{kind=\"sheet\",diameter=3,vent=0,edge_length=0.2}]", "coupling.edge_inset=0"})
                   .empty());
