@@ -72,7 +72,9 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
   install_signal_handlers();
   const ExitCode code = app.study(options, file);
   if (code == ExitCode::interrupted)
-    print_notice(app.program(), "interrupted by a signal; the tables hold the finished points");
+    print_notice(app.program(),
+                 "interrupted by a signal; the tables hold the finished points, and "
+                 "--overwrite begins the study anew");
   return code;
 }
 

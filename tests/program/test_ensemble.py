@@ -75,18 +75,29 @@ class Ensemble(gas_program.GasTest):
         self.study(0, lists, "--quiet", sets=SHORT)
         return {row["folder"]: int(row["steps"]) for row in self.rows()}
 
-    def test_ctrl_c_keeps_finished_runs(self):
-        line = gas_program.arguments(self.write(parachute_program.CANOPY), "--backend", "serial", "--study", "ensemble=40,jobs=2", "--out", "study",
-                                     sets=SHORT, program=self.program)
+    def interrupted(self, lists, file, sets):
+        """What a study prints that a signal ends once a file of it exists."""
+        line = gas_program.arguments(self.write(parachute_program.CANOPY), "--backend", "serial", "--study", lists, "--out", "study",
+                                     sets=sets, program=self.program)
         process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        table = self.folder / "study/runs.csv"
         limit = time.monotonic() + 300
-        while not table.exists() and time.monotonic() < limit:
+        while not (self.folder / "study" / file).exists() and time.monotonic() < limit:
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=120)
         self.assertEqual(130, process.returncode, err)
-        self.assertRegex(err, r"interrupted by a signal; the tables hold the finished points\n$")
+        return out, err
+
+    def test_ctrl_c_in_a_run_speaks_of_no_restart(self):
+        out, err = self.interrupted("ensemble=2,jobs=1", "cells-1/seed-1/history.csv", [*SHORT, "run.end_time=100"])
+        self.assertRegex(out, r"^cells-1/seed-1 +1 of 2  interrupted, \d+ steps in \S+ s\n")
+        self.assertNotIn("restart", out + err)
+        self.assertIn("--overwrite begins the study anew", err)
+        self.assertEqual([], list((self.folder / "study").rglob("*.log")), "no run was wrong")
+
+    def test_ctrl_c_keeps_finished_runs(self):
+        out, err = self.interrupted("ensemble=40,jobs=2", "runs.csv", SHORT)
+        self.assertRegex(err, r"interrupted by a signal; the tables hold the finished points, and --overwrite begins the study anew\n$")
         study = self.result("study")
         self.assertEqual(("interrupted", 0, 40), (study["status"], study["study"]["failed"], study["study"]["runs"]))
         finished = study["study"]["finished"]

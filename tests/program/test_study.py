@@ -30,7 +30,7 @@ class StudyTest(gas_program.GasTest):
         process.send_signal(signal.SIGINT)
         text = process.communicate(timeout=60)
         self.assertEqual(130, process.returncode, text)
-        self.assertRegex(text[1], r"interrupted by a signal; the tables hold the finished points\n$")
+        self.assertRegex(text[1], r"interrupted by a signal; the tables hold the finished points, and --overwrite begins the study anew\n$")
 
 
 class GasStudy(StudyTest):
