@@ -51,14 +51,15 @@ double real_at(const Json& json, const std::string& name) {
 /// Numbers of a group that are results of the run, with their errors.
 void add_group(const std::string& group, const Json& values, std::vector<Quantity>& quantities) {
   for (const auto& [name, value] : values.items())
-    if (value.is_number() && name != "from" && !name.ends_with("_error"))
+    if (value.is_number() && name != "from" && name != "frontal_area" && !name.ends_with("_error"))
       quantities.push_back({group + "." + name, value.get<double>(), real_at(values, name + "_error")});
 }
 
 std::vector<Quantity> quantities_of(const Json& json) {
   std::vector<Quantity> quantities;
   for (const auto& [group, values] : json.items())
-    if (group.starts_with("canopy_") && values.is_object()) add_group(group, values, quantities);
+    if ((group.starts_with("canopy_") || group.starts_with("body_")) && values.is_object())
+      add_group(group, values, quantities);
   if (const auto checks = json.find("checks"); checks != json.end())
     for (const Json& check : *checks)
       if (const double measured = real_at(check, "measured"); std::isfinite(measured))

@@ -51,9 +51,9 @@ struct Member {
   }
 };
 
-/// Reads how a run ended from its result.json: its quantities are the numbers of the groups `canopy_i`, and
-/// what checks measured. Without such a file, `exit_code` of the process and `log`, what it printed, describe
-/// a failure.
+/// Reads how a run ended from its result.json: its quantities are the numbers of the groups `canopy_i` and
+/// `body_i`, and what checks measured. Without such a file, `exit_code` of the process and `log`, what it
+/// printed, describe a failure.
 void read_member(const std::filesystem::path& result, int exit_code, const std::string& log, Member& member);
 
 /// A quantity of all runs that have it.

@@ -112,6 +112,8 @@ history = [{ column = "body_0_force_x", statistic = "mean", from = 0.1, value = 
 """)
         self.study(0, "ensemble=2,cells=1:1.5", "--quiet", sets=["output.history_every=1"], scene=scene)
         study = self.result("study")["study"]
+        self.assertNotIn("body_0_frontal_area", study)
+        self.assertGreater(study["body_0_drag_coefficient_deviation"], 0.0)
         self.assertGreater(study["body_0_force_x_mean"], 0.0)
         self.assertLess(study["body_0_force_x_mean_deviation"], 0.01 * study["body_0_force_x_mean"])
         self.assertGreater(study["body_0_force_x_mean_deviation"], 0.0, "the runs differ")

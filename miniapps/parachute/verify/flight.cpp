@@ -213,12 +213,15 @@ constexpr std::array<Title, 12> titles = {
      {"touchdown_time", "touch-down at, s"},
      {"touchdown_speed", "rate of descent then, m/s"}}};
 
-std::string canopy_name(const std::string& group) {
-  return "canopy[" + group.substr(group.find('_') + 1) + "]";
+/// "canopy[0]" of the group `canopy_0`, and likewise of bodies.
+std::string part_name(const std::string& group) {
+  const std::size_t separator = group.find('_');
+  return group.substr(0, separator) + "[" + group.substr(separator + 1) + "]";
 }
 
-/// Title of a key; the key if it has none.
-std::string title_of(const std::string& key) {
+/// Title of a key of a group; the key if it has none.
+std::string title_of(const std::string& group, const std::string& key) {
+  if (group.starts_with("body_") && key == "drag_coefficient") return "C_D";  // of its frontal area
   const auto found = std::ranges::find_if(titles, [&](const Title& title) { return title.key == key; });
   return found == titles.end() ? key : found->text;
 }
@@ -265,7 +268,7 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
     result.metrics.set(group, "peak_line_force", force);
     result.metrics.set(group, "peak_line_force_time", time);
     if (time > 0.98 * scene.end_time)
-      result.warnings.push_back(canopy_name(group) +
+      result.warnings.push_back(part_name(group) +
                                 ": the largest line force is that of the end of the run, and may still grow; "
                                 "a longer run.end_time shows the peak");
   }
@@ -274,17 +277,20 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
 std::string flight_report(const run::ResultDocument& result) {
   std::string text;
   for (const run::Metrics::Group& group : result.metrics.groups()) {
-    if (!group.name.starts_with("canopy_") || group.values.empty()) continue;
+    if (!(group.name.starts_with("canopy_") || group.name.starts_with("body_")) || group.values.empty())
+      continue;
     const auto value = [&](const std::string& name) { return result.metrics.real(group.name, name); };
-    text += canopy_name(group.name);
+    text += part_name(group.name);
+    if (const auto area = value("frontal_area")) text += " of " + scene::rough_text(*area) + " m^2";
     if (const auto from = value("from"))
       text += ", means from " + scene::rough_text(*from) + " s on; +- is 95 % by the scatter in this run";
     text += '\n';
-    for (const auto& [key, title, is_mean] : titles) {
+    for (const auto& [key, ignored, is_mean] : titles) {
       const std::string name = key;
       const auto number = value(name), error = value(name + "_error");
       if (!number) continue;
-      text += "  " + std::string(title) + std::string(34 - std::string(title).size(), ' ') +
+      const std::string shown = title_of(group.name, name);
+      text += "  " + shown + std::string(34 - shown.size(), ' ') +
               run::bar_text(*number, error.value_or(NAN)) +
               (is_mean && !error ? "  (no error bar: too short a run)" : "") + '\n';
     }
@@ -295,7 +301,8 @@ std::string flight_report(const run::ResultDocument& result) {
 std::string flight_title(const std::string& quantity) {
   const std::size_t dot = quantity.find('.');
   if (dot == std::string::npos) return quantity;
-  return canopy_name(quantity.substr(0, dot)) + " " + title_of(quantity.substr(dot + 1));
+  const std::string group = quantity.substr(0, dot);
+  return part_name(group) + " " + title_of(group, quantity.substr(dot + 1));
 }
 
 }  // namespace drogue::parachute_app

@@ -18,7 +18,7 @@ namespace drogue::parachute_app {
 void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run::History& history,
                       run::ResultDocument& result);
 
-/// Lines that print these groups; empty without one. Throws only std::bad_alloc.
+/// Lines that print these groups and those of bodies; empty without one. Throws only std::bad_alloc.
 [[nodiscard]] std::string flight_report(const run::ResultDocument& result);
 
 /// A quantity of a study with its unit for the terminal: `canopy_0.drift` as "canopy[0] drift, m/s"; other
