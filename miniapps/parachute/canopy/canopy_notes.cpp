@@ -106,31 +106,6 @@ void note_short_wake(FlowScene& scene, std::size_t i) {
                                    rough_text(least), " m are two open diameters"));
 }
 
-/// Notes a core that a canopy leaves once it leans by 30 degrees about its payload, or about the middle
-/// between both where the grid follows that.
-void note_narrow_core(FlowScene& scene, std::size_t i) {
-  const Canopy& canopy = scene.canopies[i];
-  const flow::Parameters& p = scene.parameters;
-  const double lean = pi / 6.0, radius = 0.5 * inflated_diameter(canopy),
-               along = std::sqrt(std::max(0.0, std::pow(canopy.lines.length, 2) - radius * radius)) +
-                       (canopy.riser ? canopy.riser->length : 0.0);
-  const fabric::Vector payload = payload_place(canopy);
-  for (const std::size_t axis : {0U, 1U}) {
-    if (!flow::is_stretched(p, axis)) continue;
-    const bool follows = scene.frame == Frame::follow && scene.open_axes()[axis];
-    const auto [low, high] = sheet_extent(p, axis);
-    const double pivot = follows ? 0.5 * (payload[axis] + canopy.centre[axis]) : payload[axis],
-                 room = std::min(pivot - low, high - pivot) - core_width(p, axis),
-                 needed = (follows ? 0.5 : 1.0) * along * std::sin(lean) + radius * std::cos(lean);
-    if (room >= needed) continue;
-    scene.notices.push_back(
-        sentence(scene.faces ? "grid.faces leave " : "grid.core leaves ", element("canopy", i), " ",
-                 rough_text(room), " m along ", axis_names[axis], ", and one that leans by 30 degrees needs ",
-                 rough_text(needed), " m to each side: it may leave the core, which ends the run"));
-    return;
-  }
-}
-
 bool blows_along(const FlowScene& scene, std::size_t axis) {
   return constant_value(scene.velocity[axis]).value_or(0.0) != 0.0;
 }
@@ -206,6 +181,29 @@ void note_defaults_of_another_canopy(const Place& root, FlowScene& scene, std::s
 
 }  // namespace
 
+std::string narrow_core_text(const FlowScene& scene, std::size_t i, double degrees, const char* when) {
+  const Canopy& canopy = scene.canopies[i];
+  const flow::Parameters& p = scene.parameters;
+  const double lean = degrees * pi / 180.0, radius = 0.5 * inflated_diameter(canopy),
+               along = std::sqrt(std::max(0.0, std::pow(canopy.lines.length, 2) - radius * radius)) +
+                       (canopy.riser ? canopy.riser->length : 0.0);
+  const fabric::Vector payload = payload_place(canopy);
+  for (const std::size_t axis : {0U, 1U}) {
+    if (!flow::is_stretched(p, axis)) continue;
+    const bool follows = scene.frame == Frame::follow && scene.open_axes()[axis];
+    const auto [low, high] = sheet_extent(p, axis);
+    const double pivot = follows ? 0.5 * (payload[axis] + canopy.centre[axis]) : payload[axis],
+                 room = std::min(pivot - low, high - pivot) - core_width(p, axis),
+                 needed = (follows ? 0.5 : 1.0) * along * std::sin(lean) + radius * std::cos(lean);
+    if (room >= needed) continue;
+    return sentence(scene.faces ? "grid.faces leave " : "grid.core leaves ", element("canopy", i), " ",
+                    rough_text(room), " m along ", axis_names[axis], ", and one that leans by ",
+                    rough_text(degrees), " degrees", when, " needs ", rough_text(needed),
+                    " m to each side: it may leave the core, which ends the run");
+  }
+  return {};
+}
+
 void note_unfit_canopies(const Place& root, FlowScene& scene) {
   std::vector<std::size_t> flying;
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
@@ -221,7 +219,8 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
   for (const std::size_t i : flying) {
     note_axis_across_the_air(scene, i);
     note_short_wake(scene, i);
-    note_narrow_core(scene, i);
+    if (const std::string text = narrow_core_text(scene, i, expected_lean); !text.empty())
+      scene.notices.push_back(text);
     note_defaults_of_another_canopy(root, scene, i);
   }
   note_wide_edges(scene, cells(coarsest));

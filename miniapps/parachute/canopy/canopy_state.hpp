@@ -30,6 +30,8 @@ struct CanopyMeasures {
   /// inwards, to a quarter of the way from the centre of mass of the cloth to the point where the lines meet:
   /// a place within an open canopy, and below a flat one. 0 without lines.
   double inversion = 0.0;
+  double lean =
+      0.0;  ///< angle between z and the axis from the payload to the skirt, degrees; 0 without lines
 };
 
 /// Area of the shadow that triangles cast along z, m^2, counted once where they overlap: by the centres of

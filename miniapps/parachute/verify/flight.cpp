@@ -9,6 +9,7 @@
 #include "common/run/history_statistics.hpp"
 #include "common/run/uncertainty.hpp"
 #include "common/scene/node.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -199,7 +200,7 @@ struct Title {
 };
 
 /// Keys of a group in the order in which they are printed.
-constexpr std::array<Title, 12> titles = {
+constexpr std::array<Title, 13> titles = {
     {{"rate_of_descent", "rate of descent, m/s", true},
      {"rate_of_descent_free_air", "rate of descent in free air, m/s", true},
      {"drift", "drift, m/s", true},
@@ -207,6 +208,7 @@ constexpr std::array<Title, 12> titles = {
      {"drag_coefficient_free_air", "C_D0 in free air", true},
      {"inflated_diameter_ratio", "D_p/D_0", true},
      {"leak", "flow through the cloth/(U A)", true},
+     {"largest_lean", "largest lean, degrees"},
      {"opening_time", "opening time, s"},
      {"peak_line_force", "peak line force, N"},
      {"peak_line_force_time", "peak line force at, s"},
@@ -255,6 +257,20 @@ void describe_means(const FlowScene& scene, const run::History& history, std::si
   if (is_along_z(direction)) set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
 }
 
+/// Describes how far a canopy leans in rows. Warns of one that leans farther than its room in the core was
+/// checked for, and has none for that.
+void describe_lean(const FlowScene& scene, const run::History& history, std::size_t i,
+                   run::ResultDocument& result) {
+  if (history.empty() || scene.canopies[scene.owner_of(i)].payload.release) return;
+  const std::string group = "canopy_" + std::to_string(i);
+  const std::vector<double>& leans = history.at(group + "_lean");
+  const double largest = std::ranges::max(leans);
+  result.metrics.set(group, "largest_lean", largest);
+  if (!(largest > std::max(expected_lean, leans.front()))) return;
+  if (const std::string text = narrow_core_text(scene, i, largest, ", as it did in this run,"); !text.empty())
+    result.warnings.push_back(text);
+}
+
 }  // namespace
 
 void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run::History& history,
@@ -262,6 +278,7 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
   for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
     if (!scene.canopies[i].has_lines()) continue;
     describe_means(scene, history, i, result);
+    describe_lean(scene, history, i, result);
     const auto [force, time] = peaks.values().at(i);
     if (!(force > 0.0)) continue;
     const std::string group = "canopy_" + std::to_string(i);
