@@ -106,6 +106,20 @@ void note_short_wake(FlowScene& scene, std::size_t i) {
                                    rough_text(least), " m are two open diameters"));
 }
 
+/// Notes lines with which a flat canopy has more drag than published ones: docs/parachute-notebook.md, length
+/// of the lines.
+void note_long_lines(const Place& root, FlowScene& scene, std::size_t i) {
+  constexpr double longest = 0.95;  // diameters
+  const Canopy& canopy = scene.canopies[i];
+  const double ratio = canopy.lines.length / canopy.diameter;
+  const bool is_default = !root.at("canopy", i).given("lines.length");  // the next note is on these
+  if (is_default || canopy.kind != CanopyKind::flat_circular || ratio <= longest) return;
+  scene.notices.push_back(sentence(
+      element("canopy", i), ".lines.length: ", rough_text(ratio),
+      " diameters: such flat canopies sway here and have a drag coefficient of 0.9 and more, where 0.75 to "
+      "0.80 are published and lines of 0.7 to 0.8 diameters have 0.8"));
+}
+
 bool blows_along(const FlowScene& scene, std::size_t axis) {
   return constant_value(scene.velocity[axis]).value_or(0.0) != 0.0;
 }
@@ -221,6 +235,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
     note_short_wake(scene, i);
     if (const std::string text = narrow_core_text(scene, i, expected_lean); !text.empty())
       scene.notices.push_back(text);
+    note_long_lines(root, scene, i);
     note_defaults_of_another_canopy(root, scene, i);
   }
   note_wide_edges(scene, cells(coarsest));

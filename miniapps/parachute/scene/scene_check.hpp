@@ -51,7 +51,8 @@ void check_frame(const scene::Place& root, const FlowScene& scene);
 void check_method(const scene::Place& root, const FlowScene& scene);
 
 /// Notes canopies with lines whose drag and speed are not those in free air, or depend on the cells: a narrow
-/// or short domain, its sides, coarse cells, edges that act beyond the cloth, dimensions of another canopy.
+/// or short domain, its sides, coarse cells, edges that act beyond the cloth, long lines, dimensions of
+/// another canopy.
 void note_unfit_canopies(const scene::Place& root, FlowScene& scene);
 
 /// Sentence on a core that a canopy leaves once it leans by an angle about its payload, or about the middle

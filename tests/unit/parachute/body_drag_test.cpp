@@ -15,7 +15,7 @@ namespace {
 using fabric::Vector;
 using std::numbers::pi;
 
-const char* const sphere = R"(app = "parachute"
+const char* const sphere_in_air = R"(app = "parachute"
 [fluid]
 density = 1.25
 viscosity = 0.01
@@ -78,7 +78,7 @@ run::ResultDocument described(const FlowScene& scene, double noise) {
 }
 
 TEST(BodyDrag, IsTheMeanOfTheSecondHalfWithItsErrorBar) {
-  const SceneFile file(sphere);
+  const SceneFile file(sphere_in_air);
   const run::ResultDocument result = described(file.read(), 0.1);
   EXPECT_EQ(result.metrics.real("body_0", "from"), 2.0);
   EXPECT_NEAR(result.metrics.real("body_0", "frontal_area").value(), pi / 4.0, 1e-12) << "without retraction";
@@ -94,7 +94,7 @@ TEST(BodyDrag, IsTheMeanOfTheSecondHalfWithItsErrorBar) {
 }
 
 TEST(BodyDrag, NeedsASteadyStreamAndABodyAtRest) {
-  const SceneFile file(sphere);
+  const SceneFile file(sphere_in_air);
   const auto has_drag = [&](const std::vector<std::string>& sets) {
     return described(file.read(sets), 0.0).metrics.real("body_0", "drag_coefficient").has_value();
   };

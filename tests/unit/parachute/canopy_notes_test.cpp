@@ -94,7 +94,7 @@ TEST(CanopyNotes, NameDefaultsOfAC9OfAnotherDiameter) {
       own,
       "canopy[0] is 3 m wide, but has by default lines.length = 7 m of a C-9 of 8.534 m; in proportion "
       "it has lines.length = 2.46");
-  own.emplace_back("canopy[0].lines.length=7");
+  own.emplace_back("canopy[0].lines.length=2.5");
   EXPECT_TRUE(notes(own).empty());
 }
 
@@ -170,6 +170,14 @@ TEST(CanopyNotes, AStreamIntoClosedSides) {
   EXPECT_TRUE(std::ranges::any_of(notes({"fluid.velocity=[1,0,10]"}), [](const std::string& note) {
     return note.starts_with("grid.boundary: no air passes x_low and x_high");
   }));
+}
+
+TEST(CanopyNotes, LinesLongerThanPublishedDragIsFor) {
+  expect_note(
+      {"canopy[0].lines={length=8.6}"},
+      "canopy[0].lines.length: 1.01 diameters: such flat canopies sway here and have a drag coefficient "
+      "of 0.9 and more, where 0.75 to 0.80 are published and lines of 0.7 to 0.8 diameters have 0.8");
+  EXPECT_TRUE(notes({"canopy[0].lines={length=8.1}"}).empty());
 }
 
 TEST(CanopyNotes, SpeedsNearThatOfSoundInAirAndWaterAlone) {

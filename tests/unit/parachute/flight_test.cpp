@@ -122,9 +122,10 @@ TEST(Flight, WarnsOfALeanBeyondTheRoomInTheCore) {
   ASSERT_TRUE(scene.notices.empty()) << scene.notices.front();
   const auto warnings = [&](double lean) {
     run::ResultDocument result;
-    describe_flights(scene, peaks_of({}),
-                     history_of(scene, {{"canopy_0_lean", [&](double t) { return t > 0.5 && t < 1.0 ? lean : 3.0; }}}),
-                     result);
+    describe_flights(
+        scene, peaks_of({}),
+        history_of(scene, {{"canopy_0_lean", [&](double t) { return t > 0.5 && t < 1.0 ? lean : 3.0; }}}),
+        result);
     EXPECT_EQ(result.metrics.real("canopy_0", "largest_lean"), lean);
     return result.warnings;
   };
