@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "miniapps/parachute/scene/run_size.hpp"
 #include "miniapps/parachute/simulation/history_columns.hpp"
 #include "tests/support/held_canopy.hpp"
 
@@ -212,6 +213,15 @@ TEST(Drop, VelocityOfThePayloadIsThatOfItsCanopies) {
   const Sheets sheets = make_all_sheets({}, scene.canopies, 1.0, 1.0);
   EXPECT_EQ(sheets.velocities.front(), (fabric::Vector{0.0, 0.0, -4.0}));
   EXPECT_EQ(sheets.velocities.back(), (fabric::Vector{0.0, 0.0, -4.0})) << "along the wire";
+}
+
+TEST(Drop, ThatStartsFromRestIsEstimatedAtTheSpeedOfItsDescent) {
+  const SceneFile file;
+  const std::vector<std::string> sets = {falling[0], falling[1], "fluid.velocity=[0,0,0]"};
+  // 90 kg on 57 m^2 descend with 5.74 m/s; steps of half a cell of 0.4 m at 2.5 times that.
+  const double speed = std::sqrt(2.0 * 90.0 * 9.81 / (0.75 * 1.25 * nominal));
+  EXPECT_EQ(run_size(file.read(sets)).steps, std::ceil(4.0 * 2.5 * speed / (0.5 * 0.4)));
+  EXPECT_NE(run_size_report(file.read(sets)).find("the speed of the start or the descent"), std::string::npos);
 }
 
 TEST(Drop, HasATouchDown) {
