@@ -84,18 +84,6 @@ double inversion_of(const CanopyRows& rows, const fabric::Parameters& sheets,
              : static_cast<double>(inverted) / static_cast<double>(rows.suspension.size());
 }
 
-/// `CanopyMeasures::lean`.
-double lean_of(const CanopyRows& rows, const fabric::Mesh& mesh, const std::vector<Vector>& positions) {
-  if (rows.suspension.empty() || !rows.payload) return 0.0;
-  Vector axis{};
-  for (const int line : rows.suspension) {
-    const auto [one, other] = mesh.lines[static_cast<std::size_t>(line)];
-    const auto skirt = static_cast<std::size_t>(static_cast<std::size_t>(one) < rows.cloth_end ? one : other);
-    for (std::size_t k = 0; k < 3; ++k) axis[k] += positions[skirt][k] - positions[*rows.payload][k];
-  }
-  return 180.0 / std::numbers::pi * std::atan2(std::hypot(axis[0], axis[1]), std::abs(axis[2]));
-}
-
 /// Squares of the plane of x and y whose centres lie in the projections of triangles.
 class Raster {
  public:
@@ -167,6 +155,17 @@ double leak_through(std::span<const std::array<int, 3>> triangles, const SheetSt
     }
   }
   return leak;
+}
+
+double lean_of(const CanopyRows& rows, const fabric::Mesh& mesh, std::span<const Vector> positions) {
+  if (rows.suspension.empty() || !rows.payload) return 0.0;
+  Vector axis{};
+  for (const int line : rows.suspension) {
+    const auto [one, other] = mesh.lines[static_cast<std::size_t>(line)];
+    const auto skirt = static_cast<std::size_t>(static_cast<std::size_t>(one) < rows.cloth_end ? one : other);
+    for (std::size_t k = 0; k < 3; ++k) axis[k] += positions[skirt][k] - positions[*rows.payload][k];
+  }
+  return 180.0 / std::numbers::pi * std::atan2(std::hypot(axis[0], axis[1]), std::abs(axis[2]));
 }
 
 CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets, const SheetState& state,

@@ -44,6 +44,10 @@ struct CanopyMeasures {
 /// positive. Does not throw.
 [[nodiscard]] double leak_through(std::span<const std::array<int, 3>> triangles, const SheetState& state);
 
+/// `CanopyMeasures::lean`. Does not throw.
+[[nodiscard]] double lean_of(const CanopyRows& rows, const fabric::Mesh& mesh,
+                             std::span<const fabric::Vector> positions);
+
 /// Measures of a canopy in the mesh of all sheets. `released`: its payload has been released. Throws only
 /// std::bad_alloc.
 [[nodiscard]] CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,

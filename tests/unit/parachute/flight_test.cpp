@@ -221,7 +221,8 @@ TEST(Drop, ThatStartsFromRestIsEstimatedAtTheSpeedOfItsDescent) {
   // 90 kg on 57 m^2 descend with 5.74 m/s; steps of half a cell of 0.4 m at 2.5 times that.
   const double speed = std::sqrt(2.0 * 90.0 * 9.81 / (0.75 * 1.25 * nominal));
   EXPECT_EQ(run_size(file.read(sets)).steps, std::ceil(4.0 * 2.5 * speed / (0.5 * 0.4)));
-  EXPECT_NE(run_size_report(file.read(sets)).find("the speed of the start or the descent"), std::string::npos);
+  EXPECT_NE(run_size_report(file.read(sets)).find("the speed of the start or the descent"),
+            std::string::npos);
 }
 
 TEST(Drop, HasATouchDown) {
