@@ -74,7 +74,7 @@ void note_unfollowed_glide(FlowScene& scene) {
 void note_coarse_cells(FlowScene& scene, std::size_t i) {
   const double diameter = inflated_diameter(scene.canopies[i]),
                cells = cells_across(scene.parameters, scene.canopies[i]);
-  if (cells >= least_cells) return;
+  if (cells >= 0.996 * least_cells) return;  // three digits of them are those of the least number
   scene.notices.push_back(sentence(
       "grid: ", rough_text(cells), " cells across the ", rough_text(diameter), " m of ", element("canopy", i),
       " once it is open are too few for forces that hardly depend on them; cells of ",

@@ -60,6 +60,13 @@ TEST(CanopyNotes, NameTheWidthOfCellsThatACanopyNeeds) {
               "hardly depend on them; cells of 0.476 m would be 12");
 }
 
+TEST(CanopyNotes, CellsThatRoundToTheLeastNumberSuffice) {
+  const std::string side = "[-17.925,17.925]";
+  EXPECT_TRUE(
+      notes({"grid.cells=[75,75,75]", "grid.domain=[" + side + "," + side + "," + side + "]"}).empty())
+      << "11.96 cells";
+}
+
 TEST(CanopyNotes, NameSidesThatHoldTheAir) {
   expect_note(
       {"grid.boundary.x=\"wall\""},
