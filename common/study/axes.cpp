@@ -31,11 +31,15 @@ std::vector<std::string> Axes::of(const std::string& name) const {
   return found == words.end() ? std::vector<std::string>{""} : found->second;
 }
 
-Axes parse_axes(const std::string& text, const MeshAxis& mesh, const std::vector<WordAxis>& words) {
+std::vector<std::string> names_of(const std::vector<WordAxis>& words) {
   std::vector<std::string> names = {"meshes"};
   for (const WordAxis& axis : words) names.push_back(axis.name);
+  return names;
+}
+
+Axes parse_axes(const std::string& text, const MeshAxis& mesh, const std::vector<WordAxis>& words) {
   Axes axes;
-  for (const AxisText& axis : axis_texts(text, names)) {
+  for (const AxisText& axis : axis_texts(text, names_of(words))) {
     const std::vector<std::string> values = split(axis.values, ':');
     if (axis.name == "meshes")
       axes.meshes = meshes(values, mesh);

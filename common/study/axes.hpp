@@ -29,6 +29,9 @@ struct Axes {
   [[nodiscard]] std::vector<std::string> of(const std::string& name) const;
 };
 
+/// Names of the axes of `parse_axes`. Throws only std::bad_alloc.
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<WordAxis>& words);
+
 /// Parses `meshes=100:800,schemes=js:z,...`. Two meshes are the ends of a doubling sequence; three or more
 /// are taken literally. Throws `Failure` (usage).
 Axes parse_axes(const std::string& text, const MeshAxis& mesh, const std::vector<WordAxis>& words);

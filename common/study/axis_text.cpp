@@ -1,26 +1,27 @@
 #include "common/study/axis_text.hpp"
 
 #include <algorithm>
-#include <sstream>
-
 #include "common/program/failure.hpp"
+#include "common/scene/nearest.hpp"
 
 namespace drogue::study {
 
 void refuse(const std::string& what) { throw Failure(ExitCode::usage, "--study: " + what); }
 
 std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  std::vector<std::string> parts = {""};
+  for (const char character : text)
+    if (character == separator)
+      parts.emplace_back();
+    else
+      parts.back() += character;
   return parts;
 }
 
 void require_one_of(const std::string& value, const std::vector<std::string>& names) {
   if (std::ranges::find(names, value) != names.end()) return;
-  std::string listed;
-  for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
-  refuse("'" + value + "' is not one of " + listed);
+  refuse((value.empty() ? "a part is empty" : "unknown name '" + value + "'") + "; " +
+         scene::suggestion(value, names));
 }
 
 std::vector<AxisText> axis_texts(const std::string& text, const std::vector<std::string>& names) {

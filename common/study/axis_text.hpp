@@ -11,7 +11,7 @@ namespace drogue::study {
 /// Throws `Failure` (usage) with a sentence on the text of `--study`.
 [[noreturn]] void refuse(const std::string& what);
 
-/// Parts of a text between separators. Throws only std::bad_alloc.
+/// Parts of a text between separators, empty ones too. Throws only std::bad_alloc.
 [[nodiscard]] std::vector<std::string> split(const std::string& text, char separator);
 
 /// Number that a whole text is; none if it is not one. Does not throw.
@@ -23,7 +23,7 @@ template <class Number>
   return value;
 }
 
-/// Throws `Failure` (usage) unless a value is one of some names.
+/// Throws `Failure` (usage), which names the nearest one, unless a value is one of some names.
 void require_one_of(const std::string& value, const std::vector<std::string>& names);
 
 /// An axis of `--study`: `name=values`.

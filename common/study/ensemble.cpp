@@ -51,14 +51,15 @@ double real_at(const Json& json, const std::string& name) {
 /// Numbers of a group that are results of the run, with their errors.
 void add_group(const std::string& group, const Json& values, std::vector<Quantity>& quantities) {
   for (const auto& [name, value] : values.items())
-    if (value.is_number() && name != "from" && !name.ends_with("_error"))
+    if (value.is_number() && name != "from" && name != "frontal_area" && !name.ends_with("_error"))
       quantities.push_back({group + "." + name, value.get<double>(), real_at(values, name + "_error")});
 }
 
 std::vector<Quantity> quantities_of(const Json& json) {
   std::vector<Quantity> quantities;
   for (const auto& [group, values] : json.items())
-    if (group.starts_with("canopy_") && values.is_object()) add_group(group, values, quantities);
+    if ((group.starts_with("canopy_") || group.starts_with("body_")) && values.is_object())
+      add_group(group, values, quantities);
   if (const auto checks = json.find("checks"); checks != json.end())
     for (const Json& check : *checks)
       if (const double measured = real_at(check, "measured"); std::isfinite(measured))
@@ -103,10 +104,16 @@ std::string key_of(std::string name) {
 
 }  // namespace
 
-bool is_ensemble(const std::string& text) {
-  return std::ranges::any_of(split(text, ','), [](const std::string& part) {
-    return std::ranges::find(axis_names, part.substr(0, part.find('='))) != axis_names.end();
-  });
+bool is_ensemble(const std::string& text, const std::vector<std::string>& others) {
+  std::vector<std::string> all = axis_names;
+  all.insert(all.end(), others.begin(), others.end());
+  bool is_one = false;
+  for (const std::string& part : split(text, ',')) {
+    const std::string name = part.substr(0, part.find('='));
+    require_one_of(name, all);
+    is_one = is_one || std::ranges::find(axis_names, name) != axis_names.end();
+  }
+  return is_one;
 }
 
 EnsembleAxes parse_ensemble(const std::string& text) {

@@ -19,8 +19,9 @@ struct EnsembleAxes {
   int jobs = 0;                       ///< runs at once; 0: as many as suit the backend
 };
 
-/// True if `--study` names one of these axes. Does not throw.
-[[nodiscard]] bool is_ensemble(const std::string& text);
+/// True if `--study` names one of these axes. Throws `Failure` (usage) for a name that is neither one of them
+/// nor among `others`, the axes of the other studies of a program.
+[[nodiscard]] bool is_ensemble(const std::string& text, const std::vector<std::string>& others);
 
 /// Parses them. Throws `Failure` (usage).
 [[nodiscard]] EnsembleAxes parse_ensemble(const std::string& text);
@@ -50,9 +51,9 @@ struct Member {
   }
 };
 
-/// Reads how a run ended from its result.json: its quantities are the numbers of the groups `canopy_i`, and
-/// what checks measured. Without such a file, `exit_code` of the process and `log`, what it printed, describe
-/// a failure.
+/// Reads how a run ended from its result.json: its quantities are the numbers of the groups `canopy_i` and
+/// `body_i`, and what checks measured. Without such a file, `exit_code` of the process and `log`, what it
+/// printed, describe a failure.
 void read_member(const std::filesystem::path& result, int exit_code, const std::string& log, Member& member);
 
 /// A quantity of all runs that have it.

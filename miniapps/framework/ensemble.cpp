@@ -101,6 +101,8 @@ class EnsembleStudy {
   void finish(std::size_t i, int code) {
     study::Member& member = _ensemble.runs[i].member;
     study::read_member(folder_of(member) / "result.json", code, last_line(log_of(member)), member);
+    // That of the run speaks of --restart, which continues no study.
+    if (member.code == ExitCode::interrupted) member.message.clear();
     std::error_code ignored;
     if (member.message.empty() || std::filesystem::file_size(log_of(member), ignored) == 0)
       std::filesystem::remove(log_of(member), ignored);

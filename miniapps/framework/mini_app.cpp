@@ -57,22 +57,24 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
   run::h5::open_library();
   if (options.study.empty() && !options.check && !options.print_scene)
     return run_on_all_ranks(app, options, folder);
+  if (!options.study.empty() && !app.study) throw Failure(ExitCode::usage, "this program has no --study");
   const std::filesystem::path file = scene::find_scene(options.scene, folder);
   if (options.check || options.print_scene) {
     const std::unique_ptr<Scene> scene = app.read(file, options.set, options.baseline);
+    const std::string study = options.study.empty() ? "" : app.check_study(options, file);
     if (options.print_scene) std::cout << scene->print();
     if (options.check && !options.quiet) {
       for (const std::string& notice : scene->notices()) print_notice(app.program(), notice);
-      std::cout << scene->check_report();
-      if (app.study_report && !options.study.empty()) std::cout << app.study_report(options, file);
+      std::cout << scene->check_report() << study;
     }
     return ExitCode::ok;
   }
   install_signal_handlers();
-  if (!app.study) throw Failure(ExitCode::usage, "this program has no --study");
   const ExitCode code = app.study(options, file);
   if (code == ExitCode::interrupted)
-    print_notice(app.program(), "interrupted by a signal; the tables hold the finished points");
+    print_notice(app.program(),
+                 "interrupted by a signal; the tables hold the finished points, and "
+                 "--overwrite begins the study anew");
   return code;
 }
 

@@ -27,8 +27,8 @@ struct MiniApp {
   /// Runs `--study` on a scene file; empty: the program has no studies.
   std::function<ExitCode(const MiniAppOptions& options, const std::filesystem::path& file)> study = {};
 
-  /// Text that `--check` prints on a `--study`; empty: none.
-  std::function<std::string(const MiniAppOptions& options, const std::filesystem::path& file)> study_report =
+  /// Refuses what `study` does before its first run, and returns what `--check` prints on it.
+  std::function<std::string(const MiniAppOptions& options, const std::filesystem::path& file)> check_study =
       {};
 
   bool runs_on_ranks = false;  ///< scenes run on several ranks of MPI, without studies

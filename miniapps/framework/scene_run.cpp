@@ -233,10 +233,16 @@ class SceneRun {
       std::printf("  %-*s %.4g  (tolerance %.4g)  %s%s\n", static_cast<int>(width), check.name.c_str(),
                   check.value, check.tolerance, check.passed ? "passed" : "FAILED",
                   check.measurement ? (": " + check.measured()).c_str() : "");
-    if (_result.checks.empty() && _result.exit_code == ExitCode::ok)
-      std::printf("  nothing verified: the scene has no checks in [verify]\n");
+    if (_result.checks.empty() && _result.exit_code == ExitCode::ok) print_unverified();
     if (_app.report) std::printf("%s", _app.report(_result).c_str());
     std::printf("files in %s\n", _out.string().c_str());
+  }
+
+  /// Errors that no check bounds.
+  void print_unverified() const {
+    for (const auto& [name, error] : _result.errors) std::printf("  %-16s %.4g\n", name.c_str(), error);
+    std::printf("  nothing verified: the scene has no %s in [verify]\n",
+                _result.errors.empty() ? "checks" : "bound of these errors");
   }
 
   const MiniApp& _app;

@@ -40,6 +40,7 @@ framework::MiniApp mini_app() {
   app.has_baseline = true;
   app.read = read;
   app.study = run_study;
+  app.check_study = check_study;
   app.summary = limiter_summary;
   set_limiter_metrics({}, app.metrics);
   return app;

@@ -77,7 +77,7 @@ framework::MiniApp mini_app() {
   app.has_baseline = true;
   app.read = read;
   app.study = run_study;
-  app.study_report = ensemble_report;
+  app.check_study = check_study;
   app.report = flight_report;
   app.runs_on_ranks = true;
   framework::set_no_limiter(app.metrics);

@@ -46,6 +46,7 @@ framework::MiniApp mini_app() {
     return std::make_unique<RunnableScene>(read_springs_scene(file, assignments), declare_springs_scene);
   };
   app.study = run_study;
+  app.check_study = check_study;
   app.summary = energy_summary;
   app.metrics.add_group("energy");
   framework::set_no_limiter(app.metrics);

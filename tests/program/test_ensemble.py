@@ -75,18 +75,29 @@ class Ensemble(gas_program.GasTest):
         self.study(0, lists, "--quiet", sets=SHORT)
         return {row["folder"]: int(row["steps"]) for row in self.rows()}
 
-    def test_ctrl_c_keeps_finished_runs(self):
-        line = gas_program.arguments(self.write(parachute_program.CANOPY), "--backend", "serial", "--study", "ensemble=40,jobs=2", "--out", "study",
-                                     sets=SHORT, program=self.program)
+    def interrupted(self, lists, file, sets):
+        """What a study prints that a signal ends once a file of it exists."""
+        line = gas_program.arguments(self.write(parachute_program.CANOPY), "--backend", "serial", "--study", lists, "--out", "study",
+                                     sets=sets, program=self.program)
         process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        table = self.folder / "study/runs.csv"
         limit = time.monotonic() + 300
-        while not table.exists() and time.monotonic() < limit:
+        while not (self.folder / "study" / file).exists() and time.monotonic() < limit:
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=120)
         self.assertEqual(130, process.returncode, err)
-        self.assertRegex(err, r"interrupted by a signal; the tables hold the finished points\n$")
+        return out, err
+
+    def test_ctrl_c_in_a_run_speaks_of_no_restart(self):
+        out, err = self.interrupted("ensemble=2,jobs=1", "cells-1/seed-1/history.csv", [*SHORT, "run.end_time=100"])
+        self.assertRegex(out, r"^cells-1/seed-1 +1 of 2  interrupted, \d+ steps in \S+ s\n")
+        self.assertNotIn("restart", out + err)
+        self.assertIn("--overwrite begins the study anew", err)
+        self.assertEqual([], list((self.folder / "study").rglob("*.log")), "no run was wrong")
+
+    def test_ctrl_c_keeps_finished_runs(self):
+        out, err = self.interrupted("ensemble=40,jobs=2", "runs.csv", SHORT)
+        self.assertRegex(err, r"interrupted by a signal; the tables hold the finished points, and --overwrite begins the study anew\n$")
         study = self.result("study")
         self.assertEqual(("interrupted", 0, 40), (study["status"], study["study"]["failed"], study["study"]["runs"]))
         finished = study["study"]["finished"]
@@ -101,6 +112,8 @@ history = [{ column = "body_0_force_x", statistic = "mean", from = 0.1, value = 
 """)
         self.study(0, "ensemble=2,cells=1:1.5", "--quiet", sets=["output.history_every=1"], scene=scene)
         study = self.result("study")["study"]
+        self.assertNotIn("body_0_frontal_area", study)
+        self.assertGreater(study["body_0_drag_coefficient_deviation"], 0.0)
         self.assertGreater(study["body_0_force_x_mean"], 0.0)
         self.assertLess(study["body_0_force_x_mean_deviation"], 0.01 * study["body_0_force_x_mean"])
         self.assertGreater(study["body_0_force_x_mean_deviation"], 0.0, "the runs differ")
@@ -113,11 +126,13 @@ history = [{ column = "body_0_force_x", statistic = "mean", from = 0.1, value = 
         self.assertFalse((self.folder / "study").exists())
 
     def test_reports_usage_errors(self):
-        for lists, words in (("ensemble=0", "ensemble=0 is not an integer"), ("ensemble=2,meshes=8", "'meshes' is not one of"),
-                             ("cells=0.1:1", "grid.cells")):
-            with self.subTest(lists):
-                self.assertIn(words, self.study(2, lists).stderr)
-                self.assertFalse((self.folder / "study").exists())
+        for lists, words in (("ensemble=0", "ensemble=0 is not an integer"), ("ensemble=2,meshes=8", "unknown name 'meshes'"),
+                             ("cells=0.1:1", "grid.cells"), ("ensembel=2", 'did you mean "ensemble"?'), ("ensemble=2,", "a part is empty"),
+                             ("meshes=8:16", "verify.exact")):
+            for check in ((), ("--check",), ("--check", "--quiet")):
+                with self.subTest(lists, check=check):
+                    self.assertIn(words, self.study(2, lists, *check).stderr)
+                    self.assertFalse((self.folder / "study").exists())
 
     def test_an_existing_study_is_kept(self):
         self.study(0, "ensemble=1", "--quiet", sets=SHORT)

@@ -60,7 +60,7 @@ class Grid(parachute_program.FlowTest):
         free = CORE.replace("fixed = true", "fixed = false").replace("end_time = 0.2", "end_time = 5").replace("times = [0.1, 0.2]", "times = [5]")
         process = self.expect(4, self.write(free), *QUIET, "--out", "out")
         self.assertRegex(process.stderr, r"canopy\[0\] leaves the core of the grid: its (cloth|payload) at .* m comes closer than two cells to "
-                                         r"its end towards z_high after step \d+, t = \S+ s; a larger grid\.core or a shorter run\.end_time")
+                                         r"its end towards z_high after step \d+, t = \S+ s; a larger grid\.core or a shorter run\.end_time may save the run; it leans by \S+ degrees")
         rows = self.history("out")
         self.assertLess(rows["canopy_0_payload_z"][-1], 3.4)
         outside = self.expect(3, self.write(CORE), "--check", sets=["canopy[0].centre=[0,0,-0.9]"]).stderr

@@ -70,6 +70,15 @@ class Result(gas_program.GasTest):
         self.assertNotIn("nothing verified", self.expect(0, "sod", "--backend", "serial", "--out", "verified", sets=COARSE).stdout)
         self.assertEqual("", self.expect(0, scene, "--backend", "serial", "--overwrite", "--quiet").stdout)
 
+    def test_errors_without_bounds_are_printed(self):
+        scene = (gas_program.SOURCE / "miniapps/gas/scenes/sod.toml").read_text(encoding="utf-8")
+        scene = self.write(scene[:scene.index("[verify]")] + '[verify]\nexact = "riemann"\n')
+        text = self.expect(0, scene, "--backend", "serial", "--out", "unbounded", sets=["mesh.cells=50"]).stdout
+        errors = self.result("unbounded")["errors"]
+        self.assertIn("l1_density", errors)
+        self.assertRegex(text, "\n".join(rf"  {name} +{errors[name]:.4g}" for name in sorted(errors))
+                         + r"\n  nothing verified: the scene has no bound of these errors in \[verify\]\n")
+
     def test_failures_state_code_and_status(self):
         self.ended(3, "invalid", sets=["mesh.cells=7"])
         reported = self.ended(4, "numerical-failure", "--overwrite", sets=[*COARSE, "run.max_steps=5"])

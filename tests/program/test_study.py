@@ -30,7 +30,7 @@ class StudyTest(gas_program.GasTest):
         process.send_signal(signal.SIGINT)
         text = process.communicate(timeout=60)
         self.assertEqual(130, process.returncode, text)
-        self.assertRegex(text[1], r"interrupted by a signal; the tables hold the finished points\n$")
+        self.assertRegex(text[1], r"interrupted by a signal; the tables hold the finished points, and --overwrite begins the study anew\n$")
 
 
 class GasStudy(StudyTest):
@@ -81,6 +81,14 @@ class GasStudy(StudyTest):
 
     def test_rejects_a_scene_without_exact_solution(self):
         self.assertIn("[verify] exact", self.study(2, "sedov", "meshes=101:201").stderr)
+
+    def test_check_refuses_what_a_study_does(self):
+        for lists, words in (("nonsense", "unknown name 'nonsense'; valid names are meshes, schemes"), ("meshes=50,", "a part is empty"),
+                             ("meshes=50:", "'' is not an integer"), ("scheme=js", 'did you mean "schemes"?'), ("schemes=jz", "unknown name 'jz'")):
+            for check in ((), ("--check",), ("--check", "--quiet"), ("--print-scene",)):
+                with self.subTest(lists, check=check):
+                    self.assertIn(words, self.study(2, "sod", lists, *check).stderr)
+        self.assertIn("verify.reference.cells", self.study(3, "shu-osher", "meshes=100:12800", "--check").stderr)
 
     def test_rejects_an_existing_study(self):
         self.study(0, "sod", "meshes=50", "--quiet")

@@ -11,6 +11,13 @@ double steps_to(double left, double dt) { return std::ceil((1.0 - 1e-9) * left /
 
 }  // namespace
 
+BlockPlan::BlockPlan(const Parameters& p)
+    : _fixed_dt(p.flow.fixed_dt), _initial_cloth_dt(p.fabric.dt), _batch(p.longest_batch, block_steps) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    _follows_a_fall = _follows_a_fall ||
+                      (!p.follow.vertices.empty() && p.follow.axes[axis] && p.fabric.gravity[axis] != 0.0);
+}
+
 double BlockPlan::longest_dt(double admissible) const {
   if (_fixed_dt > 0.0) return _fixed_dt;
   const bool has_predecessor = _block.dt > 0.0 && _block.cloth_step - _block.since > _block.substeps;
@@ -22,10 +29,16 @@ double BlockPlan::next_dt(double now, double target, double admissible) const {
   return !(_fixed_dt > 0.0) && needed <= 2.0 * block_steps ? left / std::max(1.0, needed) : dt;
 }
 
+std::int64_t BlockPlan::steps_from(double now, double dt) const {
+  constexpr double largest_part = 1.0 / 16.0;
+  if (!_follows_a_fall || now * largest_part >= dt * static_cast<double>(block_steps)) return block_steps;
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(now * largest_part / dt));
+}
+
 void BlockPlan::begin(const flow::Progress& now, double dt, std::int64_t substeps) {
   _block.dt = dt;
   _block.substeps = substeps;
-  _block.end = now.step + block_steps;
+  _block.end = now.step + steps_from(now.time, dt);
   count_cloth_time_from(now.time);
 }
 

@@ -226,7 +226,7 @@ void CoupledSolver<ExecutionSpace>::set_frame(const FrameMotion& frame) {
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::move_frame(const flow::Progress& now) {
   const double dt = _plan.longest_dt(_flow.largest_dt(now, BlockPlan::block_steps));
-  const double duration = dt * static_cast<double>(BlockPlan::block_steps);
+  const double duration = dt * static_cast<double>(_plan.steps_from(now.time, dt));
   _flow.change_frame(_frame.begin_block(_space, _fabric.state(), now.time, duration).velocity);
 }
 

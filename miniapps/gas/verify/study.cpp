@@ -51,6 +51,17 @@ std::vector<std::vector<std::string>> assignments(const study::Axes& axes, const
   return points;
 }
 
+/// Scenes of all points: an invalid one must not end a study that has run for hours.
+std::vector<GasScene> scenes_of(const MiniAppOptions& options, const std::filesystem::path& file,
+                                const GasScene& base) {
+  const study::Axes axes = parse(options.study);
+  if (!base.verify.exact)
+    throw Failure(ExitCode::usage, "--study needs a scene with [verify] exact, to measure errors against");
+  std::vector<GasScene> scenes;
+  for (const auto& sets : assignments(axes, options)) scenes.push_back(read_gas_scene(file, sets));
+  return scenes;
+}
+
 study::StudyRow row_of(const gas::Parameters& p, framework::RepeatedRun run) {
   const SchemeNames names = scheme_names(p);
   study::StudyRow row = framework::study_row(std::move(run));
@@ -95,13 +106,14 @@ framework::RepeatedRun run_repeatedly(const GasScene& scene, device::Backend bac
   });
 }
 
+std::string check_study(const MiniAppOptions& options, const std::filesystem::path& file) {
+  (void)scenes_of(options, file, read_gas_scene(file, options.set));
+  return {};
+}
+
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
-  const study::Axes axes = parse(options.study);
   const GasScene base = read_gas_scene(file, options.set);
-  if (!base.verify.exact)
-    throw Failure(ExitCode::usage, "--study needs a scene with [verify] exact, to measure errors against");
-  std::vector<GasScene> scenes;  // read all first: an invalid one must not end a study that has run for hours
-  for (const auto& sets : assignments(axes, options)) scenes.push_back(read_gas_scene(file, sets));
+  const std::vector<GasScene> scenes = scenes_of(options, file, base);
   int threads = 1;
   for (const GasScene& scene : scenes) threads = std::max(threads, gas::host_threads(scene.parameters));
   framework::StudySession session(options, "drogue-gas", base.name, print_gas_scene(base), threads);

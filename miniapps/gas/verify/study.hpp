@@ -21,6 +21,10 @@ struct SchemeNames {
 framework::RepeatedRun run_repeatedly(const GasScene& scene, device::Backend backend,
                                       const ExactSolution& exact, const study::Repeats& repeats);
 
+/// Refuses what `run_study` does before its first run; returns what `--check` prints on the study. Throws
+/// `Failure`: usage, invalid_scene.
+std::string check_study(const MiniAppOptions& options, const std::filesystem::path& file);
+
 /// Runs the scene over the product of the axes of `--study`, and writes study.csv, study.json and their
 /// picture. Returns `ok` or `interrupted`. Throws `Failure`: usage for an invalid axis, otherwise like a run.
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file);

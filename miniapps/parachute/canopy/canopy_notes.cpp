@@ -74,7 +74,7 @@ void note_unfollowed_glide(FlowScene& scene) {
 void note_coarse_cells(FlowScene& scene, std::size_t i) {
   const double diameter = inflated_diameter(scene.canopies[i]),
                cells = cells_across(scene.parameters, scene.canopies[i]);
-  if (cells >= least_cells) return;
+  if (cells >= 0.996 * least_cells) return;  // three digits of them are those of the least number
   scene.notices.push_back(sentence(
       "grid: ", rough_text(cells), " cells across the ", rough_text(diameter), " m of ", element("canopy", i),
       " once it is open are too few for forces that hardly depend on them; cells of ",
@@ -106,29 +106,18 @@ void note_short_wake(FlowScene& scene, std::size_t i) {
                                    rough_text(least), " m are two open diameters"));
 }
 
-/// Notes a core that a canopy leaves once it leans by 30 degrees about its payload, or about the middle
-/// between both where the grid follows that.
-void note_narrow_core(FlowScene& scene, std::size_t i) {
+/// Notes lines with which a flat canopy has more drag than published ones: docs/parachute-notebook.md, length
+/// of the lines.
+void note_long_lines(const Place& root, FlowScene& scene, std::size_t i) {
+  constexpr double longest = 0.95;  // diameters
   const Canopy& canopy = scene.canopies[i];
-  const flow::Parameters& p = scene.parameters;
-  const double lean = pi / 6.0, radius = 0.5 * inflated_diameter(canopy),
-               along = std::sqrt(std::max(0.0, std::pow(canopy.lines.length, 2) - radius * radius)) +
-                       (canopy.riser ? canopy.riser->length : 0.0);
-  const fabric::Vector payload = payload_place(canopy);
-  for (const std::size_t axis : {0U, 1U}) {
-    if (!flow::is_stretched(p, axis)) continue;
-    const bool follows = scene.frame == Frame::follow && scene.open_axes()[axis];
-    const auto [low, high] = sheet_extent(p, axis);
-    const double pivot = follows ? 0.5 * (payload[axis] + canopy.centre[axis]) : payload[axis],
-                 room = std::min(pivot - low, high - pivot) - core_width(p, axis),
-                 needed = (follows ? 0.5 : 1.0) * along * std::sin(lean) + radius * std::cos(lean);
-    if (room >= needed) continue;
-    scene.notices.push_back(
-        sentence(scene.faces ? "grid.faces leave " : "grid.core leaves ", element("canopy", i), " ",
-                 rough_text(room), " m along ", axis_names[axis], ", and one that leans by 30 degrees needs ",
-                 rough_text(needed), " m to each side: it may leave the core, which ends the run"));
-    return;
-  }
+  const double ratio = canopy.lines.length / canopy.diameter;
+  const bool is_default = !root.at("canopy", i).given("lines.length");  // the next note is on these
+  if (is_default || canopy.kind != CanopyKind::flat_circular || ratio <= longest) return;
+  scene.notices.push_back(sentence(
+      element("canopy", i), ".lines.length: ", rough_text(ratio),
+      " diameters: such flat canopies sway here and have a drag coefficient of 0.9 and more, where 0.75 to "
+      "0.80 are published and lines of 0.7 to 0.8 diameters have 0.8"));
 }
 
 bool blows_along(const FlowScene& scene, std::size_t axis) {
@@ -206,6 +195,29 @@ void note_defaults_of_another_canopy(const Place& root, FlowScene& scene, std::s
 
 }  // namespace
 
+std::string narrow_core_text(const FlowScene& scene, std::size_t i, double degrees, const char* when) {
+  const Canopy& canopy = scene.canopies[i];
+  const flow::Parameters& p = scene.parameters;
+  const double lean = degrees * pi / 180.0, radius = 0.5 * inflated_diameter(canopy),
+               along = std::sqrt(std::max(0.0, std::pow(canopy.lines.length, 2) - radius * radius)) +
+                       (canopy.riser ? canopy.riser->length : 0.0);
+  const fabric::Vector payload = payload_place(canopy);
+  for (const std::size_t axis : {0U, 1U}) {
+    if (!flow::is_stretched(p, axis)) continue;
+    const bool follows = scene.frame == Frame::follow && scene.open_axes()[axis];
+    const auto [low, high] = sheet_extent(p, axis);
+    const double pivot = follows ? 0.5 * (payload[axis] + canopy.centre[axis]) : payload[axis],
+                 room = std::min(pivot - low, high - pivot) - core_width(p, axis),
+                 needed = (follows ? 0.5 : 1.0) * along * std::sin(lean) + radius * std::cos(lean);
+    if (room >= needed) continue;
+    return sentence(scene.faces ? "grid.faces leave " : "grid.core leaves ", element("canopy", i), " ",
+                    rough_text(room), " m along ", axis_names[axis], ", and one that leans by ",
+                    rough_text(degrees), " degrees", when, " needs ", rough_text(needed),
+                    " m to each side: it may leave the core, which ends the run");
+  }
+  return {};
+}
+
 void note_unfit_canopies(const Place& root, FlowScene& scene) {
   std::vector<std::size_t> flying;
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
@@ -221,7 +233,9 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
   for (const std::size_t i : flying) {
     note_axis_across_the_air(scene, i);
     note_short_wake(scene, i);
-    note_narrow_core(scene, i);
+    if (const std::string text = narrow_core_text(scene, i, expected_lean); !text.empty())
+      scene.notices.push_back(text);
+    note_long_lines(root, scene, i);
     note_defaults_of_another_canopy(root, scene, i);
   }
   note_wide_edges(scene, cells(coarsest));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "kernels/mesh/edges.hpp"
 
@@ -156,6 +157,17 @@ double leak_through(std::span<const std::array<int, 3>> triangles, const SheetSt
   return leak;
 }
 
+double lean_of(const CanopyRows& rows, const fabric::Mesh& mesh, std::span<const Vector> positions) {
+  if (rows.suspension.empty() || !rows.payload) return 0.0;
+  Vector axis{};
+  for (const int line : rows.suspension) {
+    const auto [one, other] = mesh.lines[static_cast<std::size_t>(line)];
+    const auto skirt = static_cast<std::size_t>(static_cast<std::size_t>(one) < rows.cloth_end ? one : other);
+    for (std::size_t k = 0; k < 3; ++k) axis[k] += positions[skirt][k] - positions[*rows.payload][k];
+  }
+  return 180.0 / std::numbers::pi * std::atan2(std::hypot(axis[0], axis[1]), std::abs(axis[2]));
+}
+
 CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets, const SheetState& state,
                        bool released) {
   const fabric::Mesh& mesh = sheets.mesh;
@@ -185,6 +197,7 @@ CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
       result.largest_strain = std::max(result.largest_strain, strain);
     }
   result.inversion = inversion_of(rows, sheets, state.positions);
+  result.lean = lean_of(rows, mesh, state.positions);
   return result;
 }
 

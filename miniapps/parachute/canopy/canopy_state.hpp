@@ -30,6 +30,8 @@ struct CanopyMeasures {
   /// inwards, to a quarter of the way from the centre of mass of the cloth to the point where the lines meet:
   /// a place within an open canopy, and below a flat one. 0 without lines.
   double inversion = 0.0;
+  double lean =
+      0.0;  ///< angle between z and the axis from the payload to the skirt, degrees; 0 without lines
 };
 
 /// Area of the shadow that triangles cast along z, m^2, counted once where they overlap: by the centres of
@@ -41,6 +43,10 @@ struct CanopyMeasures {
 /// linear within each triangle, along their normals. From the inside of a canopy as constructed it is
 /// positive. Does not throw.
 [[nodiscard]] double leak_through(std::span<const std::array<int, 3>> triangles, const SheetState& state);
+
+/// `CanopyMeasures::lean`. Does not throw.
+[[nodiscard]] double lean_of(const CanopyRows& rows, const fabric::Mesh& mesh,
+                             std::span<const fabric::Vector> positions);
 
 /// Measures of a canopy in the mesh of all sheets. `released`: its payload has been released. Throws only
 /// std::bad_alloc.

@@ -49,6 +49,22 @@ double speed_ratio(const FlowScene& scene) {
   return std::ranges::any_of(scene.canopies, &Canopy::has_lines) ? 2.5 : 1.0;
 }
 
+/// Largest speed along gravity, m/s, at which a canopy descends in the end with a drag coefficient of 0.75; 0
+/// without one.
+double descent_speed(const FlowScene& scene) {
+  double speed = 0.0;
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
+    if (!scene.descends(i)) continue;
+    double area = 0.0;
+    for (std::size_t k = 0; k < scene.canopies.size(); ++k)
+      if (scene.owner_of(k) == scene.owner_of(i)) area += scene.canopies[k].nominal_area();
+    const auto [x, y, z] = scene.gravity;
+    speed = std::max(speed, std::sqrt(2.0 * scene.canopies[scene.owner_of(i)].payload.mass *
+                                      std::hypot(x, y, z) / (0.75 * scene.parameters.density * area)));
+  }
+  return speed;
+}
+
 /// Time of a step on a machine, s, of which the parts are measured.
 struct StepTime {
   double cell;            ///< of a cell in a step of AB2 with explicit diffusion
@@ -92,6 +108,9 @@ RunSize run_size(const FlowScene& scene) {
   double dt = step_length(scene, speed_ratio(scene));
   if (dt == 0.0) dt = scene.parameters.max_dt;
   if (dt == 0.0) return size;
+  if (const double speed = speed_ratio(scene) * descent_speed(scene);
+      speed > 0.0 && !(scene.parameters.fixed_dt > 0.0))
+    dt = std::min(dt, scene.cfl() * core_width(scene.parameters, 2) / speed);
   size.steps = std::ceil(scene.end_time / dt);
   for (const Canopy& canopy : scene.canopies)
     size.cloth_steps =
@@ -135,7 +154,8 @@ std::string run_size_report(const FlowScene& scene) {
   return text + sentence("time         about ", duration_text(time.two_cores), " on two cores, ",
                          duration_text(time.h200), " on one H200, an estimate: ", rough_text(size.steps),
                          " steps at ", ratio > 1.0 ? rough_text(ratio) + " times " : "",
-                         "the speed of the start",
+                         descent_speed(scene) > 0.0 ? "the speed of the start or the descent"
+                                                    : "the speed of the start",
                          size.cloth_steps > 0.0
                              ? sentence(", each with ", rough_text(size.cloth_steps), " of the cloth")
                              : std::string(),

@@ -10,6 +10,7 @@
 #include "kernels/flow/diffusive_step.hpp"
 #include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/scene/sound.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -446,6 +447,7 @@ void complete_and_check(const Place& root, FlowScene& scene) {
     check_images(root, scene, sheets);
     note_narrow_channels(root, scene, sheets);
     note_unfit_canopies(root, scene);
+    note_compressibility(scene);
   } else {
     check_steps(root, scene);
   }

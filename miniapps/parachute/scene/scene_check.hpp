@@ -51,8 +51,17 @@ void check_frame(const scene::Place& root, const FlowScene& scene);
 void check_method(const scene::Place& root, const FlowScene& scene);
 
 /// Notes canopies with lines whose drag and speed are not those in free air, or depend on the cells: a narrow
-/// or short domain, its sides, coarse cells, edges that act beyond the cloth, dimensions of another canopy.
+/// or short domain, its sides, coarse cells, edges that act beyond the cloth, long lines, dimensions of
+/// another canopy.
 void note_unfit_canopies(const scene::Place& root, FlowScene& scene);
+
+/// Sentence on a core that a canopy leaves once it leans by an angle about its payload, or about the middle
+/// between both where the grid follows that: "one that leans by N degrees" and `when`. Empty if it has room.
+[[nodiscard]] std::string narrow_core_text(const FlowScene& scene, std::size_t canopy, double degrees,
+                                           const char* when = "");
+
+/// Lean of a canopy for which `note_unfit_canopies` looks at the room in the core, degrees.
+inline constexpr double expected_lean = 30.0;
 
 /// Refuses canopies that cross a body at the start, with their cloth or their lines. `sheets`: of the scene.
 void check_canopies_beside_bodies(const scene::Place& root, const FlowScene& scene, const Sheets& sheets);

@@ -47,6 +47,7 @@ void append_canopy(const FlowScene& scene, std::size_t i, Columns& columns) {
     if (scene.descends(i)) columns.push_back({name + "rate_of_descent", "m/s"});
   }
   columns.insert(columns.end(), {{name + "largest_strain", ""}, {name + "inversion", ""}});
+  if (scene.canopies[i].has_lines()) columns.push_back({name + "lean", "degrees"});
   if (scene.canopies[i].lines.drag) append_vector(columns, name + "line_drag", "N");
   if (scene.canopies[i].payload.drag) append_vector(columns, name + "payload_drag", "N");
 }

@@ -121,6 +121,7 @@ void append_measures(const FlowScene& scene, const Airstream& stream, const Shee
       row.values.push_back(relative[0] * stream.up[0] + relative[1] * stream.up[1] +
                            relative[2] * stream.up[2]);
     row.values.insert(row.values.end(), {one.largest_strain, one.inversion});
+    if (canopy.has_lines()) row.values.push_back(one.lean);
     const CanopyRows& rows = sheets.canopies[i];
     if (canopy.lines.drag) append(sum(std::span(state.drag).subspan(rows.line_drag, rows.suspension.size())));
     if (canopy.payload.drag) append(state.drag[sheets.line_drag.size() + rows.payload_drag]);

@@ -82,6 +82,8 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);
   [[nodiscard]] std::string stiff_cloth_text();
   [[nodiscard]] std::string broken_line_text();
+  [[nodiscard]] std::string leans_text(std::size_t vertex,
+                                       const std::vector<fabric::Vector>& positions) const;
   [[nodiscard]] std::string leaving_vertex_text();
   [[nodiscard]] std::string leaving_part_text(std::size_t vertex, bool leaves_core) const;
   [[nodiscard]] std::string vertex_text(std::int64_t vertex) const;

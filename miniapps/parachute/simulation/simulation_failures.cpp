@@ -222,7 +222,19 @@ std::string Simulation::leaving_vertex_text() {
          (leaves_core ? " its end towards " : " the side ") + side_names[closest] + " after " + now_text() +
          "; " + remedy + "a larger " +
          (leaves_core ? (_scene.faces ? "grid.faces" : "grid.core") : "grid.domain") +
-         " or a shorter run.end_time may save the run";
+         " or a shorter run.end_time may save the run" + (leaves_core ? leans_text(vertex, positions) : "");
+}
+
+/// End of the message of a canopy that leaves the core: how far it leans. Its room has been checked for
+/// `expected_lean`.
+std::string Simulation::leans_text(std::size_t vertex, const std::vector<Vector>& positions) const {
+  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
+    const CanopyRows& rows = _sheets.canopies[i];
+    if (_scene.canopies[i].has_lines() && vertex >= rows.begin && vertex < rows.end)
+      return scene::sentence("; it leans by ",
+                             scene::rough_text(lean_of(rows, _sheets.fabric.mesh, positions)), " degrees");
+  }
+  return "";
 }
 
 /// Motion of the body with the failed vertex that is not finite near the failed step; empty if there is none.

@@ -37,10 +37,10 @@ Leak leak_of(const CanopyLeak& wanted, const run::History& history) {
 }  // namespace
 
 run::History rows_of(const FlowScene& scene, const run::RunDirectory* directory) {
-  const bool has_flight = scene.has_fluid() && scene.output.history_every > 0 &&
-                          std::ranges::any_of(scene.canopies, &Canopy::has_lines);
-  return has_flight || scene.verify.needs_rows() ? run::read_history(directory->file("history.csv"))
-                                                 : run::History{};
+  const bool has_means = scene.has_fluid() && scene.output.history_every > 0 &&
+                         (!scene.bodies.empty() || std::ranges::any_of(scene.canopies, &Canopy::has_lines));
+  return has_means || scene.verify.needs_rows() ? run::read_history(directory->file("history.csv"))
+                                                : run::History{};
 }
 
 void check_canopies(const Verify& wanted, const PeakPulls& peaks, const run::History& history,

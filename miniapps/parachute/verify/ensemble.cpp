@@ -223,7 +223,6 @@ framework::Ensemble ensemble_of(const MiniAppOptions& options, const std::filesy
 }
 
 std::string ensemble_report(const MiniAppOptions& options, const std::filesystem::path& file) {
-  if (!study::is_ensemble(options.study)) return {};
   const auto [ensemble, scenes] = plan_of(options, file);
   std::string text = "study        " + std::to_string(ensemble.runs.size()) + " runs, " +
                      std::to_string(ensemble.axes.runs) + " on each grid, " +

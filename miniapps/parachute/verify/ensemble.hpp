@@ -18,7 +18,7 @@ namespace drogue::parachute_app {
 [[nodiscard]] framework::Ensemble ensemble_of(const MiniAppOptions& options,
                                               const std::filesystem::path& file);
 
-/// Lines of `--check` on the cost of `--study`, if it is an ensemble; else empty. Throws as `ensemble_of`.
+/// Lines of `--check` on the cost of an ensemble. Throws as `ensemble_of`.
 [[nodiscard]] std::string ensemble_report(const MiniAppOptions& options, const std::filesystem::path& file);
 
 }  // namespace drogue::parachute_app

@@ -9,6 +9,7 @@
 #include "common/run/history_statistics.hpp"
 #include "common/run/uncertainty.hpp"
 #include "common/scene/node.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -199,7 +200,7 @@ struct Title {
 };
 
 /// Keys of a group in the order in which they are printed.
-constexpr std::array<Title, 12> titles = {
+constexpr std::array<Title, 13> titles = {
     {{"rate_of_descent", "rate of descent, m/s", true},
      {"rate_of_descent_free_air", "rate of descent in free air, m/s", true},
      {"drift", "drift, m/s", true},
@@ -207,18 +208,22 @@ constexpr std::array<Title, 12> titles = {
      {"drag_coefficient_free_air", "C_D0 in free air", true},
      {"inflated_diameter_ratio", "D_p/D_0", true},
      {"leak", "flow through the cloth/(U A)", true},
+     {"largest_lean", "largest lean, degrees"},
      {"opening_time", "opening time, s"},
      {"peak_line_force", "peak line force, N"},
      {"peak_line_force_time", "peak line force at, s"},
      {"touchdown_time", "touch-down at, s"},
      {"touchdown_speed", "rate of descent then, m/s"}}};
 
-std::string canopy_name(const std::string& group) {
-  return "canopy[" + group.substr(group.find('_') + 1) + "]";
+/// "canopy[0]" of the group `canopy_0`, and likewise of bodies.
+std::string part_name(const std::string& group) {
+  const std::size_t separator = group.find('_');
+  return group.substr(0, separator) + "[" + group.substr(separator + 1) + "]";
 }
 
-/// Title of a key; the key if it has none.
-std::string title_of(const std::string& key) {
+/// Title of a key of a group; the key if it has none.
+std::string title_of(const std::string& group, const std::string& key) {
+  if (group.starts_with("body_") && key == "drag_coefficient") return "C_D";  // of its frontal area
   const auto found = std::ranges::find_if(titles, [&](const Title& title) { return title.key == key; });
   return found == titles.end() ? key : found->text;
 }
@@ -252,6 +257,20 @@ void describe_means(const FlowScene& scene, const run::History& history, std::si
   if (is_along_z(direction)) set("opening_time", rows.opening_time(rows.column("projected_area", from, to)));
 }
 
+/// Describes how far a canopy leans in rows. Warns of one that leans farther than its room in the core was
+/// checked for, and has none for that.
+void describe_lean(const FlowScene& scene, const run::History& history, std::size_t i,
+                   run::ResultDocument& result) {
+  if (history.empty() || scene.canopies[scene.owner_of(i)].payload.release) return;
+  const std::string group = "canopy_" + std::to_string(i);
+  const std::vector<double>& leans = history.at(group + "_lean");
+  const double largest = std::ranges::max(leans);
+  result.metrics.set(group, "largest_lean", largest);
+  if (!(largest > std::max(expected_lean, leans.front()))) return;
+  if (const std::string text = narrow_core_text(scene, i, largest, ", as it did in this run,"); !text.empty())
+    result.warnings.push_back(text);
+}
+
 }  // namespace
 
 void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run::History& history,
@@ -259,13 +278,14 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
   for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
     if (!scene.canopies[i].has_lines()) continue;
     describe_means(scene, history, i, result);
+    describe_lean(scene, history, i, result);
     const auto [force, time] = peaks.values().at(i);
     if (!(force > 0.0)) continue;
     const std::string group = "canopy_" + std::to_string(i);
     result.metrics.set(group, "peak_line_force", force);
     result.metrics.set(group, "peak_line_force_time", time);
     if (time > 0.98 * scene.end_time)
-      result.warnings.push_back(canopy_name(group) +
+      result.warnings.push_back(part_name(group) +
                                 ": the largest line force is that of the end of the run, and may still grow; "
                                 "a longer run.end_time shows the peak");
   }
@@ -274,17 +294,20 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
 std::string flight_report(const run::ResultDocument& result) {
   std::string text;
   for (const run::Metrics::Group& group : result.metrics.groups()) {
-    if (!group.name.starts_with("canopy_") || group.values.empty()) continue;
+    if (!(group.name.starts_with("canopy_") || group.name.starts_with("body_")) || group.values.empty())
+      continue;
     const auto value = [&](const std::string& name) { return result.metrics.real(group.name, name); };
-    text += canopy_name(group.name);
+    text += part_name(group.name);
+    if (const auto area = value("frontal_area")) text += " of " + scene::rough_text(*area) + " m^2";
     if (const auto from = value("from"))
       text += ", means from " + scene::rough_text(*from) + " s on; +- is 95 % by the scatter in this run";
     text += '\n';
-    for (const auto& [key, title, is_mean] : titles) {
+    for (const auto& [key, ignored, is_mean] : titles) {
       const std::string name = key;
       const auto number = value(name), error = value(name + "_error");
       if (!number) continue;
-      text += "  " + std::string(title) + std::string(34 - std::string(title).size(), ' ') +
+      const std::string shown = title_of(group.name, name);
+      text += "  " + shown + std::string(34 - shown.size(), ' ') +
               run::bar_text(*number, error.value_or(NAN)) +
               (is_mean && !error ? "  (no error bar: too short a run)" : "") + '\n';
     }
@@ -295,7 +318,8 @@ std::string flight_report(const run::ResultDocument& result) {
 std::string flight_title(const std::string& quantity) {
   const std::size_t dot = quantity.find('.');
   if (dot == std::string::npos) return quantity;
-  return canopy_name(quantity.substr(0, dot)) + " " + title_of(quantity.substr(dot + 1));
+  const std::string group = quantity.substr(0, dot);
+  return part_name(group) + " " + title_of(group, quantity.substr(dot + 1));
 }
 
 }  // namespace drogue::parachute_app

@@ -23,6 +23,12 @@ const study::Columns columns = {.settings = {"advection", "time_scheme", "diffus
                                 .shown = "l2_velocity",
                                 .shown_title = "L2 velocity"};
 
+const std::vector<study::WordAxis> word_axes = {
+    {"advections", {"central", "weno-js", "weno-z"}},
+    {"times", {"ab2", "rk3"}},
+    {"diffusions", {"explicit", "crank-nicolson"}},
+    {"pressures", {"auto", "fft", "diagonalization", "hypre-pfmg"}}};
+
 /// Cells along the longest axis.
 int longest(const flow::Parameters& p) { return *std::ranges::max_element(p.cells); }
 
@@ -84,8 +90,11 @@ FlowScene scene_of(const std::filesystem::path& file, const MiniAppOptions& opti
   }
 }
 
-std::vector<FlowScene> scenes_of(const study::Axes& axes, const MiniAppOptions& options,
-                                 const std::filesystem::path& file, const FlowScene& base) {
+/// Scenes of all points: an invalid one must not end a study that has run for hours.
+std::vector<FlowScene> scenes_of(const MiniAppOptions& options, const std::filesystem::path& file,
+                                 const FlowScene& base) {
+  const study::Axes axes = study::parse_axes(options.study, {"cells", 4, 12}, word_axes);
+  if (!base.verify.exact) throw Failure(ExitCode::usage, "--study needs verify.exact to compute errors");
   std::vector<std::int64_t> meshes = axes.meshes;
   if (meshes.empty()) meshes.push_back(0);
   std::vector<FlowScene> scenes;
@@ -100,6 +109,10 @@ std::vector<FlowScene> scenes_of(const study::Axes& axes, const MiniAppOptions& 
             scenes.push_back(std::move(scene));
           }
   return scenes;
+}
+
+bool is_ensemble(const MiniAppOptions& options) {
+  return study::is_ensemble(options.study, study::names_of(word_axes));
 }
 
 framework::RepeatedRun run_point(const FlowScene& scene, device::Backend backend) {
@@ -153,18 +166,16 @@ framework::RepeatedRun repeat_scene(
   });
 }
 
+std::string check_study(const MiniAppOptions& options, const std::filesystem::path& file) {
+  if (is_ensemble(options)) return ensemble_report(options, file);
+  (void)scenes_of(options, file, read_flow_scene(file, options.set));
+  return {};
+}
+
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
-  if (study::is_ensemble(options.study))
-    return framework::run_ensemble(options, file, ensemble_of(options, file));
-  const study::Axes axes =
-      study::parse_axes(options.study, {"cells", 4, 12},
-                        {{"advections", {"central", "weno-js", "weno-z"}},
-                         {"times", {"ab2", "rk3"}},
-                         {"diffusions", {"explicit", "crank-nicolson"}},
-                         {"pressures", {"auto", "fft", "diagonalization", "hypre-pfmg"}}});
+  if (is_ensemble(options)) return framework::run_ensemble(options, file, ensemble_of(options, file));
   const FlowScene base = read_flow_scene(file, options.set);
-  if (!base.verify.exact) throw Failure(ExitCode::usage, "--study needs verify.exact to compute errors");
-  const std::vector<FlowScene> scenes = scenes_of(axes, options, file, base);
+  const std::vector<FlowScene> scenes = scenes_of(options, file, base);
   int threads = 1;
   for (const FlowScene& scene : scenes) threads = std::max(threads, flow::host_threads(scene.parameters, 1));
   framework::StudySession session(options, "drogue-parachute", base.name, print_flow_scene(base), threads);

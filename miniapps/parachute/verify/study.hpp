@@ -10,6 +10,10 @@
 
 namespace drogue::parachute_app {
 
+/// Refuses what `run_study` does before its first run; returns what `--check` prints on the study. Throws
+/// `Failure`: usage, invalid_scene.
+std::string check_study(const MiniAppOptions& options, const std::filesystem::path& file);
+
 /// Runs the scene over the product of the axes of `--study`, and writes study.csv, study.json and their
 /// picture, with observed orders against the row before; or runs an ensemble (`ensemble_of`). Returns `ok` or
 /// `interrupted`. Throws `Failure`: usage for an invalid axis or a scene without exact solution, otherwise

@@ -4,6 +4,7 @@
 #include "common/run/statistics.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/body_drag.hpp"
 #include "miniapps/parachute/verify/canopy_checks.hpp"
 #include "miniapps/parachute/verify/flight.hpp"
 #include "miniapps/parachute/verify/profile.hpp"
@@ -175,6 +176,7 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
     const run::History rows = rows_of(_scene, directory);
     check_canopies(wanted, _peaks, rows, result);
     describe_flights(_scene, _peaks, rows, result);
+    describe_bodies(_scene, rows, result);
     check_curves(wanted, rows, result);
   });
   check_profiles(result);

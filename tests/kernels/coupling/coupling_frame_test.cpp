@@ -207,6 +207,26 @@ TEST(MovingFrame, KeepsTheFallOfAStrip) {
   EXPECT_NEAR(place[1] / place[0], 1.0, 0.04);
 }
 
+TEST(MovingFrame, KeepsAFallFromRestInTheGrid) {
+  // Steps of the flow that only the time of a fall through half a cell bounds: 16 of them are a fall of 13 m.
+  CoupledCase c(48, 32, 0.1, 0.0);
+  c.p.flow.boundary[0].kind = BoundaryKind::inflow;
+  c.p.flow.boundary[1].kind = BoundaryKind::outflow;
+  c.p.flow.boundary[2].kind = c.p.flow.boundary[3].kind = BoundaryKind::slip;
+  c.p.flow.max_dt = 0.1;
+  c.p.sheet.law = {};
+  c.add_strip(2.4, 1.2, 2.4, 2.0, 16);
+  follow_first_vertex(c);
+  c.p.fabric.gravity = {-9.81, 0.0, 0.0};
+  CoupledRun run(c);
+  for (const double time : {0.4, 0.8, 1.6}) {
+    ASSERT_EQ(run.solver->advance(time, -1, {}), flow::Stop::target) << time;
+    const double fall = 0.5 * 9.81 * time * time;
+    EXPECT_NEAR(run.solver->progress().frame.position(time)[0], -fall, fall / 16.0 + 0.05) << time;
+    EXPECT_NEAR(fabric_of(c, *run.solver).x[0][0], c.x[0][0], fall / 16.0 + 0.05) << time;
+  }
+}
+
 TEST(MovingFrame, MovesAnInflowAndKeepsAUniformStreamUniform) {
   // A strip that the air does not feel drifts in a stream that flows in and out: to the bits of round-off.
   CoupledCase c(16, 8, 0.1, 0.004);

@@ -56,6 +56,28 @@ TEST(BlockPlan, NextStepFollowsTheFlowTheLastBlockAndTheTarget) {
   }
 }
 
+TEST(BlockPlan, BlocksOfAFrameThatFollowsAFallGrowWithTheTimeSoFar) {
+  Parameters p;
+  p.follow.vertices = {{0, 1.0}};
+  p.follow.axes = {false, false, true};
+  const auto steps = [&](double time) {
+    BlockPlan plan(p);
+    plan.begin(at(100, time), dt, 2);
+    return plan.block().end - 100;
+  };
+  EXPECT_EQ(steps(0.0), 16) << "without gravity";
+  p.fabric.gravity = {0.0, 9.81, 0.0};
+  EXPECT_EQ(steps(0.0), 16) << "gravity across the axes that it follows";
+  p.fabric.gravity = {0.0, 0.0, -9.81};
+  EXPECT_EQ(steps(0.0), 1);
+  EXPECT_EQ(steps(47.0 * dt), 2);
+  EXPECT_EQ(steps(48.0 * dt), 3);
+  EXPECT_EQ(steps(256.0 * dt), 16);
+  EXPECT_EQ(steps(1e9), 16);
+  p.follow = {};
+  EXPECT_EQ(steps(0.0), 16) << "a frame at rest";
+}
+
 TEST(BlockPlan, DividesWhatIsLeftToATarget) {
   struct Case {
     std::int64_t step;

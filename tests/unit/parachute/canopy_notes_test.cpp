@@ -60,6 +60,13 @@ TEST(CanopyNotes, NameTheWidthOfCellsThatACanopyNeeds) {
               "hardly depend on them; cells of 0.476 m would be 12");
 }
 
+TEST(CanopyNotes, CellsThatRoundToTheLeastNumberSuffice) {
+  const std::string side = "[-17.925,17.925]";
+  EXPECT_TRUE(
+      notes({"grid.cells=[75,75,75]", "grid.domain=[" + side + "," + side + "," + side + "]"}).empty())
+      << "11.96 cells";
+}
+
 TEST(CanopyNotes, NameSidesThatHoldTheAir) {
   expect_note(
       {"grid.boundary.x=\"wall\""},
@@ -94,7 +101,7 @@ TEST(CanopyNotes, NameDefaultsOfAC9OfAnotherDiameter) {
       own,
       "canopy[0] is 3 m wide, but has by default lines.length = 7 m of a C-9 of 8.534 m; in proportion "
       "it has lines.length = 2.46");
-  own.emplace_back("canopy[0].lines.length=7");
+  own.emplace_back("canopy[0].lines.length=2.5");
   EXPECT_TRUE(notes(own).empty());
 }
 
@@ -170,6 +177,28 @@ TEST(CanopyNotes, AStreamIntoClosedSides) {
   EXPECT_TRUE(std::ranges::any_of(notes({"fluid.velocity=[1,0,10]"}), [](const std::string& note) {
     return note.starts_with("grid.boundary: no air passes x_low and x_high");
   }));
+}
+
+TEST(CanopyNotes, LinesLongerThanPublishedDragIsFor) {
+  expect_note(
+      {"canopy[0].lines={length=8.6}"},
+      "canopy[0].lines.length: 1.01 diameters: such flat canopies sway here and have a drag coefficient "
+      "of 0.9 and more, where 0.75 to 0.80 are published and lines of 0.7 to 0.8 diameters have 0.8");
+  EXPECT_TRUE(notes({"canopy[0].lines={length=8.1}"}).empty());
+}
+
+TEST(CanopyNotes, SpeedsNearThatOfSoundInAirAndWaterAlone) {
+  const std::string end =
+      ", beyond the 0.3 up to which an incompressible flow stands for it: drag and forces lack its "
+      "compressibility, and shocks";
+  expect_note({"fluid.velocity=[0,0,120]"}, "fluid.velocity: 120 m/s are Mach 0.353 in air" + end);
+  expect_note({"fluid.velocity=[0,0,\"10+110*t\"]"}, "fluid.velocity: 120 m/s are Mach 0.353 in air" + end);
+  expect_note({"canopy[0].payload={velocity=[0,0,-100]}"},
+              "canopy[0].payload.velocity: 110 m/s are Mach 0.324 in air" + end);
+  expect_note({"fluid.velocity=[0,0,500]", "fluid.density=1000", "fluid.viscosity=1e-3"},
+              "fluid.velocity: 500 m/s are Mach 0.338 in water" + end);
+  EXPECT_TRUE(notes({"fluid.velocity=[0,0,101]"}).empty());
+  EXPECT_TRUE(notes({"fluid.velocity=[0,0,120]", "fluid.viscosity=1"}).empty()) << "no air";
 }
 
 TEST(CanopyNotes, SheetsWithoutLinesHaveNone) {

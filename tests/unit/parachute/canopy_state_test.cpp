@@ -47,6 +47,17 @@ TEST(CanopyState, InversionIsTheShareOfTheSkirtThatIsInsideOut) {
   EXPECT_NEAR(measure(sheets.canopies[0], sheets.fabric, state, false).inversion, 0.25, 0.08);
 }
 
+TEST(CanopyState, LeanIsThatOfTheAxisFromThePayloadToTheSkirt) {
+  Canopy canopy;
+  canopy.edge_length = 0.5;
+  canopy.azimuth = 20.0;
+  for (const auto& [angle, lean] : {std::pair{0.0, 0.0}, {35.0, 35.0}, {120.0, 60.0}}) {
+    canopy.angle = angle;
+    const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+    EXPECT_NEAR(measure(sheets.canopies[0], sheets.fabric, state_of(sheets), false).lean, lean, 1e-9);
+  }
+}
+
 TEST(CanopyState, ProjectedAreaIsThatOfTheShadow) {
   Canopy canopy;
   canopy.edge_length = 0.2;

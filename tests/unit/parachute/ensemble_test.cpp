@@ -80,7 +80,6 @@ TEST(EnsembleOfFlights, RefusesGridsThatTheSceneCannotHave) {
   EXPECT_NE(ensemble_report(study("ensemble=8,cells=1:1.5,jobs=2"), file.path())
                 .find("16 runs, 8 on each grid, 2 at once"),
             std::string::npos);
-  EXPECT_EQ(ensemble_report(study("meshes=8"), file.path()), "");
 }
 
 }  // namespace

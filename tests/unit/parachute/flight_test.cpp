@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "miniapps/parachute/scene/run_size.hpp"
 #include "miniapps/parachute/simulation/history_columns.hpp"
 #include "tests/support/held_canopy.hpp"
 
@@ -114,6 +115,28 @@ TEST(Flight, CorrectsNoBlockageThatIsTooLarge) {
   EXPECT_FALSE(has_free_air(1.01 * largest));
 }
 
+TEST(Flight, WarnsOfALeanBeyondTheRoomInTheCore) {
+  // 7 m of lines: 5.7 m to each side at 30 degrees, 6.9 m at 57, of 7.6 m less two cells.
+  const FlowScene scene = SceneFile().read(
+      {"grid={core=[[-7.6,7.6],[-7.6,7.6],[-9,8]], spacing=0.4, domain=[[-18,18],[-18,18],[-18,18]], "
+       "boundary={x=\"slip\", y=\"slip\", z=[\"inflow\", \"outflow\"]}}"});
+  ASSERT_TRUE(scene.notices.empty()) << scene.notices.front();
+  const auto warnings = [&](double lean) {
+    run::ResultDocument result;
+    describe_flights(
+        scene, peaks_of({}),
+        history_of(scene, {{"canopy_0_lean", [&](double t) { return t > 0.5 && t < 1.0 ? lean : 3.0; }}}),
+        result);
+    EXPECT_EQ(result.metrics.real("canopy_0", "largest_lean"), lean);
+    return result.warnings;
+  };
+  EXPECT_TRUE(warnings(33.0).empty()) << "it has room";
+  ASSERT_EQ(warnings(57.0).size(), 1U);
+  EXPECT_TRUE(warnings(57.0).front().starts_with("grid.core leaves canopy[0] 6.8")) << warnings(57.0).front();
+  EXPECT_NE(warnings(57.0).front().find("one that leans by 57 degrees, as it did in this run, needs "),
+            std::string::npos);
+}
+
 TEST(Flight, WarnsOfALargestForceAtTheEnd) {
   const FlowScene scene = SceneFile().read();
   const auto warnings = [&](double time) {
@@ -190,6 +213,16 @@ TEST(Drop, VelocityOfThePayloadIsThatOfItsCanopies) {
   const Sheets sheets = make_all_sheets({}, scene.canopies, 1.0, 1.0);
   EXPECT_EQ(sheets.velocities.front(), (fabric::Vector{0.0, 0.0, -4.0}));
   EXPECT_EQ(sheets.velocities.back(), (fabric::Vector{0.0, 0.0, -4.0})) << "along the wire";
+}
+
+TEST(Drop, ThatStartsFromRestIsEstimatedAtTheSpeedOfItsDescent) {
+  const SceneFile file;
+  const std::vector<std::string> sets = {falling[0], falling[1], "fluid.velocity=[0,0,0]"};
+  // 90 kg on 57 m^2 descend with 5.74 m/s; steps of half a cell of 0.4 m at 2.5 times that.
+  const double speed = std::sqrt(2.0 * 90.0 * 9.81 / (0.75 * 1.25 * nominal));
+  EXPECT_EQ(run_size(file.read(sets)).steps, std::ceil(4.0 * 2.5 * speed / (0.5 * 0.4)));
+  EXPECT_NE(run_size_report(file.read(sets)).find("the speed of the start or the descent"),
+            std::string::npos);
 }
 
 TEST(Drop, HasATouchDown) {

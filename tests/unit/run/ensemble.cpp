@@ -26,13 +26,30 @@ TEST(Ensemble, ParsesItsAxes) {
   EXPECT_EQ(axes.jobs, 3);
   EXPECT_EQ(parse_ensemble("cells=2").factors, std::vector{2.0});
   EXPECT_EQ(parse_ensemble("ensemble=4").factors, std::vector{1.0});
-  EXPECT_TRUE(is_ensemble("cells=1:2"));
-  EXPECT_FALSE(is_ensemble("meshes=100:800,times=rk3"));
+  EXPECT_TRUE(is_ensemble("cells=1:2", {"meshes", "times"}));
+  EXPECT_FALSE(is_ensemble("meshes=100:800,times=rk3", {"meshes", "times"}));
+}
+
+TEST(Ensemble, NamesTheNearestAxisOfAllStudies) {
+  for (const auto& [text, what] :
+       {std::pair{"ensembel=2", "--study: unknown name 'ensembel'; did you mean \"ensemble\"?"},
+        {"cells=1,mesh=4", "--study: unknown name 'mesh'; did you mean \"meshes\"?"},
+        {"nonsense", "--study: unknown name 'nonsense'; valid names are ensemble, cells, jobs, meshes"},
+        {"ensemble=2,", "--study: a part is empty; valid names are ensemble, cells, jobs, meshes"}})
+    try {
+      (void)is_ensemble(text, {"meshes"});
+      FAIL() << text;
+    } catch (const Failure& failure) {
+      EXPECT_STREQ(failure.what(), what);
+    }
 }
 
 TEST(Ensemble, RefusesOtherAxes) {
   EXPECT_EQ(refusal("ensemble=0"), "--study: ensemble=0 is not an integer between 1 and 10000");
-  EXPECT_EQ(refusal("ensemble=8,meshes=4"), "--study: 'meshes' is not one of ensemble, cells, jobs");
+  EXPECT_EQ(refusal("ensemble=8,meshes=4"),
+            "--study: unknown name 'meshes'; valid names are ensemble, cells, jobs");
+  EXPECT_EQ(refusal("ensemble=2,"), "--study: a part is empty; valid names are ensemble, cells, jobs");
+  EXPECT_NE(refusal("cells=1:").find("'' is no factor"), std::string::npos);
   EXPECT_EQ(refusal("jobs=2,jobs=2"), "--study: the axis jobs is named twice");
   EXPECT_EQ(refusal("ensemble"), "--study: an axis needs values: ensemble=...");
   EXPECT_NE(refusal("cells=1.5:1").find("at least 1.1 times"), std::string::npos);
