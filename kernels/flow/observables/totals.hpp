@@ -222,8 +222,8 @@ class TotalsSum {
   MacGrid _grid;
   TotalsView<ExecutionSpace> _columns, _planes;
   List<ExecutionSpace> _outflow_rows;
-  typename TotalsView<ExecutionSpace>::HostMirror _planes_on_host;
-  typename List<ExecutionSpace>::HostMirror _outflow_rows_on_host;
+  typename TotalsView<ExecutionSpace>::host_mirror_type _planes_on_host;
+  typename List<ExecutionSpace>::host_mirror_type _outflow_rows_on_host;
 };
 
 /// Totals, SI units, from the sums of all ranks; step, time and dt are left out. Does not throw.
