@@ -1,4 +1,4 @@
-# Refuses a Kokkos that is known to be miscompiled or that does not fit the build.
+# Refuses a Kokkos that is known to be miscompiled, that does not fit the build, or whose release was not tried.
 
 if(DROGUE_CUDA AND NOT Kokkos_ENABLE_CUDA)
   message(FATAL_ERROR "DROGUE_CUDA=ON, but the Kokkos in ${Kokkos_DIR} has no CUDA: run scripts/setup.sh where nvcc is "
@@ -23,10 +23,10 @@ if(NOT Kokkos_ENABLE_OPENMP)
 endif()
 
 if(DROGUE_CUDA)
-  # The mdspan-based View of Kokkos 4.7.0, compiled by nvcc 13.0 as C++20, computes wild addresses in a plain
-  # deep_copy. The old View implementation of the same release is right.
-  if(Kokkos_VERSION VERSION_EQUAL "4.7.0" AND NOT Kokkos_ENABLE_IMPL_VIEW_LEGACY)
-    message(FATAL_ERROR "Kokkos 4.7.0 with nvcc and C++20 is miscompiled (its mdspan View computes wrong addresses in a "
+  # The mdspan-based View of Kokkos 4.7.0, compiled by nvcc 13.0 as C++20, computes wild addresses in a plain deep_copy. The old View
+  # implementation of the same release is right, and the default of later patches.
+  if(Kokkos_VERSION VERSION_GREATER_EQUAL "4.7.0" AND Kokkos_VERSION VERSION_LESS "5" AND NOT Kokkos_ENABLE_IMPL_VIEW_LEGACY)
+    message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} with nvcc and C++20 is miscompiled (its mdspan View computes wrong addresses in a "
                         "deep_copy): use Kokkos 4.5.1, or rebuild it with -DKokkos_ENABLE_IMPL_VIEW_LEGACY=ON.")
   endif()
   # Kokkos 4.5 has no name for Blackwell: scripts/setup.sh builds it as Hopper with machine code for both.
@@ -42,5 +42,23 @@ if(DROGUE_CUDA)
   if(NOT Kokkos_ENABLE_COMPILE_AS_CMAKE_LANGUAGE)
     message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} was built for nvcc_wrapper: rebuild it with "
                         "-DKokkos_ENABLE_COMPILE_AS_CMAKE_LANGUAGE=ON.")
+  endif()
+endif()
+
+# Releases that were tried (docs/building.md#releases-of-kokkos). A patch counts as its release; patch 99, the development after it,
+# does not.
+option(DROGUE_UNTRIED_KOKKOS "Take releases of Kokkos and Kokkos Kernels that were not tried" OFF)
+set(_tried 4.5 4.6 4.7)
+set(_release "${Kokkos_VERSION_MAJOR}.${Kokkos_VERSION_MINOR}")
+set(_release_of_kernels "${KokkosKernels_VERSION_MAJOR}.${KokkosKernels_VERSION_MINOR}")
+if(NOT DROGUE_UNTRIED_KOKKOS)
+  if(NOT _release IN_LIST _tried OR Kokkos_VERSION_PATCH EQUAL 99)
+    list(JOIN _tried ", " _tried)
+    message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} in ${Kokkos_DIR} was not tried, as ${_tried} were: point Kokkos_ROOT at one of "
+                        "these, or try it with -DDROGUE_UNTRIED_KOKKOS=ON.")
+  elseif(NOT _release_of_kernels STREQUAL _release)
+    message(FATAL_ERROR "Kokkos Kernels ${KokkosKernels_VERSION} in ${KokkosKernels_DIR} was not tried with Kokkos "
+                        "${Kokkos_VERSION}: point KokkosKernels_ROOT at release ${_release}, or try it with "
+                        "-DDROGUE_UNTRIED_KOKKOS=ON.")
   endif()
 endif()

@@ -33,9 +33,9 @@ set(_setup "Run scripts/setup.sh, or point CMAKE_PREFIX_PATH at an installation.
 
 find_package(Kokkos 4.5 CONFIG QUIET)
 drogue_require(Kokkos_FOUND "Kokkos 4.5 or newer" "every kernel" "${_setup}")
-include(DrogueCheckKokkos)
 find_package(KokkosKernels 4.5 CONFIG QUIET)
 drogue_require(KokkosKernels_FOUND "Kokkos Kernels" "batched linear algebra" "${_setup}")
+include(DrogueCheckKokkos)
 
 find_package(FFTW QUIET)
 drogue_require(FFTW_FOUND "FFTW 3" "the pressure solver of flows" "Install libfftw3-dev or load an FFTW module.")

@@ -76,7 +76,7 @@ class TotalForce {
   double _volume;  ///< m^3
   Kokkos::View<double***, Kokkos::LayoutLeft, typename ExecutionSpace::memory_space> _rows;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> _layers;
-  typename Kokkos::View<double*, typename ExecutionSpace::memory_space>::HostMirror _mirror;
+  typename Kokkos::View<double*, typename ExecutionSpace::memory_space>::host_mirror_type _mirror;
 };
 
 }  // namespace drogue::coupling

@@ -26,7 +26,7 @@ class PointsReader {
  public:
   /// Blocks. All Views of one reader must have the same extents.
   void read(const ExecutionSpace& space, const PointsView<ExecutionSpace>& from, std::span<Vector> to) {
-    typename PointsView<ExecutionSpace>::HostMirror mirror = _mirror;
+    typename PointsView<ExecutionSpace>::host_mirror_type mirror = _mirror;
     if constexpr (device::is_host<ExecutionSpace>)
       mirror = from;
     else if (mirror.extent(0) == 0)
@@ -38,7 +38,7 @@ class PointsReader {
   }
 
  private:
-  typename PointsView<ExecutionSpace>::HostMirror _mirror;
+  typename PointsView<ExecutionSpace>::host_mirror_type _mirror;
 };
 
 }  // namespace drogue::fabric

@@ -148,7 +148,7 @@ class TotalsEvaluator {
  private:
   int _vertices;
   std::vector<TotalsView<ExecutionSpace>> _levels;  ///< of the sum; the last one has one row
-  typename TotalsView<ExecutionSpace>::HostMirror _mirror;
+  typename TotalsView<ExecutionSpace>::host_mirror_type _mirror;
 };
 
 }  // namespace drogue::fabric

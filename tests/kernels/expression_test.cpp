@@ -55,7 +55,7 @@ class Sample {
     return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, _values);
   }
 
-  Points::HostMirror host;
+  Points::host_mirror_type host;
 
  private:
   Points _at;

@@ -26,8 +26,8 @@ struct ArrayBox {
 struct BoxCopyFunctor {
   static constexpr int most = 8;  ///< one for each neighbour among ranks that divide y and z
   int boxes = 0;
-  Kokkos::Array<ArrayBox, most> box;
-  Kokkos::Array<double*, most> buffer;
+  Kokkos::Array<ArrayBox, most> box{};
+  Kokkos::Array<double*, most> buffer{};
   bool to_buffers;
   double* array = nullptr;
 

@@ -224,8 +224,8 @@ class TotalsSum {
   MacGrid _grid;
   std::vector<TotalsView<ExecutionSpace>> _levels;  ///< of the sum; the last one has one row
   List<ExecutionSpace> _outflow_rows;
-  typename TotalsView<ExecutionSpace>::HostMirror _sum_on_host;
-  typename List<ExecutionSpace>::HostMirror _outflow_rows_on_host;
+  typename TotalsView<ExecutionSpace>::host_mirror_type _sum_on_host;
+  typename List<ExecutionSpace>::host_mirror_type _outflow_rows_on_host;
 };
 
 /// Totals, SI units, from the sums of all ranks; step, time and dt are left out. Does not throw.

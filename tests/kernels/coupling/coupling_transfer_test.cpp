@@ -125,7 +125,7 @@ void for_each_face(const StaggeredGrid& grid, const Visit& visit) {
 template <class E>
 FaceViews<FieldView<E>> on_device(const E& space, const StaggeredGrid& grid, const FaceField& field) {
   FaceViews<FieldView<E>> views;
-  FaceViews<typename FieldView<E>::HostMirror> mirrors;
+  FaceViews<typename FieldView<E>::host_mirror_type> mirrors;
   for (int d = 0; d < 3; ++d) {
     const auto extent = [&](int axis) { return static_cast<std::size_t>(faces_along(grid, d, axis)); };
     views.component[d] = FieldView<E>("field", extent(0), extent(1), extent(2));
@@ -142,7 +142,7 @@ FaceViews<FieldView<E>> on_device(const E& space, const StaggeredGrid& grid, con
 template <class View>
 FaceField on_host(const StaggeredGrid& grid, const FaceViews<View>& views) {
   Kokkos::fence();
-  FaceViews<typename View::HostMirror> mirrors;
+  FaceViews<typename View::host_mirror_type> mirrors;
   for (int d = 0; d < 3; ++d)
     mirrors.component[d] = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, views.component[d]);
   FaceField field = reference::zero_field(grid);

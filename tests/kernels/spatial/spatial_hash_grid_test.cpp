@@ -39,7 +39,7 @@ struct VisitFunctor {
 };
 
 /// Entry (i, k): how often point k is a candidate of point i.
-Visits::HostMirror candidates(const std::vector<Point>& points, double width, std::size_t buckets) {
+Visits::host_mirror_type candidates(const std::vector<Point>& points, double width, std::size_t buckets) {
   const int n = static_cast<int>(points.size());
   const Spheres spheres("spheres", points.size());
   const auto mirror = Kokkos::create_mirror_view(spheres);
