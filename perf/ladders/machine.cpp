@@ -122,7 +122,7 @@ Ceilings make_ceilings() {
 }
 
 Ceilings measure_ceilings(device::Backend backend) {
-  return device::dispatch(backend, []<class ExecutionSpace>() { return make_ceilings<ExecutionSpace>(); });
+  return device::dispatch(backend, [&]<class ExecutionSpace>() { return make_ceilings<ExecutionSpace>(); });
 }
 
 }  // namespace drogue::perf::ladder
