@@ -66,7 +66,7 @@ class DeviceCommunicator {
   void gather(const ExecutionSpace& space, const double* mine, double* all, std::size_t count) const;
 
   /// Replaces each value, of any unit, by its maximum over the ranks, and sends and receives messages as
-  /// `exchange` does: by one kernel of NCCL.
+  /// `exchange` does: in one group of NCCL.
   void maximize(const ExecutionSpace& space, std::span<std::uint64_t> values,
                 std::span<const Message> messages = {}) const;
 
