@@ -88,14 +88,13 @@ struct Heat final : Simulation {
     std::swap(_u, _next);
     _now = {_now.step + 1, dt < left ? _now.time + dt : target};
   }
-  void upload(std::vector<double> u) const {
-    Kokkos::deep_copy(_u, typename View::host_mirror_type(u.data(), _n));
-  }
+  void upload(std::vector<double> u) const { Kokkos::deep_copy(_u, on_host(u)); }
   std::vector<double> download() const {
     std::vector<double> u(_n);
-    Kokkos::deep_copy(typename View::host_mirror_type(u.data(), _n), _u);  // waits for all kernels
+    Kokkos::deep_copy(on_host(u), _u);  // waits for all kernels
     return u;
   }
+  static auto on_host(std::vector<double>& u) { return typename View::host_mirror_type(u.data(), u.size()); }
   const HeatData& _data;
   int _n;  // cells
   device::Instance<ExecutionSpace> _instance{1};

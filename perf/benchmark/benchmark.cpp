@@ -7,6 +7,8 @@
 #include <limits>
 #include <map>
 #include <sstream>
+#include <string_view>
+#include <thread>
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
@@ -81,6 +83,24 @@ double error_of_check(const nlohmann::json& result, const std::string& name) {
   return std::numeric_limits<double>::infinity();
 }
 
+int threads_of(const Request& request, int ranks) {
+  if (request.threads > 0) return request.threads;
+  if (request.backend != device::Backend::openmp) return 1;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks);
+}
+
+/// Words that start the ranks of a row.
+std::vector<std::string> launcher_of(const Request& request, int ranks, int threads) {
+  if (ranks == 1) return {};
+  if (request.launcher.empty()) return launcher_words(ranks, threads);
+  std::vector<std::string> words = request.launcher;
+  constexpr std::string_view place = "{ranks}";
+  for (std::string& word : words)
+    if (const std::size_t at = word.find(place); at != std::string::npos)
+      word.replace(at, place.size(), std::to_string(ranks));
+  return words;
+}
+
 std::vector<std::string> command_of(const Request& request, const Problem& problem, int ranks) {
   std::vector<std::string> arguments = problem.arguments;
   arguments.insert(arguments.end(),
@@ -89,8 +109,8 @@ std::vector<std::string> command_of(const Request& request, const Problem& probl
     arguments.insert(arguments.end(), {problem.name + ".csv", "--result", problem.name + ".json"});
   else
     arguments.insert(arguments.end(), {problem.name, "--overwrite"});
-  return program_words(ranks == 1 ? std::vector<std::string>() : request.launcher, request.threads,
-                       problem.program, arguments);
+  const int threads = threads_of(request, ranks);
+  return program_words(launcher_of(request, ranks, threads), threads, problem.program, arguments);
 }
 
 /// One run. Throws Failure as the program does.
@@ -155,11 +175,12 @@ void print_row(const Request& request, const Problem& problem, int ranks, const 
                                : "-";
   const std::string answer = printed("%s %.3g, expected %.3g to %.3g: %s", problem.quantity.c_str(),
                                      answers.found, problem.low, problem.high, verdict(record));
-  std::printf(
-      columns, problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
-      std::string(device::name(request.backend)).c_str(), printed("%d x %d", ranks, request.threads).c_str(),
-      printed("%.0f", 1e-6 * static_cast<double>(answers.bytes)).c_str(), median_text(record, 1.0, 3).c_str(),
-      interval_text(record, 1.0, 3).c_str(), rate.c_str(), answer.c_str());
+  std::printf(columns, problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
+              std::string(device::name(request.backend)).c_str(),
+              printed("%d x %d", ranks, threads_of(request, ranks)).c_str(),
+              printed("%.0f", 1e-6 * static_cast<double>(answers.bytes)).c_str(),
+              median_text(record, 1.0, 3).c_str(), interval_text(record, 1.0, 3).c_str(), rate.c_str(),
+              answer.c_str());
   if (const std::string reason = answers.result.value("message", ""); !reason.empty())
     std::printf("  %s\n", reason.c_str());
   std::fflush(stdout);

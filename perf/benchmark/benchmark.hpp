@@ -16,8 +16,9 @@ struct Request {
   Size size = Size::small;
   device::Backend backend{};
   bool weak = false;                  ///< the flow alone, on 1, 2, 4, ... ranks with equal cells on each
-  int ranks = 1, threads = 1;         ///< of flow; of a rank
-  std::vector<std::string> launcher;  ///< words that start the ranks; empty: those of mpirun
+  int ranks = 1;                      ///< of flow
+  int threads = 0;                    ///< of a rank; 0: with OpenMP its share of the processors, else 1
+  std::vector<std::string> launcher;  ///< words that start `{ranks}` ranks; empty: those of mpirun
   std::filesystem::path folder;       ///< in which the programs run
   std::function<bool(const std::string&)> wants;  ///< whether a problem is run, by its name
 };

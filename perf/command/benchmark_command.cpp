@@ -24,27 +24,18 @@ struct BenchmarkOptions {
   bool weak = false;
 };
 
-/// Words of the launcher; without one of the user those of mpirun.
+/// Words of the launcher of the user.
 std::vector<std::string> launcher_of(const BenchmarkOptions& options) {
   if (options.ranks == 1 && !options.launcher.empty())
     throw Failure(ExitCode::usage, "--launcher starts several ranks: give their number by --ranks");
-  if (options.launcher.empty()) {
-    if (options.ranks > 1) require_launcher();
-    return launcher_words(options.ranks);
-  }
+  if (options.weak && !options.launcher.empty() && options.launcher.find("{ranks}") == std::string::npos)
+    throw Failure(ExitCode::usage,
+                  "--weak runs on 1, 2, 4, ... ranks: write {ranks} for their number in --launcher");
+  if (options.launcher.empty() && options.ranks > 1) require_launcher();
   std::istringstream text(options.launcher);
   std::vector<std::string> words;
   for (std::string word; text >> word;) words.push_back(word);
   return words;
-}
-
-/// Threads of a rank: of OpenMP all processors, shared by the ranks.
-int threads_of(const BenchmarkOptions& options, device::Backend backend) {
-  if (options.threads > 0 && backend == device::Backend::serial)
-    throw Failure(ExitCode::usage, "the backend serial has one thread; give --backend openmp");
-  if (options.threads > 0) return options.threads;
-  if (backend != device::Backend::openmp) return 1;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options.ranks);
 }
 
 /// Throws Failure if the folder cannot be made, or holds files, which the runs might replace.
@@ -63,13 +54,15 @@ ExitCode run_benchmark(const BenchmarkOptions& options) {
   const auto size = std::ranges::find(benchmark::size_names, options.size) - benchmark::size_names.begin();
   const device::Backend backend = device::wanted_backend(options.backend);
   require(backend);
+  if (options.threads > 0 && backend == device::Backend::serial)
+    throw Failure(ExitCode::usage, "the backend serial has one thread; give --backend openmp");
   const std::regex filter = filter_of(options.filter);
   std::string known;
   benchmark::Request request{.size = static_cast<benchmark::Size>(size),
                              .backend = backend,
                              .weak = options.weak,
                              .ranks = options.ranks,
-                             .threads = threads_of(options, backend),
+                             .threads = options.threads,
                              .launcher = launcher_of(options),
                              .folder = options.keep,
                              .wants = [&](const std::string& problem) {
@@ -116,10 +109,11 @@ Command benchmark_command(CLI::App& program) {
       ->capture_default_str();
   app->add_flag("--weak", options->weak,
                 "The flow alone on 1, 2, 4, ... and --ranks ranks, with equal cells on each");
-  app->add_option("--threads", options->threads, "Threads of a rank; of OpenMP all processors over the ranks")
+  app->add_option("--threads", options->threads,
+                  "Threads of a rank; default, of OpenMP: all processors over its ranks")
       ->check(CLI::Range(1, 4096));
   app->add_option("--launcher", options->launcher,
-                  "Words that start the ranks, as 'srun -n 8'; default: mpirun -n RANKS");
+                  "Words that start the ranks, as 'srun -n {ranks}'; default: mpirun -n {ranks}");
   app->add_option("--keep", options->keep, "Folder for the files of the runs; without it they are removed");
   app->add_option("--out", options->out, "File for the records, one JSON line a row");
   return {app, [options](const std::vector<std::string>& /*kokkos*/) { return run_benchmark(*options); }};

@@ -132,7 +132,12 @@ void require_launcher() {
   throw Failure(ExitCode::no_backend, "several ranks need mpirun, and no folder of PATH holds it");
 }
 
-std::vector<std::string> launcher_words(int ranks) { return {"mpirun", "-n", std::to_string(ranks)}; }
+std::vector<std::string> launcher_words(int ranks, int threads) {
+  std::vector<std::string> words = {"mpirun", "-n", std::to_string(ranks)};
+  // Otherwise Open MPI binds each of few ranks to one core.
+  if (threads > 1) words.insert(words.end(), {"--bind-to", "none"});
+  return words;
+}
 
 std::vector<std::string> program_words(const std::vector<std::string>& launcher, int threads,
                                        const std::string& program,

@@ -25,7 +25,7 @@ Failure failed_run(const std::string& units, int status, const std::filesystem::
 void require_launcher();
 
 /// Words that start what follows on some ranks: `mpirun -n RANKS`. Throws only std::bad_alloc.
-std::vector<std::string> launcher_words(int ranks);
+std::vector<std::string> launcher_words(int ranks, int threads);
 
 /// Words that start a program of this suite, which stands beside this one, with some threads of OpenMP, by
 /// the words of a launcher, if there are any. Throws std::filesystem::filesystem_error without /proc.

@@ -128,8 +128,8 @@ int most_units(const ScalingRequest& request, device::Backend backend) {
 std::vector<std::string> command_of(ScalingUnit unit, int units, const std::string& program,
                                     const std::vector<std::string>& arguments) {
   const bool ranks = unit == ScalingUnit::ranks;
-  return program_words(ranks ? launcher_words(units) : std::vector<std::string>(), ranks ? 1 : units, program,
-                       arguments);
+  return program_words(ranks ? launcher_words(units, 1) : std::vector<std::string>(), ranks ? 1 : units,
+                       program, arguments);
 }
 
 std::string text_of(int units, ScalingUnit unit) { return std::to_string(units) + " " + name(unit); }

@@ -82,6 +82,7 @@ class Benchmark(perf_program.PerfTest):
             (2, ["--filter", "("], "is not a valid regular expression"),
             (2, ["--ranks", "0"], "--ranks"),
             (2, ["--launcher", "srun"], "--launcher starts several ranks: give their number by --ranks"),
+            (2, ["--weak", "--ranks", "4", "--launcher", "srun -n 4"], "--weak runs on 1, 2, 4, ... ranks: write {ranks} for their number in --launcher"),
             (2, ["--backend", "serial", "--threads", "2"], "the backend serial has one thread"),
             (2, ["--keep", "kept"], "the folder 'kept' of --keep holds files; name a new one"),
             (6, ["--out", "none/rows.jsonl"], "none/rows.jsonl"),
@@ -169,6 +170,12 @@ class Planned(perf_program.PerfTest):
         self.assertIn("[1,61.77208]", " ".join(two))
         self.assertNotIn("mpirun", records[0]["facts"]["command"])
         self.assertTrue(records[1]["facts"]["command"].startswith("env OMP_NUM_THREADS=1 mpirun -n 2 drogue-parachute taylor-green-3d --set "))
+
+    def test_weak_scaling_starts_as_many_ranks_as_each_row_has(self):
+        plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3]}}
+        for words in ((), ("--launcher", "mpirun -n {ranks}")):
+            records = self.benchmark(0, plan, "--weak", "--ranks", "4", *words)[2]
+            self.assertEqual([1, 2, 4], [record["facts"]["ranks"] for record in records])
 
     def test_launcher_of_the_user_must_start_the_ranks(self):
         plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3]}}

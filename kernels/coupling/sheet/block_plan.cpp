@@ -20,7 +20,9 @@ BlockPlan::BlockPlan(const Parameters& p)
 
 double BlockPlan::longest_dt(double admissible) const {
   if (_fixed_dt > 0.0) return _fixed_dt;
-  const bool has_predecessor = _block.dt > 0.0 && _block.cloth_step - _block.since > _block.substeps;
+  const bool has_predecessor =
+      _block.dt > 0.0 && _block.cloth_step - _block.since >=
+                             _block.substeps * std::min<std::int64_t>(2, steps_from(_block.start, _block.dt));
   return has_predecessor ? std::min(admissible, largest_growth * _block.dt) : admissible;
 }
 

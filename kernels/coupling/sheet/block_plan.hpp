@@ -28,7 +28,8 @@ class BlockPlan {
   void end_at(std::int64_t step) { _block.end = step; }
 
   /// Largest dt of the next block, s: a fixed one, or that of the flow, `admissible`, which grows by degrees.
-  /// The last block may have had half of it, to end at a target, and less in a single step.
+  /// The last block may have had half of it, to end at a target, and less in a single step unless one was
+  /// planned.
   [[nodiscard]] double longest_dt(double admissible) const;
 
   /// dt of the block that begins at a time, s. Unless dt is fixed, a whole number of steps reaches a target

@@ -42,8 +42,13 @@ double shadow(Body body, const Vector& direction) {
   return projected_area(mesh.rest, mesh.triangles);
 }
 
-/// Velocity of the stream from a time on, m/s; none where it still varies by a thousandth, in time or place.
+/// Velocity of the stream from a time on, m/s; none where it still varies by a thousandth, in time or place,
+/// and without an inflow: then the velocity of the start decays.
 std::optional<Vector> stream_from(const FlowScene& scene, double from) {
+  if (std::ranges::none_of(scene.parameters.boundary, [](const flow::Boundary& side) {
+        return side.kind == flow::BoundaryKind::inflow;
+      }))
+    return {};
   constexpr double largest_change = 1e-3;
   constexpr int times = 16;
   const flow::Parameters& p = scene.parameters;

@@ -309,7 +309,7 @@ std::string flight_report(const run::ResultDocument& result) {
       const std::string shown = title_of(group.name, name);
       text += "  " + shown + std::string(34 - shown.size(), ' ') +
               run::bar_text(*number, error.value_or(NAN)) +
-              (is_mean && !error ? "  (no error bar: too short a run)" : "") + '\n';
+              (is_mean && !error ? "  (no error bar: too short a run, or a drift)" : "") + '\n';
     }
   }
   return text;

@@ -78,6 +78,21 @@ TEST(BlockPlan, BlocksOfAFrameThatFollowsAFallGrowWithTheTimeSoFar) {
   EXPECT_EQ(steps(0.0), 16) << "a frame at rest";
 }
 
+TEST(BlockPlan, BlocksOfASingleStepBoundTheNextStepWhereTheyArePlanned) {
+  Parameters p;
+  p.longest_batch = 1.0;
+  p.follow.vertices = {{0, 1.0}};
+  p.follow.axes = {false, false, true};
+  p.fabric.gravity = {0.0, 0.0, -9.81};
+  BlockPlan plan(p);
+  EXPECT_EQ(plan.longest_dt(100.0), 100.0);
+  plan.begin(at(0, 0.0), dt, 2);
+  ASSERT_EQ(plan.block().end, 1);
+  static_cast<void>(plan.begin_batch(0, 1));
+  plan.end_batch(1, 2, 0.5);
+  EXPECT_EQ(plan.longest_dt(100.0), 2.0 * dt);
+}
+
 TEST(BlockPlan, DividesWhatIsLeftToATarget) {
   struct Case {
     std::int64_t step;

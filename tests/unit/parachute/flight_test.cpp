@@ -174,7 +174,7 @@ TEST(Flight, ReportPrintsWhatThereIs) {
   EXPECT_EQ(flight_report(result),
             "canopy[0], means from 2 s on; +- is 95 % by the scatter in this run\n"
             "  C_D0                              0.812 +- 0.025\n"
-            "  D_p/D_0                           0.6712  (no error bar: too short a run)\n"
+            "  D_p/D_0                           0.6712  (no error bar: too short a run, or a drift)\n"
             "  peak line force, N                10030\n");
   EXPECT_EQ(flight_title("canopy_1.peak_line_force"), "canopy[1] peak line force, N");
   EXPECT_EQ(flight_title("body_0_force_x_mean"), "body_0_force_x_mean");
