@@ -21,6 +21,7 @@ struct HeatData {
 template <class ExecutionSpace>
 struct Heat final : Simulation {
   using View = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+  using HostView = typename View::host_mirror_type;
   /// Step of cell i. c: dt / dx^2, times the diffusivity of 1 m^2/s.
   struct StepFunctor {
     View u, next;  // temperature, K
@@ -88,13 +89,11 @@ struct Heat final : Simulation {
     std::swap(_u, _next);
     _now = {_now.step + 1, dt < left ? _now.time + dt : target};
   }
-  void upload(std::vector<double> u) const { Kokkos::deep_copy(_u, on_host(u)); }
+  void upload(std::vector<double> u) const { Kokkos::deep_copy(_u, HostView(u.data(), _n)); }
   std::vector<double> download() const {
-    std::vector<double> u(_n);
-    Kokkos::deep_copy(on_host(u), _u);  // waits for all kernels
-    return u;
+    const auto u = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), _u);  // waits for all kernels
+    return {u.data(), u.data() + _n};
   }
-  static auto on_host(std::vector<double>& u) { return typename View::host_mirror_type(u.data(), u.size()); }
   const HeatData& _data;
   int _n;  // cells
   device::Instance<ExecutionSpace> _instance{1};
