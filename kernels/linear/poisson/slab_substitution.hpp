@@ -38,7 +38,9 @@ struct ReduceSlabFunctor {
  private:
   template <bool has_moment>
   KOKKOS_FUNCTION void reduce(int first) const {
-    const auto [diffusivity, reaction, source] = slab.equation();
+    // Clang before 16 captures no structured bindings.
+    const LineEquation equation = slab.equation();
+    const double diffusivity = equation.diffusivity, source = equation.source;
     const int lines = slab.lines(), count = width == 1 || first + width <= lines ? width : lines - first;
     const int mode = width == 1 ? first / slab.parts : first, n = slab.length;
     double low[width], high[width], coupling[width], uniform = 0.0, moment[width] = {};
@@ -109,7 +111,7 @@ struct SubstituteSlabFunctor {
  private:
   template <bool has_mean>
   KOKKOS_FUNCTION void substitute(int first) const {
-    const auto [diffusivity, reaction, source] = slab.equation();
+    const double diffusivity = slab.equation().diffusivity;
     const int lines = slab.lines(), count = width == 1 || first + width <= lines ? width : lines - first;
     const int mode = width == 1 ? first / slab.parts : first, n = slab.length;
     double low[width] = {}, carried[width] = {}, mean[width] = {};
@@ -144,8 +146,7 @@ struct SubstituteSlabFunctor {
             f[k][a] = values[static_cast<std::int64_t>(begin + k) * lines + first + a];
             pivot[k][a] = slab.inverse_pivots(slab.at(begin + k - 1, mode + a));
           }
-      double uniform = 0.0;
-      if constexpr (has_mean) uniform = slab.uniform(of_batch);
+      [[maybe_unused]] double uniform = has_mean ? slab.uniform(of_batch) : 0.0;
       for (int k = 0; k < batch; ++k)
         if (is_full || begin + k < n) {
           const double above = diffusivity * slab.conductances(begin + k + 1);
