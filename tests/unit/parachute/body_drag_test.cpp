@@ -34,7 +34,7 @@ retraction = 0.3
 end_time = 4
 )";
 
-Body body_of(BodyKind kind) {
+Body sized_body(BodyKind kind) {
   Body body;
   body.kind = kind;
   body.axis = 2;
@@ -48,14 +48,14 @@ Body body_of(BodyKind kind) {
 TEST(BodyDrag, RefersToTheAreaAcrossTheStream) {
   const Vector along = {0.0, 0.0, -1.0}, across = {1.0, 0.0, 0.0}, between = {0.6, 0.0, 0.8};
   const double circle = pi / 4.0;
-  EXPECT_DOUBLE_EQ(frontal_area(body_of(BodyKind::sphere), between), circle);
-  EXPECT_DOUBLE_EQ(frontal_area(body_of(BodyKind::plate), along), 0.24);
-  EXPECT_DOUBLE_EQ(frontal_area(body_of(BodyKind::plate), between), 0.8 * 0.24);
-  EXPECT_EQ(frontal_area(body_of(BodyKind::disk), across), 0.0);
-  EXPECT_DOUBLE_EQ(frontal_area(body_of(BodyKind::cup), along), circle);
-  EXPECT_DOUBLE_EQ(frontal_area(body_of(BodyKind::cup), across), 0.5 * circle);
-  EXPECT_DOUBLE_EQ(frontal_area(body_of(BodyKind::cylinder), across), 2.0);
-  Body closed = body_of(BodyKind::cylinder);
+  EXPECT_DOUBLE_EQ(frontal_area(sized_body(BodyKind::sphere), between), circle);
+  EXPECT_DOUBLE_EQ(frontal_area(sized_body(BodyKind::plate), along), 0.24);
+  EXPECT_DOUBLE_EQ(frontal_area(sized_body(BodyKind::plate), between), 0.8 * 0.24);
+  EXPECT_EQ(frontal_area(sized_body(BodyKind::disk), across), 0.0);
+  EXPECT_DOUBLE_EQ(frontal_area(sized_body(BodyKind::cup), along), circle);
+  EXPECT_DOUBLE_EQ(frontal_area(sized_body(BodyKind::cup), across), 0.5 * circle);
+  EXPECT_DOUBLE_EQ(frontal_area(sized_body(BodyKind::cylinder), across), 2.0);
+  Body closed = sized_body(BodyKind::cylinder);
   closed.has_ends = true;
   EXPECT_DOUBLE_EQ(frontal_area(closed, along), circle);
   // A rectangle and an ellipse, by its shadow.
