@@ -37,6 +37,27 @@ class SpaceTimeFunction {
   std::optional<double> _constant;
 };
 
+/// Vector of three such functions, such as a velocity.
+class SpaceTimeVector {
+ public:
+  /// Throws as `SpaceTimeFunction`.
+  explicit SpaceTimeVector(const VectorExpression& text)
+      : _components{SpaceTimeFunction(text[0]), SpaceTimeFunction(text[1]), SpaceTimeFunction(text[2])} {}
+
+  /// As that of a component.
+  std::array<double, 3> operator()(const std::array<double, 3>& place, double time) const {
+    return {_components[0](place, time), _components[1](place, time), _components[2](place, time)};
+  }
+
+ private:
+  std::array<SpaceTimeFunction, 3> _components;
+};
+
+/// Middle of the domain, m. Does not throw.
+[[nodiscard]] inline std::array<double, 3> middle_of(const flow::Parameters& p) {
+  return {0.5 * (p.low[0] + p.high[0]), 0.5 * (p.low[1] + p.high[1]), 0.5 * (p.low[2] + p.high[2])};
+}
+
 /// Value of an expression for all places and times; nothing if it varies. Throws as `SpaceTimeFunction`.
 [[nodiscard]] inline std::optional<double> constant_value(const std::string& text) {
   return SpaceTimeFunction(text).constant();

@@ -29,17 +29,12 @@ double speed_of(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], 
 
 /// Largest speed of `fluid.velocity` in the middle of the domain, m/s.
 double largest_stream(const FlowScene& scene) {
-  const flow::Parameters& p = scene.parameters;
-  std::array<double, 3> middle{};
-  for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] = 0.5 * (p.low[axis] + p.high[axis]);
+  const SpaceTimeVector velocity(scene.velocity);
+  const std::array<double, 3> middle = middle_of(scene.parameters);
   double largest = 0.0;
   constexpr int times = 100;
-  for (int k = 0; k <= times; ++k) {
-    std::array<double, 3> velocity{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      velocity[axis] = SpaceTimeFunction(scene.velocity[axis])(middle, scene.end_time * k / times);
-    largest = std::max(largest, speed_of(velocity));
-  }
+  for (int k = 0; k <= times; ++k)
+    largest = std::max(largest, speed_of(velocity(middle, scene.end_time * k / times)));
   return largest;
 }
 

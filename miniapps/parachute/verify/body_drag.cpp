@@ -52,14 +52,11 @@ std::optional<Vector> stream_from(const FlowScene& scene, double from) {
   constexpr double largest_change = 1e-3;
   constexpr int times = 16;
   const flow::Parameters& p = scene.parameters;
-  const std::array<SpaceTimeFunction, 3> functions = {SpaceTimeFunction(scene.velocity[0]),
-                                                      SpaceTimeFunction(scene.velocity[1]),
-                                                      SpaceTimeFunction(scene.velocity[2])};
+  const SpaceTimeVector velocity(scene.velocity);
   const auto velocity_at = [&](double part, double time) {
-    Vector place{}, velocity{};
+    Vector place{};
     for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = std::lerp(p.low[axis], p.high[axis], part);
-    for (std::size_t axis = 0; axis < 3; ++axis) velocity[axis] = functions[axis](place, time);
-    return velocity;
+    return velocity(place, time);
   };
   const Vector last = velocity_at(0.5, scene.end_time);
   const double bound = largest_change * std::hypot(last[0], last[1], last[2]);

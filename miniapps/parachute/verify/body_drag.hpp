@@ -12,7 +12,7 @@ namespace drogue::parachute_app {
 
 /// Describes the mean drag of body i, 2 F / (rho U^2 A) with its `frontal_area` A, in the group `body_i` of
 /// the result as `describe_flights` does that of canopies. What has none is left out: bodies that move, a
-/// stream that is 0 or varies in these means, a face along it. Throws only std::bad_alloc.
+/// stream that is 0, varies in these means or enters at no side, a face along it. Throws only std::bad_alloc.
 void describe_bodies(const FlowScene& scene, const run::History& history, run::ResultDocument& result);
 
 }  // namespace drogue::parachute_app

@@ -85,12 +85,9 @@ std::vector<std::string> displaced_cloth(const FlowScene& scene, double finest, 
 
 /// Speed of the stream in the middle of the domain at the end, m/s; 1 for none.
 double speed_at_end(const FlowScene& scene) {
-  const flow::Parameters& p = scene.parameters;
-  std::array<double, 3> middle{};
-  for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] = 0.5 * (p.low[axis] + p.high[axis]);
   double speed = 0.0;
-  for (const std::string& component : scene.velocity)
-    speed = std::hypot(speed, SpaceTimeFunction(component)(middle, scene.end_time));
+  for (const double component : SpaceTimeVector(scene.velocity)(middle_of(scene.parameters), scene.end_time))
+    speed = std::hypot(speed, component);
   return speed > 0.0 ? speed : 1.0;
 }
 
