@@ -22,7 +22,24 @@ struct PullViews {
   ListView<ExecutionSpace, int> first;                 ///< lines of pull k: first(k) to first(k + 1) - 1
   ListView<ExecutionSpace, int> pulled, from;          ///< vertices of each line
   ListView<ExecutionSpace, double> stiffness, length;  ///< E A, N; without tension, m
+  PointsView<ExecutionSpace> force;                    ///< of each line on its vertex, N
   ListView<ExecutionSpace, PeakPull> peak;             ///< of each pull
+};
+
+/// Force of a line at the present positions.
+template <class ExecutionSpace>
+struct PullOfLineFunctor {
+  PullViews<ExecutionSpace> pulls;
+  PointsView<ExecutionSpace> x;
+
+  KOKKOS_FUNCTION void operator()(const int line) const {
+    const spatial::Point along =
+        spatial::load_vector(x, pulls.from(line)) - spatial::load_vector(x, pulls.pulled(line));
+    const double length = device::square_root(dot(along, along)),
+                 tension = pulls.stiffness(line) * (length / pulls.length(line) - 1.0);
+    spatial::store_vector(pulls.force, line,
+                          tension > 0.0 ? (tension / length) * along : spatial::Point{0.0, 0.0, 0.0});
+  }
 };
 
 /// Compares the present force of pull k with its peak. `step_time(time)` sets the time of the state, s;
@@ -30,20 +47,14 @@ struct PullViews {
 template <class ExecutionSpace, class StepTime>
 struct RecordPullsFunctor {
   PullViews<ExecutionSpace> pulls;
-  PointsView<ExecutionSpace> x;
   StepTime step_time;
 
   KOKKOS_FUNCTION void operator()(const int k) const {
     double time = 0.0;
     if (!step_time(time)) return;
     spatial::Point sum{0.0, 0.0, 0.0};
-    for (int line = pulls.first(k); line < pulls.first(k + 1); ++line) {
-      const spatial::Point along =
-          spatial::load_vector(x, pulls.from(line)) - spatial::load_vector(x, pulls.pulled(line));
-      const double length = device::square_root(dot(along, along)),
-                   tension = pulls.stiffness(line) * (length / pulls.length(line) - 1.0);
-      if (tension > 0.0) sum = sum + (tension / length) * along;
-    }
+    for (int line = pulls.first(k); line < pulls.first(k + 1); ++line)
+      sum = sum + spatial::load_vector(pulls.force, line);
     const double force = device::square_root(dot(sum, sum));
     if (force > pulls.peak(k).force) pulls.peak(k) = {force, time};
   }
@@ -93,6 +104,7 @@ class PeakPulls {
               .from = list_view(space, "drogue::fabric::pulling_vertices", from),
               .stiffness = list_view(space, "drogue::fabric::pulling_stiffness", length),
               .length = list_view(space, "drogue::fabric::pulling_length", length),
+              .force = PointsView<ExecutionSpace>("drogue::fabric::pulls_of_lines", _lines.size()),
               .peak = list_view(space, "drogue::fabric::peak_pulls", none)};
     _pulls = pulls.size();
     set_stiffness(space, stiffness);
@@ -115,8 +127,10 @@ class PeakPulls {
   void record(const ExecutionSpace& space, const PointsView<ExecutionSpace>& positions,
               const StepTime& step_time) const {
     if (_lines.empty()) return;
+    device::launch_each(space, "drogue::fabric::pulls_of_lines", static_cast<int>(_lines.size()),
+                        PullOfLineFunctor<ExecutionSpace>{_views, positions});
     device::launch_each(space, "drogue::fabric::record_pulls", static_cast<int>(_pulls),
-                        RecordPullsFunctor<ExecutionSpace, StepTime>{_views, positions, step_time});
+                        RecordPullsFunctor<ExecutionSpace, StepTime>{_views, step_time});
   }
 
   /// Peaks so far, N and s, on the device. Does not throw.

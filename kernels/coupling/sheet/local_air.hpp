@@ -45,21 +45,23 @@ struct LocalAir {
   KOKKOS_FUNCTION spatial::Point relax(int i, const spatial::Point& of_vertex,
                                        const spatial::Point& inverse_mass, double dt) const {
     using spatial::load_vector;
+    // All at once, so that a thread waits for memory once.
+    const PorousLaw porous = law(i);
+    const double size = area(i), impulse_before = impulse(i);
     const spatial::Point n = load_vector(normal, i), inverse_air = load_vector(inverse_air_mass, i),
                          now = load_vector(velocity, i) + dt * load_vector(acceleration, i);
-    const double size = area(i);
     if (is_no_slip(i)) {
       const spatial::Point each =
-          coupling::no_slip_impulse(law(i), n, of_vertex - now, dt, size * inverse_mass + inverse_air);
+          coupling::no_slip_impulse(porous, n, of_vertex - now, dt, size * inverse_mass + inverse_air);
       spatial::store_vector(velocity, i, now + product(inverse_air, each));
       spatial::store_vector(no_slip_impulse, i, load_vector(no_slip_impulse, i) + each);
       return of_vertex - size * product(inverse_mass, each);
     }
     const auto scaled = [&](const spatial::Point& by) { return product(by, n); };
     const double of_cloth = size * dot(n, scaled(inverse_mass)), of_air = dot(n, scaled(inverse_air));
-    const double normal_impulse = porous_impulse(law(i), dot(of_vertex - now, n), dt, of_cloth + of_air);
+    const double normal_impulse = porous_impulse(porous, dot(of_vertex - now, n), dt, of_cloth + of_air);
     spatial::store_vector(velocity, i, now + normal_impulse * scaled(inverse_air));
-    impulse(i) += normal_impulse;
+    impulse(i) = impulse_before + normal_impulse;
     return of_vertex - (normal_impulse * size) * scaled(inverse_mass);
   }
 };
@@ -76,9 +78,10 @@ struct AirRelaxation {
   /// Velocity after the relaxation, or after the reaction of the last step, m/s. Updates the local velocity
   /// and the impulse of the vertex unless the coupling is explicit.
   KOKKOS_FUNCTION fabric::Vector3<double> relaxed_velocity(const fabric::VertexStage& at) const {
-    const spatial::Point inverse_mass = spatial::load_vector(air.inverse_cloth_mass, at.vertex),
-                         velocity = drag.is_empty() ? at.velocity : drag.relax(at, inverse_mass);
-    if (!(air.area(at.vertex) > 0.0)) return velocity;
+    const spatial::Point inverse_mass = spatial::load_vector(air.inverse_cloth_mass, at.vertex);
+    const double area = air.area(at.vertex);
+    const spatial::Point velocity = drag.is_empty() ? at.velocity : drag.relax(at, inverse_mass);
+    if (!(area > 0.0)) return velocity;
     if (air.is_explicit())
       return velocity - at.dt * product(inverse_mass, spatial::load_vector(air.last_force, at.vertex));
     return air.relax(at.vertex, velocity, inverse_mass, at.dt);

@@ -53,7 +53,8 @@ template <class ExecutionSpace>
                               : pairs ? PersistentPairsFunctor<ExecutionSpace, any>::scratch_bytes(views)
                                       : PersistentRingsFunctor<ExecutionSpace, any>::scratch_bytes(views);
   if (scratch > Grid::most_scratch_bytes(instance)) return std::nullopt;
-  const int threads = pairs ? team_threads(patches, patches.max_rows, max_pair_threads)
+  const int spring_rows = euler ? static_cast<int>(views.max_spring_slots) / slice : 0,
+            threads = pairs ? team_threads(patches, patches.max_rows + spring_rows, max_pair_threads)
                             : team_threads(patches, 0, max_ring_threads);
   return PersistentDriver<ExecutionSpace>{
       {instance, count, threads, scratch, static_cast<std::size_t>(patches.messages)}, views, pairs};

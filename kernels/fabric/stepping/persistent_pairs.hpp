@@ -46,20 +46,24 @@ struct PersistentPairsFunctor {
     if constexpr (whole_triangles<model>) {
       const Vector3<double> own = load_points<double>(points, pair.vertex);
       const auto to = [&](int k) { return edge_to<double>(points, own, pair.neighbour[k]); };
+      const auto store = [&](int slot, const EdgeVector<double>& j, const EdgeVector<double>& k,
+                             const RestTriangle<double>& rest) {
+        // One neutral slot would send all lanes through the branches of a root and a division of zero.
+        Vector3<double> force{0.0, 0.0, 0.0};
+        if (rest.inverse_area > 0.0) force = triangle_force<model>(of.fabric.moduli, j, k, rest);
+        store_points(forces, slot, force);
+      };
       const EdgeVector<double> middle = to(1);
-      store_points(forces, pair.first_force,
-                   triangle_force<model>(of.fabric.moduli, to(0), middle, pair.rest[0]));
-      if (pair.triangles == 2)
-        store_points(forces, pair.first_force + slice,
-                     triangle_force<model>(of.fabric.moduli, middle, to(2), pair.rest[1]));
+      store(pair.first_force, to(0), middle, pair.rest[0]);
+      if (pair.triangles == 2) store(pair.first_force + slice, middle, to(2), pair.rest[1]);
     }
   }
 
-  /// Sum of the forces from `begin` to `end`, one per slice, in their order. Four loads are in flight at
-  /// once.
-  KOKKOS_FUNCTION static Vector3<double> sum_of(const TeamTable& forces, int begin, int end) {
+  /// `sum` plus the forces from `begin` to `end`, one per slice, in their order, N. Four loads are in flight
+  /// at once.
+  KOKKOS_FUNCTION static Vector3<double> with_forces(Vector3<double> sum, const TeamTable& forces, int begin,
+                                                     int end) {
     const Vector3<double> zero{0.0, 0.0, 0.0};
-    Vector3<double> sum = zero;
     for (int k = begin; k < end; k += 4 * slice) {
       Vector3<double> four[4];
       for (int n = 0; n < 4; ++n)
@@ -100,10 +104,9 @@ struct PersistentPairsFunctor {
              for (int more = row + stride; more < end; more += stride)
                store_forces(pair(more, lane, first_slot), now, forces);
              arrive();
-             Vector3<double> elastic{0.0, 0.0, 0.0};
-             if (own.vertex >= 0)
-               elastic = with_springs<model>(local, now, rank, sum_of(forces, first_force, forces_end));
-             return elastic;
+             const Vector3<double> zero{0.0, 0.0, 0.0};
+             if (own.vertex < 0) return zero;
+             return with_springs<model>(local, now, rank, with_forces(zero, forces, first_force, forces_end));
            });
   }
 };

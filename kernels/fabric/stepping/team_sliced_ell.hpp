@@ -18,6 +18,14 @@ struct TeamTable {
   KOKKOS_FUNCTION double& operator()(int row, int column) const { return data[column * rows + row]; }
 };
 
+/// Table of `rows` points in the scratch memory of the team of `member`.
+template <class Member>
+KOKKOS_FUNCTION TeamTable team_table(const Member& member, std::size_t rows) {
+  return {static_cast<double*>(
+              member.team_scratch(0).get_shmem_aligned(3 * rows * sizeof(double), alignof(double))),
+          static_cast<int>(rows)};
+}
+
 /// `SlicedEll` of a patch in the scratch memory of its team.
 template <int values>
 struct TeamSlicedEll {
