@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "kernels/mesh/edges.hpp"
 
@@ -14,19 +15,30 @@ using fabric::Vector;
 
 constexpr int raster_squares = 256;  // along the larger extent
 
-double distance_between(const Vector& a, const Vector& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+double squared_distance(const Vector& a, const Vector& b) {
+  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return x * x + y * y + z * z;
 }
 
 /// Force of a line without compression on its second end, N.
 Vector pull_of_line(const fabric::Mesh& mesh, std::size_t line, std::span<const Vector> positions) {
   const Vector &a = positions[static_cast<std::size_t>(mesh.lines[line][0])],
                &b = positions[static_cast<std::size_t>(mesh.lines[line][1])];
-  const double length = distance_between(a, b), rest = mesh::rest_length(mesh, line);
+  const double length = std::sqrt(squared_distance(a, b)), rest = mesh::rest_length(mesh, line);
   const double tension = std::max(0.0, mesh.line_stiffness[line] * (length / rest - 1.0));
   Vector pull{};
   for (std::size_t axis = 0; axis < 3; ++axis) pull[axis] = tension * (a[axis] - b[axis]) / length;
   return pull;
+}
+
+/// Vertices of a suspension line.
+struct LineEnds {
+  std::size_t skirt, meeting;
+};
+LineEnds ends_of(const CanopyRows& rows, const fabric::Mesh& mesh, int line) {
+  const auto [a, b] = mesh.lines[static_cast<std::size_t>(line)];
+  const auto one = static_cast<std::size_t>(a), other = static_cast<std::size_t>(b);
+  return one < rows.cloth_end ? LineEnds{one, other} : LineEnds{other, one};
 }
 
 /// Mean of vectors of the cloth with the weights of its masses, kg.
@@ -60,23 +72,23 @@ Vector doubled_area_vector(const std::array<int, 3>& triangle, std::span<const V
 double inversion_of(const CanopyRows& rows, const fabric::Parameters& sheets,
                     const std::vector<Vector>& positions) {
   const fabric::Mesh& mesh = sheets.mesh;
-  const auto at = [&](int i) -> const Vector& { return positions[static_cast<std::size_t>(i)]; };
-  std::vector<Vector> normals(rows.cloth_end - rows.begin, Vector{});
-  for (std::size_t t = rows.triangles_begin; t < rows.triangles_end; ++t) {
-    const Vector area = doubled_area_vector(mesh.triangles[t], positions);
+  // Normals at the ends of lines alone.
+  std::vector<std::optional<Vector>> normals(rows.cloth_end - rows.begin);
+  for (const int line : rows.suspension) normals[ends_of(rows, mesh, line).skirt - rows.begin] = Vector{};
+  for (std::size_t t = rows.triangles_begin; t < rows.triangles_end; ++t)
     for (const int i : mesh.triangles[t])
-      for (std::size_t k = 0; k < 3; ++k) normals[static_cast<std::size_t>(i) - rows.begin][k] += area[k];
-  }
+      if (auto& normal = normals[static_cast<std::size_t>(i) - rows.begin]) {
+        const Vector area = doubled_area_vector(mesh.triangles[t], positions);
+        for (std::size_t k = 0; k < 3; ++k) (*normal)[k] += area[k];
+      }
   const Vector cloth = mean_over_mass(rows, sheets.mass, positions);
   std::size_t inverted = 0;
   for (const int line : rows.suspension) {
-    const auto [one, other] = mesh.lines[static_cast<std::size_t>(line)];
-    const bool is_cloth = static_cast<std::size_t>(one) < rows.cloth_end;
-    const int skirt = is_cloth ? one : other, meeting = is_cloth ? other : one;
-    const Vector& normal = normals[static_cast<std::size_t>(skirt) - rows.begin];
+    const auto [skirt, meeting] = ends_of(rows, mesh, line);
+    const Vector& normal = *normals[skirt - rows.begin];
     double outwards = 0.0;
     for (std::size_t k = 0; k < 3; ++k)
-      outwards += normal[k] * (at(skirt)[k] - 0.75 * cloth[k] - 0.25 * at(meeting)[k]);
+      outwards += normal[k] * (positions[skirt][k] - 0.75 * cloth[k] - 0.25 * positions[meeting][k]);
     if (outwards < 0.0) ++inverted;
   }
   return rows.suspension.empty()
@@ -90,16 +102,22 @@ class Raster {
   Raster(const Vector& low, double side)
       : _low(low), _side(side), _covered(static_cast<std::size_t>(raster_squares) * raster_squares, 0) {}
 
-  void add(const Vector& a, const Vector& b, const Vector& c) {
+  /// Copies, which the squares cannot alias, stay in registers.
+  void add(const Vector a, const Vector b, const Vector c) {
     const auto [first_row, last_row] = range(1, a, b, c);
     const auto [first, last] = range(0, a, b, c);
-    for (int row = first_row; row <= last_row; ++row)
+    const double left = _low[0], low = _low[1], side = _side;
+    for (int row = first_row; row <= last_row; ++row) {
+      char* const covered = &_covered[static_cast<std::size_t>(row) * raster_squares];
+      const double y = low + (row + 0.5) * side;
       for (int column = first; column <= last; ++column) {
-        const Vector at = {_low[0] + (column + 0.5) * _side, _low[1] + (row + 0.5) * _side, 0.0};
-        const double u = turn(a, b, at), v = turn(b, c, at), w = turn(c, a, at);
-        if ((u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0))
-          _covered[static_cast<std::size_t>(row) * raster_squares + static_cast<std::size_t>(column)] = 1;
+        const double x = left + (column + 0.5) * side, u = turn(a, b, x, y), v = turn(b, c, x, y),
+                     w = turn(c, a, x, y);
+        // Without branches, which would be taken at random.
+        covered[column] |= static_cast<char>(((u >= 0.0) & (v >= 0.0) & (w >= 0.0)) |
+                                             ((u <= 0.0) & (v <= 0.0) & (w <= 0.0)));
       }
+    }
   }
 
   [[nodiscard]] double area() const {
@@ -108,8 +126,8 @@ class Raster {
 
  private:
   /// Doubled area of the triangle from the line a, b to a point, m^2.
-  static double turn(const Vector& a, const Vector& b, const Vector& at) {
-    return (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]);
+  static double turn(const Vector& a, const Vector& b, double x, double y) {
+    return (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
   }
   [[nodiscard]] std::pair<int, int> range(std::size_t axis, const Vector& a, const Vector& b,
                                           const Vector& c) const {
@@ -161,9 +179,8 @@ double lean_of(const CanopyRows& rows, const fabric::Mesh& mesh, std::span<const
   if (rows.suspension.empty() || !rows.payload) return 0.0;
   Vector axis{};
   for (const int line : rows.suspension) {
-    const auto [one, other] = mesh.lines[static_cast<std::size_t>(line)];
-    const auto skirt = static_cast<std::size_t>(static_cast<std::size_t>(one) < rows.cloth_end ? one : other);
-    for (std::size_t k = 0; k < 3; ++k) axis[k] += positions[skirt][k] - positions[*rows.payload][k];
+    const Vector& skirt = positions[ends_of(rows, mesh, line).skirt];
+    for (std::size_t k = 0; k < 3; ++k) axis[k] += skirt[k] - positions[*rows.payload][k];
   }
   return 180.0 / std::numbers::pi * std::atan2(std::hypot(axis[0], axis[1]), std::abs(axis[2]));
 }
@@ -187,15 +204,15 @@ CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
       std::span(mesh.triangles).subspan(rows.triangles_begin, rows.triangles_end - rows.triangles_begin);
   result.projected_area = projected_area(state.positions, triangles);
   if (!state.air.empty()) result.leak = leak_through(triangles, state);
+  double largest = 1.0;
   for (const auto& triangle : triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto a = static_cast<std::size_t>(triangle[k]),
                  b = static_cast<std::size_t>(triangle[(k + 1) % 3]);
-      const double strain = distance_between(state.positions[a], state.positions[b]) /
-                                distance_between(mesh.rest[a], mesh.rest[b]) -
-                            1.0;
-      result.largest_strain = std::max(result.largest_strain, strain);
+      largest = std::max(largest, squared_distance(state.positions[a], state.positions[b]) /
+                                      squared_distance(mesh.rest[a], mesh.rest[b]));
     }
+  result.largest_strain = std::sqrt(largest) - 1.0;
   result.inversion = inversion_of(rows, sheets, state.positions);
   result.lean = lean_of(rows, mesh, state.positions);
   return result;
