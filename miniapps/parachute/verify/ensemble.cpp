@@ -187,6 +187,10 @@ Plan plan_of(const MiniAppOptions& options, const std::filesystem::path& file) {
   ensemble.end_time = base.end_time;
   ensemble.axes = study::parse_ensemble(options.study);
   ensemble.title = flight_title;
+  ensemble.resolve = [file, options](const framework::EnsembleRun& run) {
+    const FlowScene scene = read_point(file, options, run.sets);
+    return framework::ResolvedScene{print_flow_scene(scene), scene_identity(scene)};
+  };
   const std::vector<double> wanted = ensemble.axes.factors;
   for (const double factor : wanted)
     plan.scenes.push_back(member_scene(file, options, refinement(base, factor)));

@@ -173,7 +173,10 @@ std::string check_study(const MiniAppOptions& options, const std::filesystem::pa
 }
 
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
-  if (is_ensemble(options)) return framework::run_ensemble(options, file, ensemble_of(options, file));
+  if (is_ensemble(options)) {
+    framework::run_ensemble(options, file, ensemble_of(options, file));
+    return ExitCode::ok;
+  }
   const FlowScene base = read_flow_scene(file, options.set);
   const std::vector<FlowScene> scenes = scenes_of(options, file, base);
   int threads = 1;
