@@ -139,7 +139,7 @@ std::vector<std::string> sets_without_fields(std::vector<std::string> sets) {
 FlowScene read_point(const std::filesystem::path& file, const MiniAppOptions& options,
                      const std::vector<std::string>& sets) {
   try {
-    return read_flow_scene(file, sets);
+    return read_flow_scene(file, sets, SchemeSource::scene, framework::InitialCheck::some_cells);
   } catch (const Failure& failure) {
     throw Failure(ExitCode::usage, "--study " + options.study + ": " + failure.what());
   }
