@@ -220,6 +220,7 @@ std::string to_json(const ResultDocument& result) {
   json["version"] = result.version;
   json["git"] = result.git;
   json["scene"] = result.scene;
+  if (!result.fingerprint.empty()) json["fingerprint"] = result.fingerprint;
   json["backend"] = result.backend;
   json["device"] = result.device;
   json["precision"] = result.precision;

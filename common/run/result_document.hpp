@@ -70,6 +70,7 @@ class Metrics {
 /// Content of result.json, schema `drogue.result/1`. Non-finite numbers are written as null.
 struct ResultDocument {
   std::string program, version, git, scene, backend, device;
+  std::string fingerprint;  ///< of what a continuation of the run must have in common with it
   std::string precision = "double";
   std::string driver;  ///< how steps are launched: "persistent", "graph", "plain", "stages" or "seed"
   int ranks = 1;

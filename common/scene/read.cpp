@@ -91,9 +91,10 @@ class Reader {
     if (const auto found = table._former.find(name); found != table._former.end())
       return path + " is now " + found->second;
     std::string text = "unknown key " + path + "; ";
-    for (const std::string& other : all_paths(_root)) {
+    // An element of an array is a thing of its own kind, of which a key of another kind says nothing.
+    const bool is_element = table._path.find(']') != std::string::npos;
+    for (const std::string& other : is_element ? std::vector<std::string>{} : all_paths(_root))
       if (other.ends_with("." + name)) return text + "did you mean \"" + other + "\"?";
-    }
     std::vector<std::string> valid;
     for (const auto& key : table._keys) valid.push_back(key->_name);
     for (const auto& [old_name, new_name] : renamed_keys)

@@ -108,11 +108,19 @@ bool is_ensemble(const std::string& text, const std::vector<std::string>& others
   std::vector<std::string> all = axis_names;
   all.insert(all.end(), others.begin(), others.end());
   bool is_one = false;
+  std::string other;
   for (const std::string& part : split(text, ',')) {
     const std::string name = part.substr(0, part.find('='));
     require_one_of(name, all);
-    is_one = is_one || std::ranges::find(axis_names, name) != axis_names.end();
+    if (std::ranges::find(axis_names, name) != axis_names.end())
+      is_one = true;
+    else
+      other = name;
   }
+  if (is_one && !other.empty())
+    refuse(other +
+           " cannot be combined with ensemble, cells and jobs; cells=1:2 names two grids, the second " +
+           "with twice as many cells along each axis");
   return is_one;
 }
 
@@ -152,6 +160,17 @@ void read_member(const std::filesystem::path& result, int exit_code, const std::
   if (const auto timing = json.find("timing"); timing != json.end())
     member.wall_s = real_at(*timing, "wall_s");
   if (member.is_finished()) member.quantities = quantities_of(json);
+}
+
+std::optional<Origin> read_finished(const std::filesystem::path& result, Member& member) {
+  std::ifstream stream(result);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  Member stored = member;
+  read_member(result, json.value("exit_code", -1), "", stored);
+  if (!stored.is_finished()) return std::nullopt;
+  member = stored;
+  return Origin{json.value("version", ""), json.value("git", ""), json.value("fingerprint", "")};
 }
 
 std::vector<StudyQuantity> summarize(const std::vector<Member>& members, const std::vector<double>& factors) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,8 @@ struct EnsembleAxes {
   int jobs = 0;                       ///< runs at once; 0: as many as suit the backend
 };
 
-/// True if `--study` names one of these axes. Throws `Failure` (usage) for a name that is neither one of them
-/// nor among `others`, the axes of the other studies of a program.
+/// True if `--study` names these axes. Throws `Failure` (usage) for a name that is neither one of them nor
+/// among `others`, the axes of the other studies of a program, and for names of both.
 [[nodiscard]] bool is_ensemble(const std::string& text, const std::vector<std::string>& others);
 
 /// Parses them. Throws `Failure` (usage).
@@ -55,6 +56,14 @@ struct Member {
 /// `body_i`, and what checks measured. Without such a file, `exit_code` of the process and `log`, what it
 /// printed, describe a failure.
 void read_member(const std::filesystem::path& result, int exit_code, const std::string& log, Member& member);
+
+/// What made the finished run of an earlier study, as its result.json states it.
+struct Origin {
+  std::string version, git, fingerprint;
+};
+
+/// Reads a run that an earlier study has finished; nothing if `result` is not of such a run.
+[[nodiscard]] std::optional<Origin> read_finished(const std::filesystem::path& result, Member& member);
 
 /// A quantity of all runs that have it.
 struct StudyQuantity {

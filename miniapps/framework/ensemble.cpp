@@ -29,6 +29,19 @@ std::string last_line(const std::filesystem::path& file) {
   return last;
 }
 
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// A directory with a study of this kind, which has runs.csv from its first moment on, is continued.
+run::ExistingRun existing_study(const MiniAppOptions& options, const std::filesystem::path& directory) {
+  if (options.overwrite) return run::ExistingRun::overwrite;
+  std::error_code ignored;
+  return std::filesystem::exists(directory / "runs.csv", ignored) ? run::ExistingRun::resume
+                                                                  : run::ExistingRun::refuse_study;
+}
+
 class EnsembleStudy {
  public:
   EnsembleStudy(const MiniAppOptions& options, const std::filesystem::path& file, Ensemble& ensemble)
@@ -36,38 +49,80 @@ class EnsembleStudy {
         _file(file),
         _ensemble(ensemble),
         _jobs(jobs_of(options, ensemble)),
-        _directory(
-            options.out.empty() ? std::filesystem::path("out") / (ensemble.scene + "-study") : options.out,
-            options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse_study),
+        _out(options.out.empty() ? std::filesystem::path("out") / (ensemble.scene + "-study") : options.out),
+        _directory(_out, existing_study(options, _out)),
         _result(run::new_result(ensemble.program, ensemble.scene)) {
+    if (!options.overwrite) take_over_finished();
     _directory.begin();
+    write_rows();
     _directory.write_scene(ensemble.printed);
     _result.warnings = ensemble.notices;
     if (!options.quiet)
       for (const std::string& notice : ensemble.notices) print_notice(ensemble.program, notice);
   }
 
-  ExitCode run() {
+  void run() {
     std::vector<ChildProcess> processes;
-    for (const EnsembleRun& run : _ensemble.runs) processes.push_back(process_of(run));
+    std::vector<study::Member*> members;
+    for (EnsembleRun& run : _ensemble.runs) {
+      if (run.member.is_finished()) continue;
+      processes.push_back(process_of(run));
+      members.push_back(&run.member);
+    }
+    if (_taken_over > 0 && !_options.quiet)
+      std::printf("%zu of %zu runs were there already; --overwrite runs them anew\n", _taken_over,
+                  _ensemble.runs.size());
     const bool all_started =
-        run_processes(processes, _jobs, [&](std::size_t i, int code) { finish(i, code); });
+        run_processes(processes, _jobs, [&](std::size_t i, int code) { finish(*members[i], code); });
     const bool is_interrupted =
         !all_started || std::ranges::any_of(_ensemble.runs, [](const EnsembleRun& run) {
           return run.member.code == ExitCode::interrupted;
         });
-    _result.exit_code = is_interrupted ? ExitCode::interrupted : ExitCode::ok;
-    const EnsembleRun* const failed = first_failure();
-    if (failed != nullptr && !is_interrupted) {
+    if (is_interrupted) {
+      _result.exit_code = ExitCode::interrupted;
+      _result.message =
+          "interrupted by a signal; the tables hold the finished runs, and the same command runs the others";
+    } else if (const EnsembleRun* const failed = first_failure()) {
       _result.exit_code = failed->member.code;
       _result.message = failure_text(*failed);
     }
     report();
-    if (failed != nullptr && !is_interrupted) throw Failure(_result.exit_code, _result.message);
-    return _result.exit_code;
+    if (_result.exit_code != ExitCode::ok) throw Failure(_result.exit_code, _result.message);
   }
 
  private:
+  /// Takes over the runs that an earlier study has finished. Throws `Failure` (usage) for one of another
+  /// scene or program: their results would be mixed.
+  void take_over_finished() {
+    for (EnsembleRun& run : _ensemble.runs) {
+      const std::filesystem::path folder = folder_of(run.member);
+      const auto origin = study::read_finished(folder / "result.json", run.member);
+      if (!origin) continue;
+      if (const std::string difference = difference_from(*origin, run); !difference.empty())
+        throw Failure(ExitCode::usage, "'" + folder.string() + "' holds a run of " + difference +
+                                           "; choose another --out, or give --overwrite to run all anew");
+      _finished.push_back(run.member);
+    }
+    _taken_over = _finished.size();
+  }
+
+  /// What a finished run is of instead; empty if it is the one that is wanted.
+  [[nodiscard]] std::string difference_from(const study::Origin& origin, const EnsembleRun& run) const {
+    if (origin.version != _result.version || origin.git != _result.git)
+      return "another program: version " + origin.version + " of commit " + origin.git + ", not " +
+             _result.version + " of " + _result.git;
+    const ResolvedScene wanted = _ensemble.resolve(run);
+    const std::string printed = text_of(folder_of(run.member) / "scene.toml");
+    if (printed == wanted.printed && origin.fingerprint == fingerprint(wanted.identity)) return {};
+    // With the same keys, the meshes differ.
+    return "another scene: " + first_difference({printed, "earlier"}, {wanted.printed, "present"});
+  }
+
+  void write_rows() const {
+    run::write_file_atomically(_directory.file("runs.csv"),
+                               study::members_csv(_finished, _ensemble.axes.factors));
+  }
+
   [[nodiscard]] std::filesystem::path folder_of(const study::Member& member) const {
     return _directory.path() / member.folder;
   }
@@ -98,17 +153,15 @@ class EnsembleStudy {
     return process;
   }
 
-  void finish(std::size_t i, int code) {
-    study::Member& member = _ensemble.runs[i].member;
+  void finish(study::Member& member, int code) {
     study::read_member(folder_of(member) / "result.json", code, last_line(log_of(member)), member);
-    // That of the run speaks of --restart, which continues no study.
+    // That of the run speaks of --restart, which continues no run of a study.
     if (member.code == ExitCode::interrupted) member.message.clear();
     std::error_code ignored;
     if (member.message.empty() || std::filesystem::file_size(log_of(member), ignored) == 0)
       std::filesystem::remove(log_of(member), ignored);
     _finished.push_back(member);
-    run::write_file_atomically(_directory.file("runs.csv"),
-                               study::members_csv(_finished, _ensemble.axes.factors));
+    write_rows();
     if (_options.quiet) return;
     std::printf("%-24s %3zu of %zu  %s, %lld steps in %.3g s%s\n", member.folder.c_str(), _finished.size(),
                 _ensemble.runs.size(), run::status_name(member.code).c_str(),
@@ -165,9 +218,11 @@ class EnsembleStudy {
   Ensemble& _ensemble;
   const int _jobs;
   const Stopwatch _stopwatch;
+  const std::filesystem::path _out;
   run::RunDirectory _directory;
   run::ResultDocument _result;
   std::vector<study::Member> _finished;  ///< in the order in which they ended
+  std::size_t _taken_over = 0;           ///< of them, from an earlier study
 };
 
 }  // namespace
@@ -180,8 +235,8 @@ int jobs_of(const MiniAppOptions& options, const Ensemble& ensemble) {
              : std::clamp(device::host_cores().allowed, 1, static_cast<int>(ensemble.runs.size()));
 }
 
-ExitCode run_ensemble(const MiniAppOptions& options, const std::filesystem::path& file, Ensemble ensemble) {
-  return EnsembleStudy(options, file, ensemble).run();
+void run_ensemble(const MiniAppOptions& options, const std::filesystem::path& file, Ensemble ensemble) {
+  EnsembleStudy(options, file, ensemble).run();
 }
 
 }  // namespace drogue::framework

@@ -86,6 +86,7 @@ class SceneRun {
         .fingerprint = fingerprint(identity),
         .restart = _restart,
         .describe_difference = [&](const std::string& restarted) { return difference(restarted, identity); }};
+    _result.fingerprint = files.fingerprint;
     const std::string printed = scene->print();
     require_scene_of_root(printed + files.fingerprint);
     _communicator.run_on_root([&] {

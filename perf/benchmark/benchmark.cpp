@@ -15,6 +15,7 @@
 #include "common/program/stopwatch.hpp"
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
+#include "kernels/device/host_cores.hpp"
 #include "perf/models/scaling.hpp"
 #include "perf/problems/known_puts.hpp"
 #include "perf/problems/puts.hpp"
@@ -47,7 +48,8 @@ struct Answers {
   double found = 0.0;  ///< largest error
   bool passed = true;  ///< all programs ended with passed checks
   std::int64_t bytes = 0;
-  nlohmann::json result;  ///< of the last run
+  device::HostCores cores;  ///< before the first run
+  nlohmann::json result;    ///< of the last run
 };
 
 void write_batch(const std::filesystem::path& file, std::size_t count) {
@@ -149,6 +151,7 @@ Answers run_problem(const Request& request, const Problem& problem, int ranks,
                     const std::vector<std::string>& command) {
   if (problem.puts > 0) write_batch(request.folder / problem.arguments[1], problem.puts);
   Answers answers;
+  answers.cores = device::host_cores();
   const Stopwatch watch;
   do run_once(request, problem, ranks, command, answers);
   while (answers.passed && answers.seconds.size() < most_runs &&
@@ -175,12 +178,16 @@ void print_row(const Request& request, const Problem& problem, int ranks, const 
                                : "-";
   const std::string answer = printed("%s %.3g, expected %.3g to %.3g: %s", problem.quantity.c_str(),
                                      answers.found, problem.low, problem.high, verdict(record));
-  std::printf(columns, problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
-              std::string(device::name(request.backend)).c_str(),
-              printed("%d x %d", ranks, threads_of(request, ranks)).c_str(),
-              printed("%.0f", 1e-6 * static_cast<double>(answers.bytes)).c_str(),
-              median_text(record, 1.0, 3).c_str(), interval_text(record, 1.0, 3).c_str(), rate.c_str(),
-              answer.c_str());
+  std::printf(
+      columns, problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
+      std::string(device::name(request.backend)).c_str(),
+      printed("%d x %d", ranks, threads_of(request, ranks)).c_str(),
+      printed("%.0f", 1e-6 * static_cast<double>(answers.bytes)).c_str(), median_text(record, 1.0, 3).c_str(),
+      record.passed() && record.samples.size() == 1 ? "one run" : interval_text(record, 1.0, 3).c_str(),
+      rate.c_str(), answer.c_str());
+  const int others = answers.cores.running - 1, online = answers.cores.online;
+  if (others > 0 && others + ranks * threads_of(request, ranks) > online)
+    std::printf("  too slow: threads of other programs ran when it began, %d on %d cores\n", others, online);
   if (const std::string reason = answers.result.value("message", ""); !reason.empty())
     std::printf("  %s\n", reason.c_str());
   std::fflush(stdout);
@@ -211,6 +218,7 @@ std::string add_row(const Request& request, const Problem& problem, int ranks, T
              {"threads", answers.result["threads"]},
              {"device", answers.result["device"]},
              {"memory_bytes", answers.bytes},
+             {"other_threads", answers.cores.running - 1},
              {"quantity", problem.quantity},
              {"expected", {problem.low, problem.high}},
              {"merit", problem.merit},

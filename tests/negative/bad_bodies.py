@@ -30,6 +30,10 @@ BAD_LINES = [
     (8, "[[boby]]", 8, ['"boby"', 'did you mean "body"?']),
     (9, 'kind = "plat"', 9, ["body[0].kind", 'did you mean "plate"?']),
     (9, 'kynd = "plate"', 9, ['"body[0].kynd"', "kind"]),
+    # names of other tables, which would not help here
+    (9, 'shape = "plate"', 9, ['unknown key "body[0].shape"; valid names are kind, normal,']),
+    (13, "diameter = 0.05", 13, ['unknown key "body[0].diameter"; valid names are kind, normal,']),
+    (13, "edge_lenght = 0.05", 13, ['unknown key "body[0].edge_lenght"; did you mean "edge_length"?']),
     (10, 'normal = "w"', 10, ["body[0].normal", '"x"']),
     (13, "edge = 0.05", 13, ['"body[0].edge"', "edge_length"]),
     (14, 'porosity = { law = "forcheimer" }', 14, ["body[0].porosity.law", 'did you mean "forchheimer"?']),

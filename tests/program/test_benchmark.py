@@ -12,11 +12,12 @@ import perf_program
 # Stands for a program of the suite: plan.json beside it has the exit code, and what differs in its result. A number of prices by
 # their errors makes prices of the known puts.
 PROGRAM = """#!{python}
-import json, os, pathlib, sys
+import json, os, pathlib, sys, time
 words, here = sys.argv[1:], pathlib.Path(sys.argv[0])
 plan = json.loads((here.parent / "plan.json").read_text()).get(here.name, {{}})
 with (here.parent / "calls.jsonl").open("a") as calls:
     calls.write(json.dumps([here.name, *words]) + "\\n")
+time.sleep(plan.get("sleep", 0))
 if plan.get("sentence"):
     sys.exit(print(here.name + ": " + plan["sentence"], file=sys.stderr) or plan["code"])
 out = pathlib.Path(words[words.index("--out") + 1])
@@ -147,6 +148,24 @@ class Planned(perf_program.PerfTest):
         for code, plan in ((0, {}), (5, {"errors": [0, 0, 0, 0, 3e-6], "stated": 1.0}), (5, {"errors": [0, 2.1e-6, 0, 0, 0]})):
             self.benchmark(code, {"drogue-options": plan}, "--filter", "puts", "--keep", f"kept-{plan}")
         self.assertEqual(16385, len((self.folder / "kept-{}/puts-16384.csv").read_text().splitlines()))
+
+    def test_other_programs_beside_a_row_are_stated(self):
+        plan = {"drogue-gas": {"check": ["l1_density", 9.1e-5]}}
+        busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2 * os.cpu_count())]
+        try:
+            text, _, (record,) = self.benchmark(0, plan, "--filter", "sod")
+        finally:
+            for process in busy:
+                process.kill()
+                process.wait()
+        others = record["facts"]["other_threads"]
+        self.assertGreaterEqual(others, os.cpu_count())
+        self.assertIn(f" passed\n  too slow: threads of other programs ran when it began, {others} on {os.cpu_count()} cores\n", text)
+
+    def test_one_run_has_no_interval(self):
+        text, _, (record,) = self.benchmark(0, {"drogue-gas": {"check": ["l1_density", 9.1e-5], "sleep": 2.6}}, "--filter", "sod")
+        self.assertEqual([10.0], record["samples"])
+        self.assertIn(" 10.000  one run ", text)
 
     def test_program_that_refuses_ends_it_with_the_rows_until_then(self):
         plan = {"drogue-options": {"code": 3, "sentence": "batch.csv:2: no such column"}}

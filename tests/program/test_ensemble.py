@@ -1,5 +1,5 @@
 # ctest-label: no-sanitizer
-"""Option --study with an ensemble: perturbed runs on two grids, their error bars, failures and interruption."""
+"""Option --study with an ensemble: perturbed runs on two grids, their error bars, failures and continuation."""
 
 import csv
 import signal
@@ -24,6 +24,12 @@ class Ensemble(gas_program.GasTest):
     def rows(self):
         with open(self.folder / "study/runs.csv", encoding="utf-8") as file:
             return list(csv.DictReader(file))
+
+    def by_folder(self):
+        return {row["folder"]: {name: value for name, value in row.items() if name != "wall_s"} for row in self.rows()}
+
+    def file_of(self, folder):
+        return (self.folder / "study" / folder / "result.json").read_bytes()
 
     def test_gives_error_bars(self):
         text = self.study(0, "ensemble=2,cells=0.8:1,jobs=2", sets=SHORT).stdout
@@ -81,7 +87,7 @@ class Ensemble(gas_program.GasTest):
                                      sets=sets, program=self.program)
         process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         limit = time.monotonic() + 300
-        while not (self.folder / "study" / file).exists() and time.monotonic() < limit:
+        while process.poll() is None and not (self.folder / "study" / file).exists() and time.monotonic() < limit:
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=120)
@@ -92,19 +98,67 @@ class Ensemble(gas_program.GasTest):
         out, err = self.interrupted("ensemble=2,jobs=1", "cells-1/seed-1/history.csv", [*SHORT, "run.end_time=100"])
         self.assertRegex(out, r"^cells-1/seed-1 +1 of 2  interrupted, \d+ steps in \S+ s\n")
         self.assertNotIn("restart", out + err)
-        self.assertIn("--overwrite begins the study anew", err)
+        self.assertIn("the same command runs the others", err)
         self.assertEqual([], list((self.folder / "study").rglob("*.log")), "no run was wrong")
 
-    def test_ctrl_c_keeps_finished_runs(self):
-        out, err = self.interrupted("ensemble=40,jobs=2", "runs.csv", SHORT)
-        self.assertRegex(err, r"interrupted by a signal; the tables hold the finished points, and --overwrite begins the study anew\n$")
+    def test_the_same_command_goes_on_after_ctrl_c(self):
+        lists = "ensemble=8,jobs=2"
+        out, err = self.interrupted(lists, "cells-1/seed-1/result.json", SHORT)
+        self.assertRegex(err, r": interrupted by a signal; the tables hold the finished runs, and the same command runs the others\n$")
         study = self.result("study")
-        self.assertEqual(("interrupted", 0, 40), (study["status"], study["study"]["failed"], study["study"]["runs"]))
+        self.assertEqual(("interrupted", 0, 8), (study["status"], study["study"]["failed"], study["study"]["runs"]))
         finished = study["study"]["finished"]
-        self.assertTrue(1 <= finished < 40, finished)
+        self.assertTrue(1 <= finished < 8, finished)
         self.assertEqual(finished, [row["status"] for row in self.rows()].count("ok"))
-        self.assertRegex(out, rf"\n\w+: {finished} of 40 runs in ")
+        self.assertRegex(out, rf"\n\w+: {finished} of 8 runs in ")
         self.assertIsInstance(study["study"]["canopy_0_peak_line_force"], float)
+        kept = {row["folder"]: self.file_of(row["folder"]) for row in self.rows() if row["status"] == "ok"}
+        again = self.study(0, lists, sets=SHORT).stdout
+        self.assertTrue(again.startswith(f"{finished} of 8 runs were there already; --overwrite runs them anew\n"), again)
+        self.assertEqual(8 - finished, again.count(" steps in "))
+        self.assertEqual(kept, {folder: self.file_of(folder) for folder in kept})
+        continued, results = self.by_folder(), self.result("study")["study"]
+        self.study(0, lists, "--quiet", "--overwrite", sets=SHORT)
+        self.assertEqual(self.by_folder(), continued, "as the study that nothing interrupted")
+        self.assertEqual(self.result("study")["study"], results)
+
+    def test_crashes_and_more_runs_keep_what_is_finished(self):
+        self.study(0, "ensemble=2", "--quiet", sets=SHORT)
+        (self.folder / "study/result.json").unlink()
+        (self.folder / "study/cells-1/seed-2/result.json").unlink()
+        before, kept = self.by_folder(), self.file_of("cells-1/seed-1")
+        self.assertIn("1 of 3 runs were there already", self.study(0, "ensemble=3", sets=SHORT).stdout)
+        self.assertEqual(kept, self.file_of("cells-1/seed-1"))
+        self.assertEqual(before, {folder: row for folder, row in self.by_folder().items() if folder != "cells-1/seed-3"})
+        self.assertRegex(self.study(0, "ensemble=3", sets=SHORT).stdout, r"^3 of 3 runs were there already; .*\n\w+: 3 of 3 runs in ")
+
+    def test_refuses_finished_runs_of_another_scene_or_program(self):
+        self.study(0, "ensemble=1", "--quiet", sets=SHORT)
+        kept = {path: path.read_bytes() for path in (self.folder / "study").rglob("*.*")}
+        refusal = self.study(2, "ensemble=2", sets=[*SHORT, "run.end_time=0.2"]).stderr
+        self.assertIn("'study/cells-1/seed-1' holds a run of another scene: run.end_time was 0.1 and is 0.2; choose another --out, "
+                      "or give --overwrite to run all anew", refusal)
+        self.assertIn("another scene: canopy[0].perturbation", self.study(2, "ensemble=1,cells=1:2", sets=SHORT).stderr)
+        self.assertEqual(kept, {path: path.read_bytes() for path in kept})
+        result = self.folder / "study/cells-1/seed-1/result.json"
+        result.write_text(result.read_text(encoding="utf-8").replace('"git": "', '"git": "0'), encoding="utf-8")
+        self.assertRegex(self.study(2, "ensemble=1", sets=SHORT).stderr, r"holds a run of another program: version \S+ of commit 0\S*, not \S+ of ")
+        self.study(0, "ensemble=1", "--quiet", "--overwrite", sets=[*SHORT, "run.end_time=0.2"])
+
+    @staticmethod
+    def plate(low):
+        """A square of 8 x 8 squares normal to x, as OBJ."""
+        vertices = [f"v 0 {low + 0.05 * j} {low + 0.05 * k}\n" for k in range(9) for j in range(9)]
+        corners = [1 + j + 9 * k for k in range(8) for j in range(8)]
+        return "".join(vertices + [f"f {i} {i + 1} {i + 10}\nf {i} {i + 10} {i + 9}\n" for i in corners])
+
+    def test_refuses_finished_runs_of_another_mesh_file(self):
+        self.write(self.plate(0.2), "plate.obj")
+        scene = self.write(parachute_program.PLATE.split("[[body]]")[0] + '[[body]]\nkind = "file"\nfile = "plate.obj"\ncentre = [0.8, 0, 0]\n'
+                           "[run]\nend_time = 0.1\nmax_dt = 0.01\n")
+        self.study(0, "ensemble=1", "--quiet", scene=scene)
+        self.write(self.plate(0.21), "plate.obj")
+        self.assertIn("holds a run of another scene: a mesh file has changed;", self.study(2, "ensemble=1", scene=scene).stderr)
 
     def test_flow_without_sheets_has_its_checks(self):
         scene = self.write(parachute_program.PLATE + """[verify]
@@ -126,7 +180,7 @@ history = [{ column = "body_0_force_x", statistic = "mean", from = 0.1, value = 
         self.assertFalse((self.folder / "study").exists())
 
     def test_reports_usage_errors(self):
-        for lists, words in (("ensemble=0", "ensemble=0 is not an integer"), ("ensemble=2,meshes=8", "unknown name 'meshes'"),
+        for lists, words in (("ensemble=0", "ensemble=0 is not an integer"), ("ensemble=2,meshes=8", "meshes cannot be combined with ensemble, cells and jobs"),
                              ("cells=0.1:1", "grid.cells"), ("ensembel=2", 'did you mean "ensemble"?'), ("ensemble=2,", "a part is empty"),
                              ("meshes=8:16", "verify.exact")):
             for check in ((), ("--check",), ("--check", "--quiet")):
@@ -134,8 +188,8 @@ history = [{ column = "body_0_force_x", statistic = "mean", from = 0.1, value = 
                     self.assertIn(words, self.study(2, lists, *check).stderr)
                     self.assertFalse((self.folder / "study").exists())
 
-    def test_an_existing_study_is_kept(self):
-        self.study(0, "ensemble=1", "--quiet", sets=SHORT)
+    def test_a_run_of_another_kind_is_kept(self):
+        self.assertEqual(0, self.start(self.write(parachute_program.CANOPY), "--backend", "serial", "--quiet", "--out", "study", sets=SHORT).returncode)
         self.assertIn("already holds a run", self.study(2, "ensemble=1", sets=SHORT).stderr)
 
 

@@ -32,6 +32,18 @@ class CommandLine(options_program.OptionsTest):
         first = re.search(r"(\d+) rows \((\d+) %\)", shown)
         self.assertEqual(("16", "5"), first.groups(), shown)
 
+    def test_states_the_largest_error_beside_the_speed(self):
+        strikes = {"a": 1.0, "b": 50.0}
+        self.write(batch([row(name, strike=strike, spot=strike, style="american") for name, strike in strikes.items()]))
+        text = self.expect(0, "price", "batch.csv", "--backend", "serial", "--chunk", "1", "--result", "r.json").stdout
+        largest = max(float(priced["error"]) / strikes[priced["id"]] for priced in self.prices())
+        self.assertAlmostEqual(1.0, self.document("r.json")["errors"]["stated"] / largest, places=12)
+        self.assertRegex(text, rf"\n  \S+ options per second of \S+ s of pricing; largest stated error {largest:.2g} of the strike\n")
+        # The scheme of [Shi] states none.
+        text = self.expect(0, "price", "batch.csv", "--backend", "serial", "--method", "seed", "--mesh", "64", "--steps", "16", "--result", "r.json").stdout
+        self.assertRegex(text, r" s of pricing\n")
+        self.assertEqual({}, self.document("r.json")["errors"])
+
     def test_rejects_invalid_command_lines(self):
         cases = {
             (): "no command",

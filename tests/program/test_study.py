@@ -7,6 +7,7 @@ import subprocess
 import time
 
 import gas_program
+import parachute_program
 import springs_program
 
 
@@ -236,6 +237,25 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         self.assertTrue(1 <= len(rows) < 9, rows)
         self.assertTrue(all(row["status"] == "ok" for row in rows))
         self.assertEqual({"study.csv", "study.json", "scene.toml"}, {file.name for file in (self.folder / "study").iterdir()})
+
+
+class SizeOfAStudy(gas_program.GasTest):
+    def check(self, program, scene, lists, sets=()):
+        """What `--check` prints, in some seconds; all the meshes would take minutes."""
+        run = gas_program.run(scene, "--study", lists, "--check", sets=sets, cwd=self.folder, program=gas_program.BIN / program, timeout=60)
+        self.assertEqual(0, run.returncode, run.stderr)
+        return run.stdout
+
+    def test_check_makes_no_large_mesh(self):
+        schemes = "schemes=js:z:z2:m:teno5,splittings=lf-global:lf-single:lf-stencil,times=ssprk3:ssprk43"
+        self.assertIn("study        780 runs on up to 268435456 cells\n", self.check("drogue-gas", "sod", f"meshes=8:268435456,{schemes}"))
+        self.assertIn("study        on up to 16777216 vertices; a mesh of more than 65536 is checked with so many\n",
+                      self.check("drogue-springs", "drum", "meshes=61:16777216,models=quadratic:biquadratic,masses=area:equal"))
+        self.assertRegex(self.check("drogue-parachute", "taylor-green-2d", "meshes=16:4096,advections=central:weno-js:weno-z,times=ab2:rk3"),
+                         r"\nstudy        54 runs on up to 4096 x 4096 x 1 cells, \S+ MiB for their arrays\n")
+        gust = self.write(parachute_program.GUST)
+        self.assertRegex(self.check("drogue-parachute", gust, "ensemble=8,cells=1:10", ["grid.cells=[120,100,80]", "run.dt=1e-4"]),
+                         r"\n +1200 x 1000 x 800 cells, a run about ")
 
 
 class ReferenceOfARun(gas_program.GasTest):

@@ -22,12 +22,12 @@ void set_baseline_scheme(gas::Parameters& parameters) {
 }  // namespace
 
 GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
-                        SchemeSource source) {
+                        SchemeSource source, framework::InitialCheck check) {
   return framework::read_scene<GasScene>(file, sets, declare_gas_scene,
                                          [&](const scene::Table& root, GasScene& scene) {
                                            if (source == SchemeSource::baseline)
                                              set_baseline_scheme(scene.parameters);
-                                           complete_and_check(root, scene);
+                                           complete_and_check(root, scene, check);
                                          });
 }
 

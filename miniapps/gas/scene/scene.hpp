@@ -10,6 +10,7 @@
 
 #include "kernels/gas/parameters.hpp"
 #include "miniapps/framework/history_checks.hpp"
+#include "miniapps/framework/initial_check.hpp"
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 
@@ -87,7 +88,8 @@ enum class SchemeSource { scene, baseline };
 /// Reads and checks `file` with its `--set` assignments, and evaluates the initial state at every cell.
 /// Throws `Failure`: usage for a missing file, invalid_scene (`FILE:LINE: ...`) otherwise.
 GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {},
-                        SchemeSource source = SchemeSource::scene);
+                        SchemeSource source = SchemeSource::scene,
+                        framework::InitialCheck check = framework::InitialCheck::all_cells);
 
 /// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself.
 std::string print_gas_scene(const GasScene& scene);

@@ -14,7 +14,7 @@
 namespace drogue::gas_app {
 namespace {
 
-using scene::Place, scene::sentence;
+using framework::InitialCheck, scene::Place, scene::sentence;
 
 /// Largest ratio of initial pressures that the FP32 part of the split precision resolves.
 constexpr double split_pressure_ratio = 1e11;
@@ -121,9 +121,9 @@ void complete_verify(const Place& root, GasScene& scene) {
   reference.block = scene.parameters.block;
 }
 
-/// Surveys the initial state at every cell centre. Throws `Failure` for the first invalid one.
-Survey require_gas(const Place& root, const GasScene& scene) {
-  const Survey seen = survey_initial_state(scene);
+/// Surveys the initial state at cell centres. Throws `Failure` for the first invalid one.
+Survey require_gas(const Place& root, const GasScene& scene, InitialCheck check) {
+  const Survey seen = survey_initial_state(scene, check);
   if (seen.first_bad < scene.parameters.cells) {
     const BadCell bad = describe_bad_cell(scene, seen.first_bad);
     root.contradict(bad.path, bad.sentence);
@@ -145,13 +145,13 @@ void check_steps(const Place& root, GasScene& scene, double largest_speed) {
   scene.notices.push_back(text + ", at which a run fails");
 }
 
-void check_initial(const Place& root, GasScene& scene) {
-  const Survey seen = require_gas(root, scene);
+void check_initial(const Place& root, GasScene& scene, InitialCheck check) {
+  const Survey seen = require_gas(root, scene, check);
   check_steps(root, scene, seen.speed_max);
   if (scene.verify.reference) {
     GasScene finer = scene;
     finer.parameters = *scene.verify.reference;
-    require_gas(root, finer);
+    require_gas(root, finer, check);
   }
   const double ratio = seen.p_max / seen.p_min;
   root.refuse_if(scene.parameters.precision == gas::Precision::split && ratio > split_pressure_ratio,
@@ -165,7 +165,7 @@ void check_initial(const Place& root, GasScene& scene) {
 
 }  // namespace
 
-void complete_and_check(const Place& root, GasScene& scene) {
+void complete_and_check(const Place& root, GasScene& scene, InitialCheck check) {
   check_mesh(root, scene);
   check_boundary(root, scene.parameters);
   if (scene.initial.riemann) check_riemann(root, scene);
@@ -174,7 +174,7 @@ void complete_and_check(const Place& root, GasScene& scene) {
   complete_verify(root, scene);
   framework::require_measurable(root, scene.verify.history, scene.output, {scene.end_time, "run.end_time"},
                                 history_columns());
-  check_initial(root, scene);
+  check_initial(root, scene, check);
 }
 
 }  // namespace drogue::gas_app

@@ -20,9 +20,9 @@ bool is_gas(const Primitive& state, double gamma) {
 }
 
 Survey survey_cells(const InitialState& state, const gas::Parameters& parameters, std::int64_t begin,
-                    std::int64_t end) {
+                    std::int64_t end, std::int64_t stride) {
   Survey seen;
-  for (std::int64_t i = begin; i < end; ++i) {
+  for (std::int64_t i = begin; i < end; i += stride) {
     const Primitive cell = state(cell_centre(parameters, i));
     if (!is_gas(cell, parameters.gamma)) {
       seen.first_bad = i;
@@ -49,15 +49,16 @@ void Survey::merge(const Survey& other) {
   first_bad = std::min(first_bad, other.first_bad);
 }
 
-Survey survey_initial_state(const GasScene& scene) {
+Survey survey_initial_state(const GasScene& scene, framework::InitialCheck check) {
   constexpr std::size_t cells_per_thread = 100'000;
   const auto cells = static_cast<std::size_t>(scene.parameters.cells);
+  const auto stride = static_cast<std::int64_t>(framework::check_stride(check, cells));
   const InitialState state(scene);
   std::vector<Survey> seen(thread_parts(cells, cells_per_thread));
   for_thread_parts(seen.size(), cells, [&](std::size_t part, std::size_t begin, std::size_t end) {
     const InitialState own = state;  // its evaluation changes it
-    seen[part] =
-        survey_cells(own, scene.parameters, static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end));
+    seen[part] = survey_cells(own, scene.parameters, static_cast<std::int64_t>(begin),
+                              static_cast<std::int64_t>(end), stride);
   });
   for (const Survey& part : seen) seen.front().merge(part);
   return seen.front();

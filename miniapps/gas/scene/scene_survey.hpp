@@ -8,7 +8,7 @@
 
 namespace drogue::gas_app {
 
-/// Extrema of the initial state over all cells.
+/// Extrema of the initial state over cells.
 struct Survey {
   double p_min = std::numeric_limits<double>::infinity();
   double p_max = 0.0;
@@ -21,8 +21,8 @@ struct Survey {
   void merge(const Survey& other);
 };
 
-/// Surveys the initial state of every cell with one thread per core.
-Survey survey_initial_state(const GasScene& scene);
+/// Surveys the initial state of cells with one thread per core.
+Survey survey_initial_state(const GasScene& scene, framework::InitialCheck check);
 
 /// Invalid initial state: the path of the key in error and a sentence.
 struct BadCell {

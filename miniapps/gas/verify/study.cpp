@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/scene/node.hpp"
 #include "common/study/axes.hpp"
 #include "kernels/gas/host_threads.hpp"
 #include "miniapps/framework/run_loop.hpp"
@@ -58,7 +59,8 @@ std::vector<GasScene> scenes_of(const MiniAppOptions& options, const std::filesy
   if (!base.verify.exact)
     throw Failure(ExitCode::usage, "--study needs a scene with [verify] exact, to measure errors against");
   std::vector<GasScene> scenes;
-  for (const auto& sets : assignments(axes, options)) scenes.push_back(read_gas_scene(file, sets));
+  for (const auto& sets : assignments(axes, options))
+    scenes.push_back(read_gas_scene(file, sets, SchemeSource::scene, framework::InitialCheck::some_cells));
   return scenes;
 }
 
@@ -107,8 +109,10 @@ framework::RepeatedRun run_repeatedly(const GasScene& scene, device::Backend bac
 }
 
 std::string check_study(const MiniAppOptions& options, const std::filesystem::path& file) {
-  (void)scenes_of(options, file, read_gas_scene(file, options.set));
-  return {};
+  const std::vector<GasScene> scenes = scenes_of(options, file, read_gas_scene(file, options.set));
+  std::int64_t cells = 0;
+  for (const GasScene& scene : scenes) cells = std::max(cells, scene.parameters.cells);
+  return scene::sentence("study        ", scenes.size(), " runs on up to ", cells, " cells\n");
 }
 
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {

@@ -1,5 +1,6 @@
 #include "miniapps/options/output/price_rows.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "common/csv/fields.hpp"
@@ -103,6 +104,8 @@ void append_price(ResultBatch& batch, const RowLayout& layout, const ContractRow
   ++counts.rows;
   if (price.status == options::PriceStatus::coarse) ++counts.coarse;
   if (price.status == options::PriceStatus::failed && counts.failed++ == 0) counts.failed_line = row.line;
+  if (price.status != options::PriceStatus::failed)
+    counts.largest_error = std::fmax(counts.largest_error, price.error / contract.strike);
 }
 
 void append_invalid(ResultBatch& batch, const RowLayout& layout, const ContractRow& row) {

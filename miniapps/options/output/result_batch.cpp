@@ -1,6 +1,7 @@
 #include "miniapps/options/output/result_batch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/program/message.hpp"
 
@@ -17,6 +18,7 @@ void RowCounts::add(const RowCounts& later) {
   invalid += later.invalid;
   failed += later.failed;
   invalid_points += later.invalid_points;
+  largest_error = std::fmax(largest_error, later.largest_error);
 }
 
 void WorkerUsage::add(const WorkerUsage& other) {
@@ -38,6 +40,7 @@ std::string to_message(const ResultBatch& batch) {
   for (const std::int64_t count : {counts.rows, counts.coarse, counts.invalid, counts.failed,
                                    counts.invalid_points, counts.invalid_line, counts.failed_line})
     message.put(count);
+  message.put(counts.largest_error);
   message.put_text(counts.invalid_message);
   message.put_text(batch.prices);
   message.put_text(batch.boundaries);
@@ -56,6 +59,7 @@ ResultBatch result_batch_from(const std::string& message) {
   for (std::int64_t* count : {&counts.rows, &counts.coarse, &counts.invalid, &counts.failed,
                               &counts.invalid_points, &counts.invalid_line, &counts.failed_line})
     *count = reader.get<std::int64_t>();
+  counts.largest_error = reader.get<double>();
   counts.invalid_message = reader.get_text();
   batch.prices = reader.get_text();
   batch.boundaries = reader.get_text();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "kernels/device/profiling_counters.hpp"
@@ -15,6 +16,7 @@ struct RowCounts {
       0;  ///< the part of `invalid` that belongs to valid parameter sets of a surface
   std::int64_t invalid_line = 0, failed_line = 0;  ///< line number in the input
   std::string invalid_message;
+  double largest_error = std::numeric_limits<double>::quiet_NaN();  ///< stated by a row, of its strike
 
   /// Number of invalid input rows. Does not throw.
   [[nodiscard]] std::int64_t invalid_inputs() const { return invalid - invalid_points; }

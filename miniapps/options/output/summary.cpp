@@ -1,5 +1,6 @@
 #include "miniapps/options/output/summary.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -51,10 +52,15 @@ void print_summary(const Command& command, const run::ResultDocument& result, co
             counted(counts.coarse, " coarse, ") + counted(counts.invalid, " invalid, ");
   text += counted(counts.failed, " failed\n");
   if (const auto rate = result.metrics.real("figure_of_merit", "options_per_s")) {
-    char speed[64];
-    std::snprintf(speed, sizeof speed, "  %.3g options per second of %.3g s of pricing\n", *rate,
+    char speed[128];
+    std::snprintf(speed, sizeof speed, "  %.3g options per second of %.3g s of pricing", *rate,
                   result.timing.compute_s);
     text += speed;
+    if (const auto stated = result.errors.find("stated"); stated != result.errors.end()) {
+      std::snprintf(speed, sizeof speed, "; largest stated error %.2g of the strike", stated->second);
+      text += speed;
+    }
+    text += '\n';
   }
   text += "prices in " + command.out.string() + "\n";
   if (!command.boundary.empty()) text += "boundaries in " + command.boundary.string() + "\n";
@@ -91,6 +97,7 @@ void describe_counts(const RowCounts& counts, run::ResultDocument& result) {
   set("invalid", counts.invalid);
   set("ok", ok_rows(counts));
   set("rows", counts.rows);
+  if (std::isfinite(counts.largest_error)) result.errors["stated"] = counts.largest_error;
   const std::int64_t priced = ok_rows(counts) + counts.coarse;
   if (const double seconds = result.timing.compute_s; priced > 0 && seconds > 0.0)
     result.metrics.set("figure_of_merit", "options_per_s", static_cast<double>(priced) / seconds);

@@ -43,14 +43,14 @@ const std::vector<std::string>& field_names() {
 bool is_canopy_field(const std::string& name) { return name == "position" || name == "von_mises"; }
 
 FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
-                          SchemeSource source) {
+                          SchemeSource source, framework::InitialCheck check) {
   return framework::read_scene<FlowScene>(
       file, sets, declare_flow_scene, [&](const scene::Table& root, FlowScene& scene) {
         if (source == SchemeSource::baseline) {
           if (!scene.has_fluid()) throw Failure(ExitCode::usage, "--seed-mode needs a scene with [fluid]");
           set_baseline_scheme(scene);
         }
-        complete_and_check(root, scene);
+        complete_and_check(root, scene, check);
       });
 }
 

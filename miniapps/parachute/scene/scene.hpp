@@ -13,6 +13,7 @@
 
 #include "kernels/flow/parameters.hpp"
 #include "miniapps/framework/history_checks.hpp"
+#include "miniapps/framework/initial_check.hpp"
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
@@ -263,10 +264,11 @@ bool is_canopy_field(const std::string& name);
 /// Source of the numerical scheme. `--seed-mode` replaces that of the scene by the baseline of [Shi].
 enum class SchemeSource { scene, baseline };
 
-/// Reads and checks `file` with its `--set` assignments, and evaluates the initial velocity at every face.
+/// Reads and checks `file` with its `--set` assignments, and evaluates the initial velocity at faces.
 /// Throws `Failure`: usage for a missing file, invalid_scene (`FILE:LINE: ...`) otherwise.
 FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {},
-                          SchemeSource source = SchemeSource::scene);
+                          SchemeSource source = SchemeSource::scene,
+                          framework::InitialCheck check = framework::InitialCheck::all_cells);
 
 /// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself.
 std::string print_flow_scene(const FlowScene& scene);

@@ -195,17 +195,26 @@ void check_solver(const Place& root, const flow::Parameters& p) {
   }
 }
 
-void check_initial(const Place& root, const FlowScene& scene) {
+void check_initial(const Place& root, const FlowScene& scene, framework::InitialCheck check) {
   const std::string key = scene.initial[0].empty() ? "fluid.velocity" : "initial.velocity";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string& text = scene.initial_velocity()[axis];
     const Lattice lattice = lattice_of(scene.parameters, axis);
-    const std::vector<double> values = evaluate(SpaceTimeFunction(text), lattice, 0.0);
+    const SpaceTimeFunction function(text);
+    const std::size_t stride =
+        function.constant() ? lattice.size() : framework::check_stride(check, lattice.size());
+    std::vector<double> values;
+    if (stride == 1)
+      values = evaluate(function, lattice, 0.0);
+    else
+      for (std::size_t entry = 0; entry < lattice.size(); entry += stride)
+        values.push_back(function(lattice.place(entry), 0.0));
     const auto refuse = [&](const auto& is_bad, const char* reason) {
       const auto bad = std::ranges::find_if(values, is_bad);
       if (bad == values.end()) return;
       root.refuse(key, "[", axis, "] = ", scene::shortened(text), " is ", reason, " at ",
-                  place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))), " at t = 0");
+                  place_text(lattice.place(stride * static_cast<std::size_t>(bad - values.begin()))),
+                  " at t = 0");
     };
     refuse([](double value) { return !std::isfinite(value); }, "not finite");
     if (is_closed(scene.parameters, axis))
@@ -416,7 +425,7 @@ void refuse_beyond_sides(const Place& root, const flow::Parameters& p, const std
                   rounded_text(allowed[1]), " m", remedy);
 }
 
-void complete_and_check(const Place& root, FlowScene& scene) {
+void complete_and_check(const Place& root, FlowScene& scene, framework::InitialCheck check) {
   flow::Parameters& p = scene.parameters;
   complete_drop(root, scene);
   if (scene.has_fluid()) {
@@ -457,7 +466,7 @@ void complete_and_check(const Place& root, FlowScene& scene) {
   if (!scene.has_fluid()) return;
   p.watches_extremes = scene.verify.needs_extremes();
   // The other ranks leave a check at all points of the grid to rank 0, with which they fail.
-  if (launched_rank().rank == 0) check_initial(root, scene);
+  if (launched_rank().rank == 0) check_initial(root, scene, check);
 }
 
 }  // namespace drogue::parachute_app

@@ -8,7 +8,7 @@ namespace drogue::parachute_app {
 
 /// Fills in the parameters of the solver and the defaults that depend on other keys; checks combinations of
 /// keys, the velocities of the sides at time 0 and the initial velocity at every face.
-void complete_and_check(const scene::Place& root, FlowScene& scene);
+void complete_and_check(const scene::Place& root, FlowScene& scene, framework::InitialCheck check);
 
 /// Checks [verify] against the rest of the scene.
 void check_verify(const scene::Place& root, const FlowScene& scene);

@@ -139,7 +139,7 @@ std::vector<std::string> sets_without_fields(std::vector<std::string> sets) {
 FlowScene read_point(const std::filesystem::path& file, const MiniAppOptions& options,
                      const std::vector<std::string>& sets) {
   try {
-    return read_flow_scene(file, sets);
+    return read_flow_scene(file, sets, SchemeSource::scene, framework::InitialCheck::some_cells);
   } catch (const Failure& failure) {
     throw Failure(ExitCode::usage, "--study " + options.study + ": " + failure.what());
   }
@@ -187,6 +187,10 @@ Plan plan_of(const MiniAppOptions& options, const std::filesystem::path& file) {
   ensemble.end_time = base.end_time;
   ensemble.axes = study::parse_ensemble(options.study);
   ensemble.title = flight_title;
+  ensemble.resolve = [file, options](const framework::EnsembleRun& run) {
+    const FlowScene scene = read_point(file, options, run.sets);
+    return framework::ResolvedScene{print_flow_scene(scene), scene_identity(scene)};
+  };
   const std::vector<double> wanted = ensemble.axes.factors;
   for (const double factor : wanted)
     plan.scenes.push_back(member_scene(file, options, refinement(base, factor)));

@@ -10,6 +10,7 @@
 #include "kernels/flow/host_threads.hpp"
 #include "miniapps/framework/ensemble.hpp"
 #include "miniapps/framework/run_loop.hpp"
+#include "miniapps/parachute/scene/run_size.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 #include "miniapps/parachute/verify/ensemble.hpp"
 
@@ -77,7 +78,7 @@ FlowScene scene_of(const std::filesystem::path& file, const MiniAppOptions& opti
   std::vector<std::string> sets = options.set;
   sets.insert(sets.end(), point.begin(), point.end());
   try {
-    return read_flow_scene(file, sets);
+    return read_flow_scene(file, sets, SchemeSource::scene, framework::InitialCheck::some_cells);
   } catch (const Failure& failure) {
     std::string reason = failure.what(), values;
     for (const std::string& assignment : point) {
@@ -168,12 +169,18 @@ framework::RepeatedRun repeat_scene(
 
 std::string check_study(const MiniAppOptions& options, const std::filesystem::path& file) {
   if (is_ensemble(options)) return ensemble_report(options, file);
-  (void)scenes_of(options, file, read_flow_scene(file, options.set));
-  return {};
+  const std::vector<FlowScene> scenes = scenes_of(options, file, read_flow_scene(file, options.set));
+  const FlowScene& largest = *std::ranges::max_element(scenes, {}, &FlowScene::cells);
+  const auto [x, y, z] = largest.parameters.cells;
+  return scene::sentence("study        ", scenes.size(), " runs on up to ", x, " x ", y, " x ", z, " cells, ",
+                         scene::rough_text(run_size(largest).bytes / 1048576.0), " MiB for their arrays\n");
 }
 
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
-  if (is_ensemble(options)) return framework::run_ensemble(options, file, ensemble_of(options, file));
+  if (is_ensemble(options)) {
+    framework::run_ensemble(options, file, ensemble_of(options, file));
+    return ExitCode::ok;
+  }
   const FlowScene base = read_flow_scene(file, options.set);
   const std::vector<FlowScene> scenes = scenes_of(options, file, base);
   int threads = 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/scene/node.hpp"
 #include "kernels/fabric/host_threads.hpp"
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/springs/simulation/simulation.hpp"
@@ -101,8 +102,14 @@ framework::RepeatedRun run_repeatedly(const SpringsScene& scene, device::Backend
 }
 
 std::string check_study(const MiniAppOptions& options, const std::filesystem::path& file) {
-  (void)study_points(file, options.set, options.study);
-  return {};
+  constexpr std::int64_t most = 65536;
+  const std::vector<StudyPoint> points = study_points(file, options.set, options.study, most);
+  if (const std::int64_t largest = largest_study_mesh(options.study); largest > most)
+    return scene::sentence("study        on up to ", largest, " vertices; a mesh of more than ", most,
+                           " is checked with so many\n");
+  std::size_t largest = 0;
+  for (const StudyPoint& point : points) largest = std::max(largest, point.scene.mesh.rest.size());
+  return scene::sentence("study        ", points.size(), " runs on up to ", largest, " vertices\n");
 }
 
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {

@@ -10,6 +10,13 @@
 namespace drogue::springs_app {
 namespace {
 
+study::Axes parse(const std::string& lists) {
+  return study::parse_axes(lists, {"vertices", 2, 24},
+                           {{"models", {"edge", "quadratic", "biquadratic"}},
+                            {"masses", {"area", "equal"}},
+                            {"integrators", {"rk4", "verlet"}}});
+}
+
 /// Settings of a point of the study. Empty texts and 0 vertices keep the value of the scene.
 struct PointSettings {
   std::string model, mass, integrator;
@@ -103,12 +110,15 @@ StudyPoint named(SpringsScene scene) {
 
 }  // namespace
 
+std::int64_t largest_study_mesh(const std::string& lists) {
+  const std::vector<std::int64_t> meshes = parse(lists).meshes;
+  return meshes.empty() ? 0 : *std::ranges::max_element(meshes);
+}
+
 std::vector<StudyPoint> study_points(const std::filesystem::path& file, const std::vector<std::string>& sets,
-                                     const std::string& lists) {
-  const study::Axes axes = study::parse_axes(lists, {"vertices", 2, 24},
-                                             {{"models", {"edge", "quadratic", "biquadratic"}},
-                                              {"masses", {"area", "equal"}},
-                                              {"integrators", {"rk4", "verlet"}}});
+                                     const std::string& lists, std::int64_t most_vertices) {
+  study::Axes axes = parse(lists);
+  for (std::int64_t& vertices : axes.meshes) vertices = std::min(vertices, most_vertices);
   const SpringsScene base = read_springs_scene(file, sets);
   check_axes_fit_mesh(axes, base);
   std::vector<StudyPoint> points;

@@ -30,9 +30,13 @@ TEST(Ensemble, ParsesItsAxes) {
   EXPECT_FALSE(is_ensemble("meshes=100:800,times=rk3", {"meshes", "times"}));
 }
 
-TEST(Ensemble, NamesTheNearestAxisOfAllStudies) {
+TEST(Ensemble, RefusesUnknownAxesAndThoseOfTwoStudies) {
   for (const auto& [text, what] :
-       {std::pair{"ensembel=2", "--study: unknown name 'ensembel'; did you mean \"ensemble\"?"},
+       {std::pair{
+            "ensemble=4,meshes=1:2",
+            "--study: meshes cannot be combined with ensemble, cells and jobs; cells=1:2 names two grids, "
+            "the second with twice as many cells along each axis"},
+        {"ensembel=2", "--study: unknown name 'ensembel'; did you mean \"ensemble\"?"},
         {"cells=1,mesh=4", "--study: unknown name 'mesh'; did you mean \"meshes\"?"},
         {"nonsense", "--study: unknown name 'nonsense'; valid names are ensemble, cells, jobs, meshes"},
         {"ensemble=2,", "--study: a part is empty; valid names are ensemble, cells, jobs, meshes"}})
