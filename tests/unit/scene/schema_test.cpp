@@ -54,9 +54,9 @@ void declare(Table& root, Fabric& cloth) {
       "material",
       [&](Table& material) {
         const Choices<Shape> shapes = {{"disk", Shape::disk}, {"string", Shape::string}};
-        material.value("shape", cloth.shape, shapes, "Shape");
-        material.value("tension_only", cloth.tension_only, "No pushing",
-                       {.when = with_choice("shape", cloth.shape, shapes, {Shape::string})});
+        const ChoiceKey shape("shape", cloth.shape, shapes);
+        material.value(shape, "Shape");
+        material.value("tension_only", cloth.tension_only, "No pushing", {.when = shape.is({Shape::string})});
         material.value("stiffness", cloth.stiffness, "Stiffness", {.unit = "N/m", .range = not_negative});
         material.value("count", cloth.count, "Count", {.range = between(1, 10)});
         material.value("seed", cloth.seed, "Seed");
@@ -223,7 +223,7 @@ TEST(Schema, ConditionsNameTheirKeys) {
   bool contact = true;
   std::optional<double> width;
   std::string file = "cloth.obj";
-  const Condition of_kind = with_choice("kind", kind, kinds, {2, 1});
+  const Condition of_kind = ChoiceKey("kind", kind, kinds).is({2, 1});
   EXPECT_EQ(of_kind.text, "with kind = \"b\" or \"c\"");
   EXPECT_EQ(of_kind.decided_by, "kind");
   EXPECT_TRUE(of_kind.applies());
