@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "common/program/failure.hpp"
 #include "common/scene/document.hpp"
 #include "common/scene/nearest.hpp"
 #include "common/scene/parse.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace drogue::scene {
 namespace {
@@ -95,13 +95,7 @@ std::string print_cloth(Fabric cloth) {
 }
 
 std::string error_of(const std::string& text, const std::vector<std::string>& sets = {}) {
-  try {
-    read_cloth(text, sets);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-    return failure.what();
-  }
-  return "";
+  return testing::refusal_of([&] { return read_cloth(text, sets); });
 }
 
 TEST(Schema, ReadsEveryType) {
@@ -245,24 +239,15 @@ TEST(Place, RefusesAKeyByItsOriginItsPathAndASentence) {
   Table root;
   declare(root, cloth);
   read(root, parse_text(head + "[[pin]]\nwhere = \"x\"\nmotion = 1\n", "c.toml"));
-  const auto refusal = [](const auto& refuse) -> std::string {
-    try {
-      refuse();
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-      return failure.what();
-    }
-    return "";
-  };
   const Place pin = Place(root).at("pin", 0);
   EXPECT_EQ(pin.path("motion"), "pin[0].motion");
   EXPECT_TRUE(pin.given("motion"));
   EXPECT_FALSE(pin.given("axes"));
-  EXPECT_EQ(refusal([&] { pin.refuse("motion", " = ", 1.5, " m in ", 2, " steps"); }),
+  EXPECT_EQ(testing::refusal_of([&] { pin.refuse("motion", " = ", 1.5, " m in ", 2, " steps"); }),
             "c.toml:6: pin[0].motion = 1.5 m in 2 steps");
-  EXPECT_EQ(refusal([&] { pin.refuse_if(true, "", " is loose"); }), "c.toml:4: pin[0] is loose");
-  EXPECT_EQ(refusal([&] { pin.contradict("axes", "no axes"); }), "c.toml:4: no axes");
-  EXPECT_EQ(refusal([&] { pin.refuse_if(false, "", " is loose"); }), "");
+  EXPECT_EQ(testing::refusal_of([&] { pin.refuse_if(true, "", " is loose"); }), "c.toml:4: pin[0] is loose");
+  EXPECT_EQ(testing::refusal_of([&] { pin.contradict("axes", "no axes"); }), "c.toml:4: no axes");
+  EXPECT_EQ(testing::refusal_of([&] { pin.refuse_if(false, "", " is loose"); }), "");
 }
 
 TEST(Nearest, CountsEdits) {
