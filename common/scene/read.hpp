@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/scene/node.hpp"
@@ -27,6 +28,14 @@ class Place {
   [[nodiscard]] Place at(const std::string& key) const { return {_root, path(key)}; }
   [[nodiscard]] Place at(const std::string& array, std::size_t index) const {
     return at(element(array, index));
+  }
+  /// Elements of an array of tables with their places: `for (const auto& [at, body] : root.each("body",
+  /// bodies))`.
+  template <class List>
+  [[nodiscard]] auto each(const std::string& array, List& elements) const {
+    std::vector<std::pair<Place, decltype(*elements.data())>> places;
+    for (auto& element : elements) places.emplace_back(at(array, places.size()), element);
+    return places;
   }
 
   /// Dotted path of a key from the root.

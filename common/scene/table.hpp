@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -30,17 +29,31 @@ struct Condition {
 /// Both, with a clause on each: `with [fluid] and kind = "disk"`. That of the second key counts.
 Condition operator&&(const Condition& first, const Condition& second);
 
-/// Condition that the key `name` has one of several values: `with kind = "disk" or "sphere"`.
+/// Key whose value is one of several names, on which other keys depend.
 template <class T, class Variable>
-Condition with_choice(const std::string& name, const Variable& place, const Choices<T>& choices,
-                      const std::vector<std::type_identity_t<T>>& values) {
-  std::string names;
-  for (const auto& [text, value] : choices)
-    if (std::ranges::find(values, value) != values.end())
-      names += (names.empty() ? "" : " or ") + toml_string(text);
-  return {[&place, values] { return std::ranges::find(values, place) != values.end(); },
-          "with " + name + " = " + names, name};
-}
+class ChoiceKey {
+ public:
+  /// Keeps references to the value and the choices.
+  ChoiceKey(std::string name, Variable& place, const Choices<T>& choices)
+      : _name(std::move(name)), _place(place), _choices(choices) {}
+
+  /// Condition that the key has one of several values: `with kind = "disk" or "sphere"`.
+  [[nodiscard]] Condition is(const std::vector<T>& values) const {
+    std::string names;
+    for (const auto& [text, value] : _choices)
+      if (std::ranges::find(values, value) != values.end())
+        names += (names.empty() ? "" : " or ") + toml_string(text);
+    return {[&place = _place, values] { return std::ranges::find(values, place) != values.end(); },
+            "with " + _name + " = " + names, _name};
+  }
+
+ private:
+  friend class Table;
+
+  std::string _name;
+  Variable& _place;
+  const Choices<T>& _choices;
+};
 
 /// Condition that the key `name`, which may be absent or empty, has a value.
 template <class T>
@@ -114,6 +127,10 @@ class Table {
   Key& value(const std::string& name, Variable& place, const Choices<T>& choices, std::string help,
              KeyRules rules = {}) {
     return value(name, choice_codec(place, choices), std::move(help), std::move(rules));
+  }
+  template <class T, class Variable>
+  Key& value(const ChoiceKey<T, Variable>& key, std::string help, KeyRules rules = {}) {
+    return value(key._name, key._place, key._choices, std::move(help), std::move(rules));
   }
   /// Table that always exists in the struct. `describe(Table&)` declares its keys.
   Key& table(const std::string& name, const std::function<void(Table&)>& describe, std::string help,

@@ -56,9 +56,7 @@ void require_measurable(const scene::Place& root, const std::vector<HistoryCheck
                         const std::vector<run::Column>& columns) {
   std::vector<std::string> names;
   for (const run::Column& column : columns) names.push_back(column.name);
-  for (std::size_t i = 0; i < checks.size(); ++i) {
-    const HistoryCheck& check = checks[i];
-    const scene::Place at = root.at("verify.history", i);
+  for (const auto& [at, check] : root.each("verify.history", checks)) {
     at.refuse_if(output.history_every == 0, "", " needs rows of the history; output.history_every is 0");
     if (std::ranges::find(names, check.column) == names.end())
       at.refuse("column", " = \"", check.column, "\" is no column of the history.csv of this scene; ",

@@ -1,15 +1,11 @@
 #pragma once
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
-#include "common/program/failure.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/temporary_file.hpp"
 
 namespace drogue::parachute_app {
 
@@ -31,30 +27,15 @@ end_time = 4
 )";
 
 /// A scene in a temporary file.
-class SceneFile {
- public:
-  explicit SceneFile(const std::string& text = held) { std::ofstream(_path) << text; }
-  ~SceneFile() { std::filesystem::remove(_path); }
-  SceneFile(const SceneFile&) = delete;
-  SceneFile& operator=(const SceneFile&) = delete;
+struct SceneFile : testing::TemporaryFile {
+  explicit SceneFile(const std::string& text = held) : TemporaryFile(text) {}
 
-  [[nodiscard]] const std::filesystem::path& path() const { return _path; }
   [[nodiscard]] FlowScene read(const std::vector<std::string>& sets = {}) const {
-    return read_flow_scene(_path, sets);
+    return read_flow_scene(path(), sets);
   }
   [[nodiscard]] std::string refusal(const std::vector<std::string>& sets) const {
-    try {
-      (void)read(sets);
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-      return failure.what();
-    }
-    return "none";
+    return testing::refusal_of([&] { return read(sets); });
   }
-
- private:
-  std::filesystem::path _path =
-      std::filesystem::temp_directory_path() / ("flight" + std::to_string(::getpid()) + ".toml");
 };
 
 }  // namespace drogue::parachute_app

@@ -7,8 +7,8 @@
 namespace drogue::gas_app {
 namespace {
 
-using scene::between, scene::Choices, scene::Condition, scene::Key, scene::not_negative, scene::positive,
-    scene::Table, scene::with_choice;
+using scene::between, scene::ChoiceKey, scene::Choices, scene::Condition, scene::Key, scene::not_negative,
+    scene::positive, scene::Table;
 
 constexpr double smallest_mesh = 8;
 constexpr double largest_mesh = 268435456;  // 2^28
@@ -40,10 +40,10 @@ const Choices<Exact> exact_choices = {
 
 /// Declares the scheme keys that a run shares with its finer reference run.
 void declare_weights(Table& table, gas::Parameters& scheme) {
-  table.value("weno", scheme.weno, weno_choices, "Nonlinear weights of the reconstruction");
-  table.value(
-      "weno_power", scheme.weno_power, "Power of the ratio in the weights",
-      {.range = between(1, 2), .when = with_choice("weno", scheme.weno, weno_choices, {gas::Weno::z})});
+  const ChoiceKey weno("weno", scheme.weno, weno_choices);
+  table.value(weno, "Nonlinear weights of the reconstruction");
+  table.value("weno_power", scheme.weno_power, "Power of the ratio in the weights",
+              {.range = between(1, 2), .when = weno.is({gas::Weno::z})});
   table.value("splitting", scheme.splitting, splitting_choices,
               "Alpha of the Lax-Friedrichs splitting: the largest speed of each field, of all, or of each "
               "field's stencil");
@@ -117,19 +117,18 @@ void declare_output(Table& table, Output& output) {
 }
 
 void declare_verify(Table& table, Verify& verify) {
+  const ChoiceKey exact("exact", verify.exact, exact_choices);
   table.value(
-      "exact", verify.exact, exact_choices,
+      exact,
       "Reference of the errors: the exact Riemann solution, the initial state moved with u, a finer run");
-  table.optional_table(
-      "reference", verify.reference,
-      [](Table& reference, gas::Parameters& scheme) {
-        reference.value("cells", scheme.cells, "Cells of the finer run",
-                        {.range = between(smallest_mesh, largest_mesh), .required = true});
-        declare_weights(reference, scheme);
-        declare_step(reference, scheme);
-      },
-      "The finer run",
-      {.when = with_choice("exact", verify.exact, exact_choices, {Exact::reference}), .required = true});
+  table.optional_table("reference", verify.reference,
+                       [](Table& reference, gas::Parameters& scheme) {
+                         reference.value("cells", scheme.cells, "Cells of the finer run",
+                                         {.range = between(smallest_mesh, largest_mesh), .required = true});
+                         declare_weights(reference, scheme);
+                         declare_step(reference, scheme);
+                       },
+                       "The finer run", {.when = exact.is({Exact::reference}), .required = true});
   for (const std::string norm : {"l1", "l2", "linf"}) {
     for (const std::string quantity : {"density", "velocity", "pressure"}) {
       const std::string unit = quantity == "density" ? "kg/m^3" : quantity == "velocity" ? "m/s" : "Pa";

@@ -102,6 +102,9 @@ struct Body {
 /// `FixedSheet.FollowsThePorousLawAtAnySlope` at half a cell.
 inline constexpr double largest_edge_in_cells = 1.0 / 1.4;
 
+/// Largest number of vertices of a sheet.
+inline constexpr double most_vertices = 1048576.0;  // 2^20
+
 /// Number of vertices of all bodies. Does not throw.
 [[nodiscard]] std::size_t vertices_of(const std::vector<Body>& bodies);
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "kernels/mesh/orientation.hpp"
 #include "miniapps/framework/obj_file.hpp"
@@ -12,16 +11,7 @@ namespace {
 
 using scene::Place, scene::rough_text, scene::rounded_text, scene::sentence;
 
-constexpr double most_vertices = 1048576.0;  // 2^20
-
 bool is_sharp(const FlowScene& scene) { return scene.coupling.method == coupling::CouplingMethod::sharp; }
-
-bool is_bounded(const flow::Parameters& p, std::size_t axis) {
-  return p.cells[axis] > 1 &&
-         (flow::is_stretched(p, axis) || p.boundary[2 * axis].kind != flow::BoundaryKind::periodic);
-}
-
-double width_of(const flow::Parameters& p, std::size_t axis) { return p.high[axis] - p.low[axis]; }
 
 /// Distance that a body keeps from the sides of the domain along an axis, m. The forces of a delta function
 /// act up to one cell beyond a sheet; a sharp one acts where it separates the centres of cells.
@@ -32,35 +22,30 @@ double margin_of(const FlowScene& scene, const Body& body, std::size_t axis) {
   return may_touch && to_low + to_high > 0.0 ? 0.0 : core_width(scene.parameters, axis);
 }
 
-/// Checks the extent of a body along an axis, m. It may cross periodic sides, beyond which it has an image.
-/// `when`: the time, where that matters.
+/// Checks the extent of a body along an axis. It may cross periodic sides, beyond which it has an image.
 void check_extent(const Place& at, const FlowScene& scene, const Body& body, const std::string& key,
-                  std::size_t axis, double low, double high, const std::string& when) {
+                  const SheetReach& reach) {
   const flow::Parameters& p = scene.parameters;
-  const double margin = margin_of(scene, body, axis), width = width_of(p, axis), rounding = 1e-9 * width;
-  const std::string reaches = sentence(at.path(), " reaches from ", rounded_text(low), " to ",
-                                       rounded_text(high), " m along ", axis_names[axis], when);
+  const std::size_t axis = reach.axis;
   if (p.cells[axis] > 1 && !is_bounded(p, axis)) {
-    if (scene.contact && (low < p.low[axis] - rounding || high > p.high[axis] + rounding))
-      at.contradict(key, reaches,
+    const double width = length_of(p, axis), rounding = 1e-9 * width;
+    if (scene.contact && (reach.low < p.low[axis] - rounding || reach.high > p.high[axis] + rounding))
+      at.contradict(key, reach_text(reach),
                     ", beyond periodic sides: coupling.contact does not act between a canopy and the image "
                     "of a body; another domain may hold both");
-    if (high - low <= width + rounding) return;
-    at.contradict(key, reaches, " and would cross its image beyond the periodic sides: it must be at most ",
-                  width, " m long");
+    if (reach.high - reach.low > width + rounding)
+      at.contradict(key, reach_text(reach),
+                    " and would cross its image beyond the periodic sides: it must be at most ", width,
+                    " m long");
+    return;
   }
-  if (keeps_margin(p, axis, low, high, margin)) return;
-  refuse_without_core(at, p, key, at.path(), axis);
-  const auto [begin, end] = sheet_extent(p, axis);
+  const double margin = margin_of(scene, body, axis);
   const bool can_be_sharp = !flow::is_stretched(p, axis) && margin > 0.0 && !is_sharp(scene) && !body.mount &&
                             scene.canopies.empty() && scene.flags.empty();
-  at.contradict(key, reaches, ", beyond ",
-                margin > 0.0 || flow::is_stretched(p, axis) ? beyond_sides_text(p, axis) : "the domain",
-                margin > 0.0 ? ": it must lie strictly between " : ": it must lie between ",
-                rounded_text(begin + margin), " and ", rounded_text(end - margin), " m",
-                can_be_sharp ? "; periodic sides it may cross, and with coupling.method = \"sharp\" it may "
-                               "touch all sides along which it extends"
-                             : "");
+  check_margin(at, p, key, reach, margin,
+               can_be_sharp ? "; periodic sides it may cross, and with coupling.method = \"sharp\" it may "
+                              "touch all sides along which it extends"
+                            : "");
 }
 
 /// Checks that a body spans the single cell of a grid in two dimensions.
@@ -68,7 +53,7 @@ void check_two_dimensions(const Place& at, const flow::Parameters& p, const Body
   const auto along = static_cast<std::size_t>(body.axis);
   const bool is_cylinder = body.kind == BodyKind::cylinder;
   const auto must_span = [&](std::size_t axis, double length, const std::string& key) {
-    const double width = width_of(p, axis);
+    const double width = length_of(p, axis);
     at.refuse_if(p.cells[axis] == 1 && length < (1.0 - 1e-9) * width, key, " is ", length, " m along ",
                  axis_names[axis], ", where the grid has one cell: it must be the width of the domain, ",
                  width, " m");
@@ -101,7 +86,7 @@ void check_mount(const Place& root, const Place& at, const FlowScene& scene, con
                  ": the plate must close a channel with periodic sides; those along ", axis_names[axis],
                  " are not");
     if (static_cast<int>(axis) == body.axis) continue;
-    const double length = body.lengths[axis == body.axes()[0] ? 0 : 1], width = width_of(p, axis);
+    const double length = body.lengths[axis == body.axes()[0] ? 0 : 1], width = length_of(p, axis);
     at.refuse_if(length < (1.0 - 1e-9) * width, "lengths",
                  ": a plate with a mount must close the channel, which is ", width, " m wide along ",
                  axis_names[axis]);
@@ -109,7 +94,7 @@ void check_mount(const Place& root, const Place& at, const FlowScene& scene, con
   root.refuse_if(scene.coupling.filter == 0.0, "coupling.filter", " = 0: ", at.path(),
                  " with its mount would move the fluid beside it alone, and not that of the channel; it must "
                  "be positive");
-  const double moved = p.density * width_of(p, 0) * width_of(p, 1) * width_of(p, 2);
+  const double moved = fluid_mass(p);
   root.refuse_if(scene.is_explicit() && !scene.allow_unstable && moved > body.mount->mass, "coupling.method",
                  " = \"explicit\": ", at.path(), " moves all of the fluid, ", moved,
                  " kg, more than its own mass, ", body.mount->mass,
@@ -144,7 +129,7 @@ void check_edges(const Place& at, const flow::Parameters& p, const Body& body) {
   at.refuse_if(body.vertices() > most_vertices, key, ": ", body.vertices(), " vertices are more than 2^20");
 }
 
-/// Checks the places that a body reaches at several times of the run.
+/// Checks the motion of a body, and the places that it reaches at several times of the run.
 void check_places(const Place& at, const FlowScene& scene, const Body& body) {
   const auto extents = body.extents();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -153,13 +138,19 @@ void check_places(const Place& at, const FlowScene& scene, const Body& body) {
     const std::string key = !text.empty() ? std::string("motion.") + axis_names[axis]
                             : is_side     ? "lengths"
                                           : "centre";
+    if (!text.empty()) {
+      at.refuse_if(scene.parameters.cells[axis] == 1, key, ": the grid has one cell along ",
+                   axis_names[axis]);
+      checked_program(at, key, text);
+    }
     const SpaceTimeFunction displacement(text);
     for (const double time : displacement.sample_times(scene.end_time)) {
       const double moved = displacement({}, time);
       const std::string when = text.empty() ? "" : sentence(" at t = ", time, " s");
       at.refuse_if(!std::isfinite(moved), key, " = ", scene::shortened(text), " is not finite", when);
-      check_extent(at, scene, body, key, axis, body.centre[axis] + moved - extents[axis][0],
-                   body.centre[axis] + moved + extents[axis][1], when);
+      check_extent(at, scene, body, key,
+                   {at.path(), axis, body.centre[axis] + moved - extents[axis][0],
+                    body.centre[axis] + moved + extents[axis][1], when});
     }
   }
 }
@@ -188,28 +179,18 @@ void note_missing_retraction(const Place& at, FlowScene& scene, const Body& body
                wider = 1.0 + 2.0 * fit / cells;
   const long excess = std::lround(100.0 * ((is_sphere ? wider * wider : wider) - 1.0));
   if (excess < 2) return;
-  scene.notices.push_back(sentence(
+  scene.note(
       at.path("retraction"), " = 0: on ", rough_text(cells), " cells across, the body acts on the fluid ",
       fit, " cells outside of its surface, so that its drag is some ", excess,
-      " % too large; retraction = ", fit, " makes up for it, and retraction = 0 says that none is wanted"));
+      " % too large; retraction = ", fit, " makes up for it, and retraction = 0 says that none is wanted");
 }
 
-void check_motion(const Place& at, const flow::Parameters& p, const Body& body) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::string key = std::string("motion.") + axis_names[axis];
-    if (body.motion[axis].empty()) continue;
-    at.refuse_if(p.cells[axis] == 1, key, ": the grid has one cell along ", axis_names[axis]);
-    try {
-      static_cast<void>(device_program(body.motion[axis]));
-    } catch (const std::invalid_argument& refused) {
-      at.refuse(key, ": ", refused.what());
-    }
-  }
-}
-
-/// Turns faces so that neighbours have their normals on one side. Which side that is does not matter: a sheet
-/// has the same law for flow in both directions.
-void orient(const Place& at, FlowScene& scene, Body& body) {
+/// Reads the surface of a body, and turns its faces so that neighbours have their normals on one side. Which
+/// side that is does not matter: a sheet has the same law for flow in both directions.
+void read_surface(const Place& at, FlowScene& scene, Body& body) {
+  body.surface = framework::read_obj(at, body.scale, scene.file, body.file, scene.notices);
+  at.refuse_if(body.surface.triangles.empty(), "file", ": ", body.file, " has no face");
+  at.refuse_if(!body.surface.lines.empty(), "file", ": ", body.file, " has lines (l), which have no area");
   const mesh::Orientation sides = orientation_of(body.surface);
   if (sides.one_sided && (body.slips() || body.porosity.law != PorosityLaw::none))
     at.refuse("file", ": ", body.file, " has one side, as a Moebius strip, at its triangles ",
@@ -217,9 +198,8 @@ void orient(const Place& at, FlowScene& scene, Body& body) {
               "; slip and porosity need two sides");
   if (sides.one_sided || sides.turns() == 0) return;
   turn(body.surface, sides);
-  scene.notices.push_back(sentence(at.path("file"), ": ", sides.turns(), " of ",
-                                   body.surface.triangles.size(), " triangles of ", body.file,
-                                   " are turned, so that neighbours have their normals on one side"));
+  scene.note(at.path("file"), ": ", sides.turns(), " of ", body.surface.triangles.size(), " triangles of ",
+             body.file, " are turned, so that neighbours have their normals on one side");
 }
 
 /// A sharp sheet acts on the velocity through it alone: the fluid slips along flat ones, and not along the
@@ -237,20 +217,10 @@ void check_slip(const Place& at, const Body& body) {
 
 void complete_and_check_bodies(const Place& root, FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    Body& body = scene.bodies[i];
-    const Place at = root.at("body", i);
+  for (const auto& [at, body] : root.each("body", scene.bodies)) {
     body.slip = body.slips();
     body.spacing = flow::core_of(p).spacing;
-    if (body.kind != BodyKind::file) continue;
-    body.surface = framework::read_obj(at, body.scale, scene.file, body.file, scene.notices);
-    at.refuse_if(body.surface.triangles.empty(), "file", ": ", body.file, " has no face");
-    at.refuse_if(!body.surface.lines.empty(), "file", ": ", body.file, " has lines (l), which have no area");
-    orient(at, scene, body);
-  }
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Body& body = scene.bodies[i];
-    const Place at = root.at("body", i);
+    if (body.kind == BodyKind::file) read_surface(at, scene, body);
     check_hole(at, body);
     check_two_dimensions(at, p, body);
     check_porosity(at, p, body.porosity);
@@ -259,10 +229,8 @@ void complete_and_check_bodies(const Place& root, FlowScene& scene) {
     check_retraction(at, scene, body);
     note_missing_retraction(at, scene, body);
     check_places(at, scene, body);
-    check_motion(at, p, body);
+    if (is_sharp(scene)) check_slip(at, body);
   }
-  if (is_sharp(scene))
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_slip(root.at("body", i), scene.bodies[i]);
   check_closed_channels(root, scene);
   check_body_overlaps(root, scene);
 }

@@ -3,7 +3,7 @@
 namespace drogue::parachute_app {
 namespace {
 
-using scene::between, scene::Choices, scene::not_negative, scene::positive, scene::Table, scene::with_choice;
+using scene::between, scene::ChoiceKey, scene::Choices, scene::not_negative, scene::positive, scene::Table;
 
 using enum BodyKind;
 using enum PorosityLaw;
@@ -33,78 +33,74 @@ void declare_motion(Table& table, std::array<std::string, 3>& motion) {
 }  // namespace
 
 void declare_porosity(Table& table, Porosity& porosity) {
-  const auto with_law = [&porosity](PorosityLaw law) {
-    return with_choice("law", porosity.law, law_choices, {law});
-  };
+  const ChoiceKey law("law", porosity.law, law_choices);
   table.value(
-      "law", porosity.law, law_choices,
+      law,
       "No flow through the sheet, or the pressure difference alpha w + beta |w| w at the normal "
       "velocity w: alpha and beta as given, of a packed bed (Ergun 1952), or of pores (Kim and Peskin "
       "2006)");
   table.value("alpha", porosity.alpha, "Linear coefficient",
-              {.unit = "Pa s/m", .range = not_negative, .when = with_law(forchheimer)});
+              {.unit = "Pa s/m", .range = not_negative, .when = law.is({forchheimer})});
   table.value("beta", porosity.beta, "Quadratic coefficient",
-              {.unit = "Pa s^2/m^2", .range = not_negative, .when = with_law(forchheimer)});
+              {.unit = "Pa s^2/m^2", .range = not_negative, .when = law.is({forchheimer})});
   table.value("void_fraction", porosity.void_fraction, "Volume of voids over that of the sheet",
-              {.range = positive.below(1.0), .when = with_law(ergun), .required = true});
+              {.range = positive.below(1.0), .when = law.is({ergun}), .required = true});
   table.value("thickness", porosity.thickness, "Thickness of the sheet",
-              {.unit = "m", .range = positive, .when = with_law(ergun), .required = true});
+              {.unit = "m", .range = positive, .when = law.is({ergun}), .required = true});
   table.value("grain", porosity.grain, "Diameter of its grains or threads",
-              {.unit = "m", .range = positive, .when = with_law(ergun), .required = true});
+              {.unit = "m", .range = positive, .when = law.is({ergun}), .required = true});
   table.value("pores", porosity.pores, "Number of pores per area",
-              {.unit = "1/m^2", .range = positive, .when = with_law(kim_peskin), .required = true});
+              {.unit = "1/m^2", .range = positive, .when = law.is({kim_peskin}), .required = true});
   table.value("conductance", porosity.conductance, "Flow rate through a pore over the pressure difference",
-              {.unit = "m^3/(Pa s)", .range = positive, .when = with_law(kim_peskin), .required = true});
+              {.unit = "m^3/(Pa s)", .range = positive, .when = law.is({kim_peskin}), .required = true});
 }
 
 void declare_body(Table& table, Body& body) {
-  const auto with_kind = [&body](const std::vector<BodyKind>& kinds) {
-    return with_choice("kind", body.kind, body_choices, kinds);
-  };
-  table.value("kind", body.kind, body_choices,
+  const ChoiceKey kind("kind", body.kind, body_choices);
+  table.value(kind,
               "A rectangle, a disk, a sphere, a cylinder, half of a sphere that is open on one side, or the "
               "triangles of a file; without thickness",
               {.required = true});
   table.value("normal", body.axis, axis_choices, "Axis normal to the sheet",
-              {.when = with_kind({plate, disk}), .required = true});
+              {.when = kind.is({plate, disk}), .required = true});
   table.value("axis", body.axis, axis_choices,
               "Axis of symmetry; in two dimensions, that of a cylinder has the single cell",
-              {.when = with_kind({cylinder, cup}), .required = true});
+              {.when = kind.is({cylinder, cup}), .required = true});
   table.value("centre", body.centre,
               "Centre; of a cup, that of the whole sphere; of a file, the place of its origin",
               {.unit = "m", .required = true});
   table.value("lengths", body.lengths,
               "Extents along the two other axes, in the order x, y, z; the whole width of a periodic axis is "
               "closed",
-              {.unit = "m", .range = positive, .when = with_kind({plate}), .required = true});
+              {.unit = "m", .range = positive, .when = kind.is({plate}), .required = true});
   table.value("hole", body.hole, "Radius of a round hole in the middle of a square plate; 0: none",
-              {.unit = "m", .range = not_negative, .when = with_kind({plate})});
+              {.unit = "m", .range = not_negative, .when = kind.is({plate})});
   table.value(
       "radius", body.radius, "Radius",
-      {.unit = "m", .range = positive, .when = with_kind({disk, sphere, cylinder, cup}), .required = true});
+      {.unit = "m", .range = positive, .when = kind.is({disk, sphere, cylinder, cup}), .required = true});
   table.value("length", body.length, "Extent along the axis",
-              {.unit = "m", .range = positive, .when = with_kind({cylinder}), .required = true});
+              {.unit = "m", .range = positive, .when = kind.is({cylinder}), .required = true});
   table.value("ends", body.has_ends, end_choices, "Ends of the cylinder: a tube, or closed by disks",
-              {.when = with_kind({cylinder})});
+              {.when = kind.is({cylinder})});
   table.value("opening", body.opens_to_high, opening_choices, "Side along the axis to which the cup is open",
-              {.when = with_kind({cup}), .required = true});
+              {.when = kind.is({cup}), .required = true});
   table.value("file", scene::text_codec(body.file),
               "A Wavefront OBJ file (v, f), relative to the scene; larger faces are divided into triangles",
-              {.when = with_kind({file}), .required = true});
+              {.when = kind.is({file}), .required = true});
   table.value("scale", body.scale, "Metres per unit of length of the file",
-              {.range = positive, .when = with_kind({file})});
+              {.range = positive, .when = kind.is({file})});
   table.value("edge_length", body.edge_length,
               "Largest edge of the triangles, of a plate or tube along its sides; at most a cell over 1.4, "
               "and half a cell for accuracy",
               {.unit = "m",
                .range = positive,
-               .when = with_kind({plate, disk, sphere, cylinder, cup}),
+               .when = kind.is({plate, disk, sphere, cylinder, cup}),
                .required = true});
   table.value("retraction", body.retraction,
               "Cells by which the triangles lie inside of the body along each axis; 0.3 for spheres and 0.2 "
               "for cylinders make up for the width of the delta function, where the fluid inside is at rest; "
               "not with contact or method = \"sharp\"",
-              {.range = between(0.0, 1.0), .when = with_kind({sphere, cylinder, cup})});
+              {.range = between(0.0, 1.0), .when = kind.is({sphere, cylinder, cup})});
   table.table("motion", body.motion, declare_motion,
               "Prescribed motion; the fluid takes part in it from time 0 on");
   table.value("slip", body.slip, "The fluid slips freely along the sheet, or has its velocity",

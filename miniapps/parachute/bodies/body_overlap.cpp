@@ -94,8 +94,8 @@ void check_body_overlaps(const scene::Place& root, FlowScene& scene) {
           at.contradict(body.moves() ? "motion" : "centre", at.path(), " crosses ", scene::element("body", k),
                         " at t = ", time,
                         " s: bodies that move against each other may touch, and not overlap");
-        scene.notices.push_back(scene::sentence(at.path(), " overlaps ", scene::element("body", k),
-                                                ": each has a share of the force on both together"));
+        scene.note(at.path(), " overlaps ", scene::element("body", k),
+                   ": each has a share of the force on both together");
       }
   }
 }

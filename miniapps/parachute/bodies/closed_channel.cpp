@@ -23,7 +23,7 @@ class Section {
         _last((axis + 2) % 3),
         _is_covered(cells(_across) * cells(_last)) {}
 
-  [[nodiscard]] double area() const { return width(_across) * width(_last); }
+  [[nodiscard]] double area() const { return length_of(_p, _across) * length_of(_p, _last); }
   [[nodiscard]] bool is_covered() const {
     return std::ranges::all_of(_is_covered, [](char covered) { return covered != 0; });
   }
@@ -63,7 +63,6 @@ class Section {
 
  private:
   [[nodiscard]] std::size_t cells(std::size_t axis) const { return static_cast<std::size_t>(_p.cells[axis]); }
-  [[nodiscard]] double width(std::size_t axis) const { return _p.high[axis] - _p.low[axis]; }
   [[nodiscard]] double centre(std::size_t axis, double index) const {
     if (!flow::is_stretched(_p, axis)) return _p.low[axis] + (index + 0.5) * flow::cell_width(_p, axis, 0);
     return _cells.coordinates[axis][static_cast<std::size_t>(index)];
@@ -171,7 +170,7 @@ std::vector<coupling::ClosingSheet> closing_sheets(const FlowScene& scene) {
     const int end = begin + static_cast<int>(body.vertices());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (body.mount || !is_flat(body, p, axis)) continue;
-      const double part = closed_part(p, body, axis), length = p.high[axis] - p.low[axis];
+      const double part = closed_part(p, body, axis), length = length_of(p, axis);
       if (part == 0.0 || (is_impermeable(body) && (has_impermeable[axis] || !is_free(p, axis)))) continue;
       has_impermeable[axis] = has_impermeable[axis] || is_impermeable(body);
       sheets.push_back(
@@ -189,11 +188,9 @@ void check_closed_channels(const scene::Place& root, const FlowScene& scene) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::string moved;  // by the first impermeable body
     bool has_impermeable = false;
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-      const Body& body = scene.bodies[i];
+    for (const auto& [at, body] : root.each("body", scene.bodies)) {
       const bool are_several = are_jointly_closing(scene, body, axis);
       if (body.mount || (closed_part(p, body, axis) == 0.0 && !are_several)) continue;
-      const scene::Place at = root.at("body", i);
       const std::string closes =
           scene::sentence(are_several ? " with others" : "", " closes the channel along ", axis_names[axis]);
       const auto beside = are_several ? bodies_beside(scene, body, axis) : std::vector{&body};
@@ -231,10 +228,10 @@ void note_narrow_channels(const scene::Place& root, FlowScene& scene, const Shee
       const bool is_body = part < parts.bodies,
                  is_treated = is_body && (scene.bodies[part].mount || sections[part].is_covered());
       if (is_treated || sections[part].covered_part() < wide) continue;
-      scene.notices.push_back(scene::sentence(parts.name(part), " covers most of the channel along ",
-                                              axis_names[axis], is_body ? "" : " at the start",
-                                              ": its force follows sudden changes of the flow within some ",
-                                              p.cells[axis], " steps; run.max_dt shortens them"));
+      scene.note(parts.name(part), " covers most of the channel along ", axis_names[axis],
+                 is_body ? "" : " at the start",
+                 ": its force follows sudden changes of the flow within some ", p.cells[axis],
+                 " steps; run.max_dt shortens them");
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "kernels/fabric/contact/features.hpp"
+#include "miniapps/parachute/bodies/box.hpp"
 #include "miniapps/parachute/canopy/periodic_images.hpp"
 #include "miniapps/parachute/canopy/stiffness.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
@@ -15,8 +16,6 @@ namespace {
 
 using fabric::Vector;
 using scene::element, scene::Place, scene::rough_text, scene::rounded_text, scene::sentence;
-
-constexpr double most_canopy_vertices = 1048576.0;  // 2^20
 
 /// Key that places a canopy.
 std::string place_key(const Canopy& canopy) { return canopy.payload.shared ? "payload.shared" : "centre"; }
@@ -76,12 +75,9 @@ void check_cuts(const Place& at, const Canopy& canopy, double end_time) {
 }
 
 void check_edges(const Place& at, const flow::Parameters& p, const Canopy& canopy) {
-  double width = core_width(p, 0);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
     at.refuse_if(p.cells[axis] == 1, "", ": the grid has one cell along ", axis_names[axis]);
-    width = std::min(width, core_width(p, axis));
-  }
-  const double longest = largest_edge_in_cells * width;
+  const double width = least_width(p), longest = largest_edge_in_cells * width;
   at.refuse_if(canopy.edge_length > (1.0 + 1e-9) * longest, "edge_length", " = ", canopy.edge_length,
                " m is too coarse: the cloth leaks on cells of ", width, " m; at most ", longest, " m");
   at.refuse_if(canopy.lines.drag && canopy.lines.drag->diameter > width, "lines.drag.diameter", " = ",
@@ -91,10 +87,10 @@ void check_edges(const Place& at, const flow::Parameters& p, const Canopy& canop
 void check_size(const Place& at, const Canopy& canopy) {
   // Counting takes as long as there are rings, of three vertices at least.
   const double along = 0.5 * canopy.diameter + (canopy.has_skirt() ? canopy.skirt.length : 0.0);
-  bool is_too_large = 3.0 * along / canopy.edge_length > most_canopy_vertices;
+  bool is_too_large = 3.0 * along / canopy.edge_length > most_vertices;
   if (!is_too_large) {
     const std::vector<int> sizes = ring_sizes(canopy);
-    is_too_large = std::accumulate(sizes.begin(), sizes.end(), 0.0) > most_canopy_vertices;
+    is_too_large = std::accumulate(sizes.begin(), sizes.end(), 0.0) > most_vertices;
   }
   at.refuse_if(is_too_large, "edge_length", " = ", canopy.edge_length, " m: the vertices are more than 2^20");
 }
@@ -111,21 +107,14 @@ void check_stiffness(const Place& at, const FlowScene& scene, const Canopy& cano
       ", a larger edge_length or a smaller ", scene.parameters.fixed_dt > 0.0 ? "run.dt" : "run.max_dt");
 }
 
-/// The forces of cloth act up to one cell beyond it. `remedy`: the end of the sentence.
-void check_inside(const Place& root, const flow::Parameters& p, const std::vector<Vector>& positions,
-                  const std::string& key, const std::string& name, const std::string& remedy) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic && !flow::is_stretched(p, axis)) continue;
-    const auto [low, high] = std::ranges::minmax(positions, {}, [axis](const Vector& x) { return x[axis]; });
-    const double margin = core_width(p, axis);
-    if (keeps_margin(p, axis, low[axis], high[axis], margin)) continue;
-    const auto [begin, end] = sheet_extent(p, axis);
-    refuse_beyond_sides(root, p, key, name + " with its payload", axis, {low[axis], high[axis]},
-                        {begin + margin, end - margin}, remedy.c_str());
-  }
-}
+/// Body, or cloth of a canopy.
+struct SheetPoints {
+  std::string name;
+  double edge_length;  ///< m
+  bool is_body;
+  std::vector<Vector> points;  ///< vertices in the order of x
+};
 
-/// Points of one cloth in the order of x.
 std::vector<Vector> sorted_by_x(std::vector<Vector> points) {
   std::ranges::sort(points);
   return points;
@@ -144,39 +133,31 @@ bool are_near(const std::vector<Vector>& first, const std::vector<Vector>& secon
 }
 
 std::vector<Vector> displaced(std::vector<Vector> points, const Vector& by) {
-  for (Vector& x : points)
-    for (std::size_t axis = 0; axis < 3; ++axis) x[axis] += by[axis];
+  for (Vector& x : points) x = parachute_app::displaced(x, by);
   return points;
 }
 
 /// Checks that no triangles of a canopy cross those of a body or an earlier canopy, or their images beyond
-/// periodic sides: then, vertices of both lie within an edge of each other. `cloths`: vertices of the
-/// canopies so far, the last one included.
-void check_overlaps(const Place& root, const FlowScene& scene, const std::vector<std::vector<Vector>>& cloths,
-                    const std::vector<std::vector<Vector>>& bodies) {
-  const std::size_t i = cloths.size() - 1;
-  const Canopy& canopy = scene.canopies[i];
-  const std::string name = element("canopy", i), image = "the image, beyond periodic sides, of ";
-  const auto check = [&](const std::vector<Vector>& other, double edge_length, const std::string& what) {
-    const double distance = canopy.edge_length + edge_length;
-    if (are_near(other, cloths[i], distance))
-      root.at(name).contradict(place_key(canopy), name, " overlaps ", what,
-                               " at the start: they come closer than ", distance,
-                               " m, the sum of their edge lengths");
+/// periodic sides: then, vertices of both lie within an edge of each other.
+void check_overlaps(const Place& at, const Canopy& canopy, const SheetPoints& own,
+                    const std::vector<SheetPoints>& others, const std::vector<Vector>& periods) {
+  const auto check = [&](const SheetPoints& other, const Vector& by, const char* image) {
+    const double distance = own.edge_length + other.edge_length;
+    if (are_near(displaced(other.points, by), own.points, distance))
+      at.contradict(place_key(canopy), own.name, " overlaps ", image, other.name,
+                    " at the start: they come closer than ", distance, " m, the sum of their edge lengths");
   };
-  std::vector<Vector> periods = scene.has_fluid() ? periods_of(scene.parameters) : std::vector<Vector>{};
-  for (const Vector& period : periods) check(displaced(cloths[i], period), canopy.edge_length, image + name);
-  for (std::size_t k = periods.size(); k-- > 0;)
-    periods.push_back({-periods[k][0], -periods[k][1], -periods[k][2]});
-  const auto check_all = [&](const std::vector<Vector>& other, double edge_length, const std::string& what) {
-    check(other, edge_length, what);
-    for (const Vector& period : periods) check(displaced(other, period), edge_length, image + what);
-  };
-  for (std::size_t k = 0; k < i; ++k)
-    check_all(cloths[k], scene.canopies[k].edge_length, element("canopy", k));
-  // The rim of a drum does not move: it may end at a body, such as a plate with a hole.
-  for (std::size_t k = 0; k < bodies.size() && canopy.kind != CanopyKind::drum; ++k)
-    check_all(bodies[k], scene.bodies[k].largest_edge(), element("body", k));
+  const char* const image = "the image, beyond periodic sides, of ";
+  for (const Vector& period : periods) check(own, period, image);
+  for (const SheetPoints& other : others) {
+    // The rim of a drum does not move: it may end at a body, such as a plate with a hole.
+    if (other.is_body && canopy.kind == CanopyKind::drum) continue;
+    check(other, {}, "");
+    for (const auto& [x, y, z] : periods) {
+      check(other, {x, y, z}, image);
+      check(other, {-x, -y, -z}, image);
+    }
+  }
 }
 
 }  // namespace
@@ -190,14 +171,14 @@ void check_frame(const Place& root, const FlowScene& scene) {
   root.refuse_if(!scene.bodies.empty(), key, follow,
                  " cannot be combined with a [[body]], which stays in its place");
   root.refuse_if(!scene.canopies.front().has_lines(), key, follow, " needs a payload; canopy[0] has none");
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
-    root.refuse_if(scene.canopies[i].payload.fixed && !scene.canopies[i].payload.shared, key, follow,
-                   " needs payloads that move freely; ", element("canopy", i), ".payload.fixed is true");
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
+  for (const auto& [at, canopy] : root.each("canopy", scene.canopies)) {
+    root.refuse_if(canopy.payload.fixed && !canopy.payload.shared, key, follow,
+                   " needs payloads that move freely; ", at.path("payload.fixed"), " is true");
     for (const std::size_t axis : {0U, 1U})
-      root.refuse_if(scene.canopies[i].payload.guided && scene.open_axes()[axis], key, follow,
-                     " moves along ", axis_names[axis], ", whose sides are open; ", element("canopy", i),
-                     ".payload.guided keeps the payload from it");
+      root.refuse_if(canopy.payload.guided && scene.open_axes()[axis], key, follow, " moves along ",
+                     axis_names[axis], ", whose sides are open; ", at.path("payload.guided"),
+                     " keeps the payload from it");
+  }
   const auto require_constant = [&](const std::string& of, const VectorExpression& velocity) {
     for (const std::string& component : velocity)
       root.refuse_if(!constant_value(component), of, " = ", scene::shortened(component),
@@ -262,10 +243,9 @@ void check_method(const Place& root, const FlowScene& scene) {
                  " = \"sharp\" takes a [[body]] and no [[canopy]]: the force on a free vertex would jump "
                  "where cloth passes the centre of a cell");
   if (!scene.is_explicit() || scene.allow_unstable) return;
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
-    const Canopy& canopy = scene.canopies[i];
+  for (const auto& [at, canopy] : root.each("canopy", scene.canopies)) {
     const double ratio = scene.added_mass_ratio(canopy);
-    root.refuse_if(!(ratio <= 1.0), key, " = \"explicit\": waves as long as ", element("canopy", i), ", ",
+    root.refuse_if(!(ratio <= 1.0), key, " = \"explicit\": waves as long as ", at.path(), ", ",
                    rough_text(canopy.diameter), " m, move ", rough_text(ratio * canopy.area_density),
                    " kg/m^2 of fluid, ", rough_text(ratio), " times the ", rough_text(canopy.area_density),
                    " kg/m^2 of its cloth; forces that act a step late need at most 1, \"spread\" takes any "
@@ -273,7 +253,8 @@ void check_method(const Place& root, const FlowScene& scene) {
   }
 }
 
-void check_and_place_canopies(const Place& root, std::vector<Canopy>& canopies) {
+/// Checks which canopies share payloads, and places them.
+void place_canopies(const Place& root, std::vector<Canopy>& canopies) {
   for (std::size_t i = 0; i < canopies.size(); ++i) {
     const std::optional<int> shared = canopies[i].payload.shared;
     if (!shared) continue;
@@ -293,15 +274,16 @@ void check_and_place_canopies(const Place& root, std::vector<Canopy>& canopies) 
   place_at_shared_payloads(canopies);
 }
 
-void check_canopies(const Place& root, const FlowScene& scene) {
-  if (scene.canopies.empty()) return;
+void complete_and_check_canopies(const Place& root, FlowScene& scene) {
+  place_canopies(root, scene.canopies);
   const flow::Parameters& p = scene.parameters;
-  const Canopy& first = scene.canopies.front();
-  std::vector<std::vector<Vector>> cloths, bodies;
-  for (const Body& body : scene.bodies) bodies.push_back(sorted_by_x(mesh_of(body).rest));
-  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
-    const Canopy& canopy = scene.canopies[i];
-    const Place at = root.at("canopy", i);
+  const std::vector<Vector> periods = scene.has_fluid() ? periods_of(p) : std::vector<Vector>{};
+  std::vector<SheetPoints> others;
+  if (!scene.canopies.empty())
+    for (const auto& [at, body] : root.each("body", scene.bodies))
+      others.push_back({at.path(), body.largest_edge(), true, sorted_by_x(mesh_of(body).rest)});
+  for (const auto& [at, canopy] : root.each("canopy", scene.canopies)) {
+    const Canopy& first = scene.canopies.front();
     check_measures(at, canopy);
     check_reefing(at, canopy);
     check_cuts(at, canopy, scene.end_time);
@@ -316,12 +298,16 @@ void check_canopies(const Place& root, const FlowScene& scene) {
     CanopyMesh mesh = make_canopy(canopy);
     if (scene.has_fluid()) {
       check_stiffness(at, scene, canopy, mesh);
-      check_inside(root, p, mesh.positions, at.path(place_key(canopy)), at.path(),
-                   canopy.has_lines() ? sentence("; its lines.length is ", canopy.lines.length, " m") : "");
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (is_bounded(p, axis))
+          check_margin(
+              at, p, place_key(canopy), at.path() + " with its payload", axis, mesh.positions,
+              canopy.has_lines() ? sentence("; its lines.length is ", canopy.lines.length, " m") : "");
     }
     mesh.positions.resize(mesh.cloth_vertices);
-    cloths.push_back(sorted_by_x(std::move(mesh.positions)));
-    check_overlaps(root, scene, cloths, bodies);
+    SheetPoints own{at.path(), canopy.edge_length, false, sorted_by_x(std::move(mesh.positions))};
+    check_overlaps(at, canopy, own, others, periods);
+    others.push_back(std::move(own));
   }
 }
 

@@ -3,8 +3,8 @@
 namespace drogue::parachute_app {
 namespace {
 
-using scene::between, scene::Choices, scene::Condition, scene::not_negative, scene::positive, scene::Table,
-    scene::with_choice;
+using scene::between, scene::ChoiceKey, scene::Choices, scene::Condition, scene::not_negative,
+    scene::positive, scene::Table;
 
 using enum CanopyKind;
 using enum CanopyShape;
@@ -35,12 +35,10 @@ void declare_skirt(Table& table, ConicalSkirt& skirt) {
 }
 
 void declare_cloth(Table& table, Canopy& canopy) {
-  table.value("cloth", canopy.cloth, cloth_choices,
-              "MIL-C-7020 type I, 0.0373 kg/m^2, or a given area density");
+  const ChoiceKey cloth("cloth", canopy.cloth, cloth_choices);
+  table.value(cloth, "MIL-C-7020 type I, 0.0373 kg/m^2, or a given area density");
   table.value("area_density", canopy.area_density, "Mass per area of the cloth",
-              {.unit = "kg/m^2",
-               .range = positive,
-               .when = with_choice("cloth", canopy.cloth, cloth_choices, {Fabric::custom})});
+              {.unit = "kg/m^2", .range = positive, .when = cloth.is({Fabric::custom})});
   table.value("membrane_modulus", canopy.membrane_modulus,
               "Young's modulus times thickness; the same for all canopies",
               {.unit = "N/m", .range = positive});
@@ -53,17 +51,14 @@ void declare_cloth(Table& table, Canopy& canopy) {
 }
 
 void declare_place(Table& table, Canopy& canopy) {
-  const auto with_shape = [&canopy](const std::vector<CanopyShape>& shapes) {
-    return with_choice("shape", canopy.shape, shape_choices, shapes);
-  };
-  table.value("shape", canopy.shape, shape_choices,
+  const ChoiceKey shape("shape", canopy.shape, shape_choices);
+  table.value(shape,
               "Shape at the start: the flat cloth, a pleated cone, or the flat cloth with its axis 15, 60 or "
               "75 degrees from z");
   table.value("closure", canopy.closure, "Radius of the skirt over that of the flat cloth",
-              {.range = positive.at_most(1.0), .when = with_shape({partly_closed})});
-  table.value(
-      "angle", canopy.angle, "Angle of the axis from z",
-      {.unit = "degrees", .range = between(-180.0, 180.0), .when = with_shape({flat, partly_closed})});
+              {.range = positive.at_most(1.0), .when = shape.is({partly_closed})});
+  table.value("angle", canopy.angle, "Angle of the axis from z",
+              {.unit = "degrees", .range = between(-180.0, 180.0), .when = shape.is({flat, partly_closed})});
   table.value("azimuth", canopy.azimuth, "Direction towards which the axis leans, from x towards y",
               {.unit = "degrees", .range = between(-360.0, 360.0)});
   table.value("centre", canopy.centre, "Centre of the skirt at the start",
@@ -170,18 +165,16 @@ void declare_reinforcement(Table& table, Reinforcement& bands) {
 
 void declare_canopy(Table& table, Canopy& canopy, const Condition& fluid,
                     const std::function<bool()>& drops) {
-  const auto with_kind = [&canopy](const std::vector<CanopyKind>& kinds) {
-    return with_choice("kind", canopy.kind, canopy_choices, kinds);
-  };
+  const ChoiceKey kind("kind", canopy.kind, canopy_choices);
   const Condition lines = {[&canopy] { return canopy.has_lines(); }, "unless kind = \"sheet\" or \"drum\"",
                            "kind"};
-  table.value("kind", canopy.kind, canopy_choices,
+  table.value(kind,
               "A flat disk of cloth with a vent, such a disk with a conical skirt that is wide or narrow at "
               "its mouth, a disk without lines and payload, or one under tension with a fixed rim",
               {.required = true});
   table.value("diameter", canopy.diameter, "Diameter of the flat cloth", {.unit = "m", .range = positive});
   table.table("skirt", canopy.skirt, declare_skirt, "Conical skirt below the flat cloth",
-              {.when = with_kind({extended_skirt, guide_surface}), .required = true});
+              {.when = kind.is({extended_skirt, guide_surface}), .required = true});
   table.value("gores", canopy.gores, "Number of gores, and of suspension lines", {.range = between(3, 1000)});
   table.value("vent", canopy.vent, "Diameter of the vent; 0: none", {.unit = "m", .range = not_negative});
   declare_cloth(table, canopy);
@@ -189,10 +182,10 @@ void declare_canopy(Table& table, Canopy& canopy, const Condition& fluid,
   table.table("perturbation", canopy.perturbation, declare_perturbation,
               "Random displacements of the cloth at the start, for several runs of a chaotic opening");
   table.value("tension", canopy.tension, "Tension of the flat cloth",
-              {.unit = "N/m", .range = positive, .when = with_kind({drum}), .required = true});
+              {.unit = "N/m", .range = positive, .when = kind.is({drum}), .required = true});
   table.value("deflection", canopy.deflection,
               "Displacement of the centre along the axis at the start, in the first axisymmetric mode",
-              {.unit = "m", .when = with_kind({drum})});
+              {.unit = "m", .when = kind.is({drum})});
   table.table("lines", [&](Table& keys) { declare_lines(keys, canopy.lines, fluid); },
               "Suspension lines to the skirt, one per gore", {.when = lines});
   table.table("payload", [&, drops](Table& keys) { declare_payload(keys, canopy.payload, fluid, drops); },

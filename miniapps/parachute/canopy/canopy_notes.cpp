@@ -36,25 +36,21 @@ void note_blockage(FlowScene& scene) {
     if (canopy.has_lines()) area += pi / 4.0 * std::pow(inflated_diameter(canopy), 2);
   const double section = (p.high[0] - p.low[0]) * (p.high[1] - p.low[1]);
   if (area <= most_blockage * section) return;
-  scene.notices.push_back(sentence(
-      "grid.domain: ", scene.canopies.size() > 1 ? "open canopies cover " : "the open canopy covers ",
-      rough_text(100.0 * area / section),
-      " % of its section across z, so that drag and speed are those in "
-      "a duct and not in free air; a square section of ",
-      rough_text(std::ceil(std::sqrt(area / most_blockage))), " m has at most ",
-      rough_text(100.0 * most_blockage), " %"));
+  scene.note("grid.domain: ", scene.canopies.size() > 1 ? "open canopies cover " : "the open canopy covers ",
+             rough_text(100.0 * area / section),
+             " % of its section across z, so that drag and speed are those in "
+             "a duct and not in free air; a square section of ",
+             rough_text(std::ceil(std::sqrt(area / most_blockage))), " m has at most ",
+             rough_text(100.0 * most_blockage), " %");
 }
 
-/// Notes a drop in a grid at rest, out of which it falls.
-void note_unfollowed_drop(FlowScene& scene) {
+/// Notes a drop in a grid at rest, out of which it falls, and sides across the stream along which a grid does
+/// not follow a canopy that glides.
+void note_unfollowed_canopies(FlowScene& scene) {
   if (scene.drop && scene.frame != Frame::follow)
-    scene.notices.push_back(
+    scene.note(
         "grid.frame: a drop falls out of a grid at rest, which ends the run; \"follow\" moves the grid with "
         "it");
-}
-
-/// Notes sides across the stream along which a grid does not follow a canopy that glides.
-void note_unfollowed_glide(FlowScene& scene) {
   const CanopyPayload& payload = scene.canopies.front().payload;
   if (scene.frame != Frame::follow || payload.fixed || payload.guided) return;
   std::vector<std::string> axes, sides;
@@ -64,60 +60,53 @@ void note_unfollowed_glide(FlowScene& scene) {
     sides.push_back(sentence(axis_names[axis], " = \"outflow\""));
   }
   if (axes.empty()) return;
-  scene.notices.push_back(
-      sentence("grid.boundary: the grid does not follow canopy[0] along ", joined(axes, " and "),
-               ", and a free canopy glides: it may leave the grid, which ends the run; with ",
-               joined(sides, ", "), " the grid follows"));
+  scene.note("grid.boundary: the grid does not follow canopy[0] along ", joined(axes, " and "),
+             ", and a free canopy glides: it may leave the grid, which ends the run; with ",
+             joined(sides, ", "), " the grid follows");
 }
 
 /// Notes the canopy with the fewest cells across.
-void note_coarse_cells(FlowScene& scene, std::size_t i) {
-  const double diameter = inflated_diameter(scene.canopies[i]),
-               cells = cells_across(scene.parameters, scene.canopies[i]);
+void note_coarse_cells(const Place& at, FlowScene& scene, const Canopy& canopy) {
+  const double diameter = inflated_diameter(canopy), cells = cells_across(scene.parameters, canopy);
   if (cells >= 0.996 * least_cells) return;  // three digits of them are those of the least number
-  scene.notices.push_back(sentence(
-      "grid: ", rough_text(cells), " cells across the ", rough_text(diameter), " m of ", element("canopy", i),
-      " once it is open are too few for forces that hardly depend on them; cells of ",
-      rough_text(diameter / least_cells), " m would be ", rough_text(least_cells)));
+  scene.note("grid: ", rough_text(cells), " cells across the ", rough_text(diameter), " m of ", at.path(),
+             " once it is open are too few for forces that hardly depend on them; cells of ",
+             rough_text(diameter / least_cells), " m would be ", rough_text(least_cells));
 }
 
 /// Notes free edges that act beyond the cloth: docs/coupling.md, inset of free edges.
 void note_wide_edges(FlowScene& scene, double cells) {
   if (edge_inset(scene) > 0.0) return;
   const double width = standard_edge_inset(scene);
-  scene.notices.push_back(sentence("coupling.edge_inset = 0: skirt and vent act on the air ",
-                                   rough_text(width), " cells beyond the cloth, so that drag is some ",
-                                   std::lround(100.0 * (std::pow(1.0 + 2.0 * width / cells, 2) - 1.0)),
-                                   " % too large; coupling.edge_inset = ", rough_text(width),
-                                   " makes up for it"));
+  scene.note("coupling.edge_inset = 0: skirt and vent act on the air ", rough_text(width),
+             " cells beyond the cloth, so that drag is some ",
+             std::lround(100.0 * (std::pow(1.0 + 2.0 * width / cells, 2) - 1.0)),
+             " % too large; coupling.edge_inset = ", rough_text(width), " makes up for it");
 }
 
 /// Notes a domain that ends within two open diameters behind a canopy, where its wake still acts on it.
-void note_short_wake(FlowScene& scene, std::size_t i) {
+void note_short_wake(const Place& at, FlowScene& scene, const Canopy& canopy) {
   constexpr double least_diameters = 2.0;
-  const Canopy& canopy = scene.canopies[i];
   const flow::Parameters& p = scene.parameters;
   const bool flows_down = constant_value(scene.velocity[2]).value_or(0.0) < 0.0;
   const double behind = flows_down ? canopy.centre[2] - p.low[2] : p.high[2] - canopy.centre[2],
                least = least_diameters * inflated_diameter(canopy);
   if (behind >= least) return;
-  scene.notices.push_back(sentence("grid.domain ends ", rough_text(behind), " m behind the skirt of ",
-                                   element("canopy", i), ", in a wake that still acts on it; at least ",
-                                   rough_text(least), " m are two open diameters"));
+  scene.note("grid.domain ends ", rough_text(behind), " m behind the skirt of ", at.path(),
+             ", in a wake that still acts on it; at least ", rough_text(least), " m are two open diameters");
 }
 
 /// Notes lines with which a flat canopy has more drag than published ones: docs/parachute-notebook.md, length
 /// of the lines.
-void note_long_lines(const Place& root, FlowScene& scene, std::size_t i) {
+void note_long_lines(const Place& at, FlowScene& scene, const Canopy& canopy) {
   constexpr double longest = 0.95;  // diameters
-  const Canopy& canopy = scene.canopies[i];
   const double ratio = canopy.lines.length / canopy.diameter;
-  const bool is_default = !root.at("canopy", i).given("lines.length");  // the next note is on these
+  const bool is_default = !at.given("lines.length");  // the next note is on these
   if (is_default || canopy.kind != CanopyKind::flat_circular || ratio <= longest) return;
-  scene.notices.push_back(sentence(
-      element("canopy", i), ".lines.length: ", rough_text(ratio),
+  scene.note(
+      at.path("lines.length"), ": ", rough_text(ratio),
       " diameters: such flat canopies sway here and have a drag coefficient of 0.9 and more, where 0.75 to "
-      "0.80 are published and lines of 0.7 to 0.8 diameters have 0.8"));
+      "0.80 are published and lines of 0.7 to 0.8 diameters have 0.8");
 }
 
 bool blows_along(const FlowScene& scene, std::size_t axis) {
@@ -137,20 +126,19 @@ void note_sides(FlowScene& scene) {
       closed.emplace_back(side_names[side]);
   }
   if (!walls.empty())
-    scene.notices.push_back(sentence("grid.boundary: walls at ", joined(walls, " and "),
-                                     " hold the air back, so that drag and speed are not those in free air; "
-                                     "\"slip\" sides, far away, do not"));
+    scene.note("grid.boundary: walls at ", joined(walls, " and "),
+               " hold the air back, so that drag and speed are not those in free air; "
+               "\"slip\" sides, far away, do not");
   if (!closed.empty())
-    scene.notices.push_back(sentence(
+    scene.note(
         "grid.boundary: no air passes ", joined(closed, " and "),
         ", so that a canopy drives the air of the domain along and its drag and speed are not those in "
-        "free air; [\"inflow\", \"outflow\"] along the stream lets it pass"));
+        "free air; [\"inflow\", \"outflow\"] along the stream lets it pass");
 }
 
 /// Notes a canopy that does not trail its payload in the air that meets it at the start.
-void note_axis_across_the_air(FlowScene& scene, std::size_t i) {
+void note_axis_across_the_air(const Place& at, FlowScene& scene, const Canopy& canopy) {
   constexpr double largest_angle = 80.0;  // degrees: the largest of [Shi] is 75
-  const Canopy& canopy = scene.canopies[i];
   const auto stream = scene.stream();
   if (!stream) return;
   const fabric::Vector payload = payload_place(canopy);
@@ -165,19 +153,17 @@ void note_axis_across_the_air(FlowScene& scene, std::size_t i) {
   if (!(speed > 0.0)) return;
   const double angle = 180.0 / pi * std::acos(std::clamp(along / (length * speed), -1.0, 1.0));
   if (angle <= largest_angle) return;
-  scene.notices.push_back(sentence(element("canopy", i), ".angle: the air meets the canopy at the start at ",
-                                   std::lround(angle),
-                                   " degrees from its axis, which leads from the payload to the cloth: it "
-                                   "does not trail its payload; angle "
-                                   "and azimuth turn it"));
+  scene.note(
+      at.path("angle"), ": the air meets the canopy at the start at ", std::lround(angle),
+      " degrees from its axis, which leads from the payload to the cloth: it does not trail its payload; "
+      "angle and azimuth turn it");
 }
 
 /// Notes dimensions of a C-9 that a canopy of another diameter has by default.
-void note_defaults_of_another_canopy(const Place& root, FlowScene& scene, std::size_t i) {
-  const Canopy &canopy = scene.canopies[i], standard;
+void note_defaults_of_another_canopy(const Place& at, FlowScene& scene, const Canopy& canopy) {
+  const Canopy standard;
   const double ratio = canopy.diameter / standard.diameter;
   if (std::abs(ratio - 1.0) < 0.05) return;
-  const Place at = root.at("canopy", i);
   std::vector<std::string> defaults, own;
   const auto compare = [&](const char* key, double value, double scaled, const char* unit) {
     if (at.given(key)) return;
@@ -188,9 +174,9 @@ void note_defaults_of_another_canopy(const Place& root, FlowScene& scene, std::s
   compare("gores", canopy.gores, std::max(3.0, std::round(ratio * standard.gores)), "");
   compare("lines.length", canopy.lines.length, ratio * standard.lines.length, " m");
   if (defaults.empty()) return;
-  scene.notices.push_back(sentence(at.path(), " is ", rough_text(canopy.diameter),
-                                   " m wide, but has by default ", joined(defaults, ", "), " of a C-9 of ",
-                                   standard.diameter, " m; in proportion it has ", joined(own, ", ")));
+  scene.note(at.path(), " is ", rough_text(canopy.diameter), " m wide, but has by default ",
+             joined(defaults, ", "), " of a C-9 of ", standard.diameter, " m; in proportion it has ",
+             joined(own, ", "));
 }
 
 }  // namespace
@@ -227,16 +213,15 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
   const std::size_t coarsest = *std::ranges::min_element(flying, {}, cells);
   note_blockage(scene);
   note_sides(scene);
-  note_unfollowed_drop(scene);
-  note_unfollowed_glide(scene);
-  note_coarse_cells(scene, coarsest);
+  note_unfollowed_canopies(scene);
+  note_coarse_cells(root.at("canopy", coarsest), scene, scene.canopies[coarsest]);
   for (const std::size_t i : flying) {
-    note_axis_across_the_air(scene, i);
-    note_short_wake(scene, i);
-    if (const std::string text = narrow_core_text(scene, i, expected_lean); !text.empty())
-      scene.notices.push_back(text);
-    note_long_lines(root, scene, i);
-    note_defaults_of_another_canopy(root, scene, i);
+    const Place at = root.at("canopy", i);
+    note_axis_across_the_air(at, scene, scene.canopies[i]);
+    note_short_wake(at, scene, scene.canopies[i]);
+    if (const std::string text = narrow_core_text(scene, i, expected_lean); !text.empty()) scene.note(text);
+    note_long_lines(at, scene, scene.canopies[i]);
+    note_defaults_of_another_canopy(at, scene, scene.canopies[i]);
   }
   note_wide_edges(scene, cells(coarsest));
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "common/scene/node.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "miniapps/parachute/bodies/box.hpp"
 
@@ -68,12 +69,9 @@ std::size_t SheetParts::of(int vertex) const {
 }
 
 std::string SheetParts::name(std::size_t part) const {
-  const auto named = [](const char* kind, std::size_t number) {
-    return std::string(kind) + "[" + std::to_string(number) + "]";
-  };
-  if (part < bodies) return named("body", part);
-  if (part < bodies + canopies) return named("canopy", part - bodies);
-  return named("flag", part - bodies - canopies);
+  if (part < bodies) return scene::element("body", part);
+  if (part < bodies + canopies) return scene::element("canopy", part - bodies);
+  return scene::element("flag", part - bodies - canopies);
 }
 
 SheetParts parts_of(const std::vector<Body>& bodies, const Sheets& sheets) {

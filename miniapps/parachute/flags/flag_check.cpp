@@ -9,38 +9,32 @@ namespace {
 
 using scene::Place, scene::rounded_text;
 
-constexpr double most_flag_vertices = 1048576.0;  // 2^20
-
 /// Checks that a flag resolves its motion on the grid and lies within the domain at the start.
 void check_flag(const Place& at, const flow::Parameters& p, const Flag& flag) {
-  const auto spacing = flow::core_of(p).spacing;
-  const double width = flag.has_width() ? std::min({spacing[0], spacing[1], spacing[2]})
-                                        : std::min(spacing[0], spacing[1]),
-               longest = largest_edge_in_cells * width;
+  const double width = least_width(p), longest = largest_edge_in_cells * width;
   const double along = flag.length / flag.divisions(),
                across = flag.has_width() ? *flag.width / flag.divisions_across() : 0.0;
   at.refuse_if(std::max(along, across) > (1.0 + 1e-9) * longest, "edge_length", " = ", flag.edge_length,
                " m is too coarse: the flag leaks on cells of ", width, " m; at most ", longest, " m");
-  at.refuse_if(flag.vertices() > most_flag_vertices, "edge_length", " = ", flag.edge_length,
+  at.refuse_if(flag.vertices() > most_vertices, "edge_length", " = ", flag.edge_length,
                " m: the vertices are more than 2^20");
   fabric::Parameters sheets;
   std::vector<fabric::Vector> positions;
   append_flags({flag}, sheets, positions);
   for (std::size_t axis = 0; axis < (flag.has_width() ? 3U : 2U); ++axis) {
-    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic && !flow::is_stretched(p, axis)) {
-      const double most = p.high[axis] - p.low[axis] - 2.0 * spacing[axis];
+    if (!is_bounded(p, axis)) {
+      const double most = length_of(p, axis) - 2.0 * core_width(p, axis);
       at.refuse_if(axis == 2 && *flag.width > most, "width", " = ", flag.width.value_or(0.0),
                    " m: the flag meets itself across the periodic sides; at most ", rounded_text(most), " m");
       continue;
     }
-    const auto [low, high] =
-        std::ranges::minmax(positions, {}, [axis](const fabric::Vector& x) { return x[axis]; });
-    if (keeps_margin(p, axis, low[axis], high[axis], spacing[axis])) continue;
     const auto [begin, end] = sheet_extent(p, axis);
-    const double least = begin + spacing[axis], most = end - spacing[axis];
-    const char* const key = axis < 2 ? "leading_edge" : *flag.width <= most - least ? "middle" : "width";
-    refuse_beyond_sides(at, p, key, at.path(), axis, {low[axis], high[axis]}, {least, most},
-                        axis == 2 ? ", by its width and middle" : "");
+    const bool fits = axis < 2 || *flag.width <= end - begin - 2.0 * core_width(p, axis);
+    check_margin(at, p,
+                 axis < 2 ? "leading_edge"
+                 : fits   ? "middle"
+                          : "width",
+                 at.path(), axis, positions, axis < 2 ? "" : ", by its width and middle");
   }
 }
 
@@ -48,9 +42,7 @@ void check_flag(const Place& at, const flow::Parameters& p, const Flag& flag) {
 
 void complete_and_check_flags(const Place& root, FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
-  for (std::size_t i = 0; i < scene.flags.size(); ++i) {
-    Flag& flag = scene.flags[i];
-    const Place at = root.at("flag", i);
+  for (const auto& [at, flag] : root.each("flag", scene.flags)) {
     at.refuse_if(p.cells[0] == 1 || p.cells[1] == 1, "", " needs a grid with several cells along x and y");
     at.refuse_if(flag.has_width() && p.cells[2] == 1, "width",
                  " is for several cells along z; without it, the flag spans the domain");

@@ -25,42 +25,29 @@ std::string number_or_string(const std::string& text) {
   return is_number ? toml_text(number) : toml_string(text);
 }
 
-/// Reads the ends of three intervals, which it changes only without a fault.
-std::string read_box(const Node& node, const Limits& limits, std::array<double, 3>& low,
-                     std::array<double, 3>& high) {
-  std::array<double, 3> ends[2];
-  std::string fault = scene::read_elements(node, 3, "intervals", [&](const Node& element, std::size_t i) {
-    Pair interval{};
-    std::string wrong = scene::Form<Pair>::read(element, limits, interval);
-    if (wrong.empty() && !(interval[0] < interval[1]))
-      wrong = "= " + toml_text(interval) + ": the first number must be the smaller";
-    ends[0][i] = interval[0];
-    ends[1][i] = interval[1];
+const char* const box_type = "array of 3 intervals [real, real]";
+
+std::string read_box(const Node& node, const Limits& limits, Box& box) {
+  return scene::read_elements(node, 3, "intervals", [&](const Node& element, std::size_t i) {
+    std::string wrong = scene::Form<Pair>::read(element, limits, box[i]);
+    if (wrong.empty() && !(box[i][0] < box[i][1]))
+      wrong = "= " + toml_text(box[i]) + ": the first number must be the smaller";
     return wrong;
   });
-  if (fault.empty()) low = ends[0], high = ends[1];
-  return fault;
 }
-
-std::string box_text(const std::array<double, 3>& low, const std::array<double, 3>& high) {
-  return array_text(std::array{0U, 1U, 2U}, [&](std::size_t axis) {
-    return toml_text(Pair{low[axis], high[axis]});
-  });
-}
-
-const char* const box_type = "array of 3 intervals [real, real]";
 
 }  // namespace
 
-Codec core_codec(std::optional<GridCore>& core) {
+Codec box_codec(Box& box) { return scene::make_codec(box_type, box, read_box, toml_text<Pair, 3>); }
+
+Codec box_codec(std::optional<Box>& box) {
   return scene::make_codec(
-      box_type, core,
-      [](const Node& node, const Limits& limits, std::optional<GridCore>& value) {
-        GridCore& box = value.emplace();
-        return read_box(node, limits, box.low, box.high);
+      box_type, box,
+      [](const Node& node, const Limits& limits, std::optional<Box>& value) {
+        return read_box(node, limits, value.emplace());
       },
-      [](const std::optional<GridCore>& value) {
-        return value ? std::optional(box_text(value->low, value->high)) : std::nullopt;
+      [](const std::optional<Box>& value) {
+        return value ? std::optional(toml_text(*value)) : std::nullopt;
       });
 }
 
@@ -103,18 +90,6 @@ Codec faces_codec(std::optional<std::array<AxisFaces, 3>>& faces) {
           return array_text(axis.values, [](double face) { return toml_text(face); });
         });
       });
-}
-
-Codec domain_codec(std::array<double, 3>& low, std::array<double, 3>& high) {
-  const auto read = [&low, &high](const Node& node, const Limits& limits) {
-    return read_box(node, limits, low, high);
-  };
-  const auto print = [&low, &high] { return std::optional(box_text(low, high)); };
-  return {box_type, read, print,
-          [reset_low = scene::back_to_default(low), reset_high = scene::back_to_default(high)] {
-            reset_low();
-            reset_high();
-          }};
 }
 
 Codec vector_expression_codec(VectorExpression& vector, const std::vector<std::string>& variables) {

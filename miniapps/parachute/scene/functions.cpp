@@ -25,6 +25,16 @@ SpaceTimeFunction::SpaceTimeFunction(const std::string& text)
   if (!varies(_text)) _constant = _expression(std::array{0.0, 0.0, 0.0, 0.0});
 }
 
+std::optional<std::array<double, 3>> constant_value(const VectorExpression& text) {
+  std::array<double, 3> vector{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double> component = constant_value(text[axis]);
+    if (!component) return std::nullopt;
+    vector[axis] = *component;
+  }
+  return vector;
+}
+
 std::vector<double> SpaceTimeFunction::sample_times(double end) const {
   return expression::sample_times(_text, variables, end);
 }

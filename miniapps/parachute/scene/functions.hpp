@@ -63,6 +63,9 @@ class SpaceTimeVector {
   return SpaceTimeFunction(text).constant();
 }
 
+/// The same of three expressions. Throws as `SpaceTimeFunction`.
+[[nodiscard]] std::optional<std::array<double, 3>> constant_value(const VectorExpression& text);
+
 /// Program of an expression for kernels. Throws std::invalid_argument if it is too long.
 [[nodiscard]] device::ExpressionProgram device_program(const std::string& text);
 

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <limits>
 
+#include "common/csv/numbers.hpp"
 #include "common/grid/stretched_axis.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
@@ -46,27 +47,26 @@ void note_jumps(FlowScene& scene, const std::string& key, std::size_t axis) {
   if (largest <= most * (1.0 + 1e-6)) return;
   const std::string place =
       at == 0 ? std::string("the periodic sides") : rough_text(flow::face_coordinate(p, axis, at)) + " m";
-  scene.notices.push_back(scene::sentence(key, ": the cells beside ", place,
-                                          " differ in width by a factor of ", rough_text(largest),
-                                          ", which costs accuracy there; at most ", most, " keeps it"));
+  scene.note(key, ": the cells beside ", place, " differ in width by a factor of ", rough_text(largest),
+             ", which costs accuracy there; at most ", most, " keeps it");
 }
 
 void complete_core(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  const GridCore& core = *scene.core;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    root.refuse_if(core.low[axis] < p.low[axis] || core.high[axis] > p.high[axis], "grid.core", ": along ",
-                   axis_names[axis], ", it reaches from ", core.low[axis], " to ", core.high[axis],
-                   " m, beyond grid.domain, ", p.low[axis], " to ", p.high[axis], " m");
-    root.refuse_if((core.high[axis] - core.low[axis]) / scene.spacing[axis] > most_cells_per_axis,
-                   "grid.spacing", ": ", rough_text(scene.spacing[axis]), " m are more than ",
-                   most_cells_per_axis, " cells along ", axis_names[axis]);
+    const auto [low, high] = (*scene.core)[axis];
+    root.refuse_if(low < p.low[axis] || high > p.high[axis], "grid.core", ": along ", axis_names[axis],
+                   ", it reaches from ", low, " to ", high, " m, beyond grid.domain, ", p.low[axis], " to ",
+                   p.high[axis], " m");
+    root.refuse_if((high - low) / scene.spacing[axis] > most_cells_per_axis, "grid.spacing", ": ",
+                   rough_text(scene.spacing[axis]), " m are more than ", most_cells_per_axis, " cells along ",
+                   axis_names[axis]);
     std::vector<double> faces;
     try {
       faces = grid::stretched_faces({.low = p.low[axis],
                                      .high = p.high[axis],
-                                     .core_low = core.low[axis],
-                                     .core_high = core.high[axis],
+                                     .core_low = low,
+                                     .core_high = high,
                                      .spacing = scene.spacing[axis],
                                      .growth = scene.growth});
     } catch (const std::invalid_argument& fault) {
@@ -91,16 +91,11 @@ std::vector<double> read_faces(const Place& root, const std::filesystem::path& f
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     constexpr const char* blanks = " \t\r";
-    if (line.find_first_not_of(blanks) == std::string::npos) continue;
-    std::size_t end = 0;
-    try {
-      faces.push_back(std::stod(line, &end));
-    } catch (const std::exception&) {
-      end = std::string::npos;
-    }
-    if (end == std::string::npos || line.find_first_not_of(blanks, end) != std::string::npos ||
-        !std::isfinite(faces.back()))
-      root.refuse("grid.faces", ": ", file.string(), ":", number, " is not one finite number");
+    const std::size_t begin = line.find_first_not_of(blanks);
+    if (begin == std::string::npos) continue;
+    const std::string text = line.substr(begin, line.find_last_not_of(blanks) + 1 - begin);
+    root.refuse_if(csv::parse_number(text, faces.emplace_back()) != csv::NumberError::none, "grid.faces",
+                   ": ", file.string(), ":", number, " is not one finite number");
   }
   return faces;
 }
@@ -127,9 +122,11 @@ void complete_faces(const Place& root, FlowScene& scene) {
 }  // namespace
 
 void complete_and_check_grid(const Place& root, FlowScene& scene) {
+  flow::Parameters& p = scene.parameters;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    p.low[axis] = scene.domain[axis][0], p.high[axis] = scene.domain[axis][1];
   if (scene.core) complete_core(root, scene);
   if (scene.faces) complete_faces(root, scene);
-  const flow::Parameters& p = scene.parameters;
   const bool is_by_cells = !scene.core && !scene.faces;
   const std::string key = scene.core ? "grid.spacing" : scene.faces ? "grid.faces" : "grid.cells";
   constexpr int least_cells = 4;
@@ -142,7 +139,7 @@ void complete_and_check_grid(const Place& root, FlowScene& scene) {
       root.refuse(key, ": ", p.cells[axis], " cells along ", axis_names[axis], "; ", rule);
     }
     cells *= p.cells[axis];
-    const double length = p.high[axis] - p.low[axis], h = core_width(p, axis);
+    const double length = length_of(p, axis), h = core_width(p, axis);
     const double rounding =
         std::numeric_limits<double>::epsilon() * std::max(std::abs(p.low[axis]), std::abs(p.high[axis]));
     root.refuse_if(!std::isfinite(length) || h < 16.0 * rounding, scene.faces ? "grid.faces" : "grid.domain",

@@ -1,6 +1,7 @@
 #include "miniapps/parachute/scene/scene.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "kernels/coupling/sheet/added_mass.hpp"
@@ -64,15 +65,7 @@ double FlowScene::largest_added_mass_ratio() const {
   return largest;
 }
 
-std::optional<std::array<double, 3>> FlowScene::stream() const {
-  std::array<double, 3> stream{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::optional<double> component = constant_value(velocity[axis]);
-    if (!component) return std::nullopt;
-    stream[axis] = *component;
-  }
-  return stream;
-}
+std::optional<std::array<double, 3>> FlowScene::stream() const { return constant_value(velocity); }
 
 std::size_t FlowScene::owner_of(std::size_t canopy) const {
   return static_cast<std::size_t>(canopies[canopy].payload.shared.value_or(static_cast<int>(canopy)));
@@ -109,6 +102,13 @@ std::array<bool, 3> FlowScene::open_axes() const {
 }
 
 double core_width(const flow::Parameters& p, std::size_t axis) { return flow::core_of(p).spacing[axis]; }
+
+double least_width(const flow::Parameters& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (p.cells[axis] > 1) least = std::min(least, core_width(p, axis));
+  return least;
+}
 
 std::array<double, 2> sheet_extent(const flow::Parameters& p, std::size_t axis) {
   const flow::Core box = flow::force_box(p);

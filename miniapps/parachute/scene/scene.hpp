@@ -17,6 +17,7 @@
 #include "miniapps/framework/scene_identity.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
+#include "miniapps/parachute/bodies/box.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
 #include "miniapps/parachute/flags/flag.hpp"
 
@@ -39,11 +40,6 @@ inline constexpr int most_cells_per_axis = 16384;  ///< as of `flow::check_param
 enum class Frame {
   fixed,   ///< that of fluid.velocity
   follow,  ///< moves with the payload of the first canopy, or with its middle to the canopy
-};
-
-/// Box of a stretched grid whose cells have one width along each axis, m.
-struct GridCore {
-  std::array<double, 3> low{}, high{};
 };
 
 /// Coordinates of the faces of an axis, m, or the file that has them, one a line.
@@ -183,7 +179,8 @@ struct FlowScene {
   std::optional<std::monostate> fluid;  ///< absent: a cloth drop, which has no grid either
   /// Complete once the scene has been read; of a cloth drop, only `fixed_dt` and `max_steps` count.
   flow::Parameters parameters = air_parameters();
-  std::optional<GridCore> core;                   ///< of a grid whose cells grow outside of it
+  Box domain{};                                   ///< of a grid without `faces`
+  std::optional<Box> core;                        ///< of a grid whose cells grow outside of it
   std::array<double, 3> spacing{};                ///< largest widths of cells in `core`, m
   double growth = 1.06;                           ///< largest ratio of the widths of neighbours
   std::optional<std::array<AxisFaces, 3>> faces;  ///< of a grid that is given by them
@@ -209,6 +206,11 @@ struct FlowScene {
   Verify verify;
   std::vector<std::string> notices;  ///< `framework::Scene::notices`
 
+  /// Adds a sentence of parts to the notices. Throws only std::bad_alloc.
+  template <class... Parts>
+  void note(const Parts&... parts) {
+    notices.push_back(scene::sentence(parts...));
+  }
   /// Added mass of a canopy, whose longest wave is its diameter, over its own mass. Does not throw.
   [[nodiscard]] double added_mass_ratio(const Canopy& canopy) const;
   /// Largest of these; 0 without canopies. Does not throw.
@@ -253,6 +255,17 @@ const std::vector<std::string>& field_names();
 
 /// Width of the cells in the core along an axis, m: that of all cells of a uniform axis. Does not throw.
 double core_width(const flow::Parameters& p, std::size_t axis);
+
+/// Least of these widths along axes of several cells, m; infinite without any. Does not throw.
+double least_width(const flow::Parameters& p);
+
+/// Length of the domain along an axis, m. Does not throw.
+inline double length_of(const flow::Parameters& p, std::size_t axis) { return p.high[axis] - p.low[axis]; }
+
+/// Mass of the fluid, kg. Does not throw.
+inline double fluid_mass(const flow::Parameters& p) {
+  return p.density * length_of(p, 0) * length_of(p, 1) * length_of(p, 2);
+}
 
 /// Ends along an axis of the part of the grid that sheets and their forces lie in, m: the domain, or near
 /// stretched cells the core without its outermost cells. Does not throw.

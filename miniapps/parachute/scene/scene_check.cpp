@@ -18,8 +18,6 @@ namespace {
 using flow::BoundaryKind;
 using scene::Place, scene::rough_text, scene::rounded_text, scene::sentence;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Largest relative difference of inflow and outflow that rounded expressions explain.
 constexpr double flux_tolerance = 1e-10;
 
@@ -63,24 +61,6 @@ void complete_scheme(const Place& root, FlowScene& scene) {
   const double most = flow::stable_cfl(p.time_scheme);
   root.refuse_if(p.cfl > most, "run.cfl", " = ", p.cfl, " is unstable: at most ", most,
                  " with flow.time = \"", name_of(p.time_scheme), "\"");
-}
-
-/// Sets the velocity of a side: three numbers, or three programs.
-void set_velocity(const Place& root, const std::string& key, const VectorExpression& text,
-                  flow::Boundary& side) {
-  const bool all_constant =
-      std::ranges::all_of(text, [](const std::string& each) { return constant_value(each).has_value(); });
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (all_constant) {
-      side.velocity[axis] = *constant_value(text[axis]);
-      continue;
-    }
-    try {
-      side.velocity_expressions.push_back(device_program(text[axis]));
-    } catch (const std::invalid_argument& refused) {
-      root.refuse(key, "[", axis, "]: ", refused.what());
-    }
-  }
 }
 
 /// Points on a side: the centres of the cell faces, or of the faces normal to an axis.
@@ -129,39 +109,40 @@ void check_velocity(const Place& root, const FlowScene& scene, const std::string
 void complete_velocities(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   for (std::size_t side = 0; side < 6; ++side) {
-    const BoundaryKind kind = p.boundary[side].kind;
+    flow::Boundary& boundary = p.boundary[side];
+    const BoundaryKind kind = boundary.kind;
     const VectorExpression& wall = scene.wall_velocity[side];
     root.refuse_if(!wall[0].empty() && kind != BoundaryKind::wall, key_of_wall(side),
                    ": this side is no wall");
     if (kind == BoundaryKind::outflow)  // outside of it: the stream, at rest where that is not uniform
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!is_closed(p, axis))
-          p.boundary[side].velocity[axis] = constant_value(scene.velocity[axis]).value_or(0.0);
+        if (!is_closed(p, axis)) boundary.velocity[axis] = constant_value(scene.velocity[axis]).value_or(0.0);
     const bool is_inflow = kind == BoundaryKind::inflow;
     if (!is_inflow && wall[0].empty()) continue;
     const std::string key = is_inflow ? "fluid.velocity" : key_of_wall(side);
     const VectorExpression& text = is_inflow ? scene.velocity : wall;
     check_velocity(root, scene, key, text, side);
-    set_velocity(root, key, text, p.boundary[side]);
+    if (const auto constant = constant_value(text))
+      boundary.velocity = *constant;
+    else
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        boundary.velocity_expressions.push_back(
+            checked_program(root, sentence(key, "[", axis, "]"), text[axis]));
   }
-}
-
-/// Mean area of the faces of the cells at the sides normal to an axis, m^2.
-double mean_face_area(const flow::Parameters& p, std::size_t axis) {
-  double area = 1.0;
-  for (const std::size_t across : {(axis + 1) % 3, (axis + 2) % 3})
-    area *= (p.high[across] - p.low[across]) / p.cells[across];
-  return area;
 }
 
 /// Net flow rate through all inflow sides into the domain, m^3/s, and the sum of its parts' magnitudes.
 std::array<double, 2> inflow_at(const FlowScene& scene, double time) {
   std::array<double, 2> rates{};
+  const flow::Parameters& p = scene.parameters;
   for (std::size_t side = 0; side < 6; ++side) {
-    if (scene.parameters.boundary[side].kind != BoundaryKind::inflow) continue;
-    const Lattice lattice = side_lattice(scene.parameters, side);
-    const double mean_area = mean_face_area(scene.parameters, side / 2) * (side % 2 == 0 ? 1.0 : -1.0);
-    const std::vector<double> values = evaluate(SpaceTimeFunction(scene.velocity[side / 2]), lattice, time);
+    if (p.boundary[side].kind != BoundaryKind::inflow) continue;
+    const Lattice lattice = side_lattice(p, side);
+    const std::size_t axis = side / 2;
+    double mean_area = side % 2 == 0 ? 1.0 : -1.0;  // of a face, positive where inwards is along the axis
+    for (const std::size_t across : {(axis + 1) % 3, (axis + 2) % 3})
+      mean_area *= length_of(p, across) / p.cells[across];
+    const std::vector<double> values = evaluate(SpaceTimeFunction(scene.velocity[axis]), lattice, time);
     for (std::size_t entry = 0; entry < values.size(); ++entry) {
       const double rate = values[entry] * (mean_area * lattice.volume(entry));
       rates[0] += rate;
@@ -227,17 +208,10 @@ void note_growing_energy(FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   if (p.time_scheme == flow::TimeScheme::ab2 && p.advection == flow::Advection::central &&
       p.viscosity == 0.0 && p.turbulence == flow::Turbulence::none)
-    scene.notices.emplace_back(
+    scene.note(
         "fluid.viscosity = 0.0: with flow.advection = \"central\" the kinetic energy grows by about a "
         "percent in steps of \"ab2\", which \"crank-nicolson\" takes too; flow.time = \"rk3\" keeps it from "
         "growing");
-}
-
-double least_width(const flow::Parameters& p) {
-  double least = infinity;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (p.cells[axis] > 1) least = std::min(least, core_width(p, axis));
-  return least;
 }
 
 /// Speed with which sheets and fluid will meet, as far as it is known, m/s: that of the stream and the walls,
@@ -270,9 +244,7 @@ bool fluid_moves(const FlowScene& scene) {
 
 /// Angular frequency, 1/s, with which a plate on a spring and all of the fluid oscillate.
 double mount_frequency(const flow::Parameters& p, const Mount& mount) {
-  double fluid = p.density;
-  for (std::size_t axis = 0; axis < 3; ++axis) fluid *= p.high[axis] - p.low[axis];
-  return std::sqrt(mount.stiffness / (mount.mass + fluid));
+  return std::sqrt(mount.stiffness / (mount.mass + fluid_mass(p)));
 }
 
 /// Step, s, with which the fluid that a plate on a spring moves beyond its own 2.1 cells lags by a part
@@ -286,43 +258,23 @@ double mount_step(const FlowScene& scene, const Body& body, double error) {
 
 /// Bounds dt by the oscillations of plates on springs, unless it is given: a frequency then has an error of
 /// some half a percent. Notes a given one that does not resolve them.
-void bound_step_by_mounts(FlowScene& scene) {
+void bound_step_by_mounts(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   const double given = p.fixed_dt > 0.0 ? p.fixed_dt : p.max_dt;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Body& body = scene.bodies[i];
+  for (const auto& [at, body] : root.each("body", scene.bodies)) {
     if (!body.mount) continue;
     constexpr double error = 0.01, most = 0.1;
     const double enough = mount_step(scene, body, error);
     if (given == 0.0) {
       p.max_dt = p.max_dt > 0.0 ? std::min(p.max_dt, enough) : enough;
     } else if (given > mount_step(scene, body, most)) {
-      scene.notices.push_back(sentence(p.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ", rough_text(given),
-                                       " s does not resolve body[", i, "].mount, which oscillates with ",
-                                       rough_text(mount_frequency(p, *body.mount) / (2.0 * std::numbers::pi)),
-                                       " Hz: its frequency will be wrong by more than 5 %; ",
-                                       rough_text(enough), " s give it to 0.5 %"));
+      scene.note(p.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ", rough_text(given), " s does not resolve ",
+                 at.path("mount"), ", which oscillates with ",
+                 rough_text(mount_frequency(p, *body.mount) / (2.0 * std::numbers::pi)),
+                 " Hz: its frequency will be wrong by more than 5 %; ", rough_text(enough),
+                 " s give it to 0.5 %");
     }
   }
-}
-
-/// Largest dt, s, in which implicit diffusion spreads the force of a sheet over a cell: the coupling takes
-/// the response of the fluid to it for that without diffusion, and corrects this within some nu dt / h^2
-/// steps. Infinite for explicit diffusion, whose steps are shorter.
-double dt_of_sheets_in_implicit_diffusion(const flow::Parameters& p) {
-  if (p.diffusion != flow::Diffusion::crank_nicolson) return infinity;
-  const double h = least_width(p);
-  return h * h * p.density / p.viscosity;
-}
-
-/// Notes a given largest dt, s, beyond the one that sheets need in implicit diffusion.
-void note_slow_sheets(FlowScene& scene, double given, double enough) {
-  if (given <= 2.0 * enough) return;
-  scene.notices.push_back(sentence(
-      scene.parameters.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ", rough_text(given),
-      " s: viscosity spreads the force of a sheet over several cells in a step, so that forces follow "
-      "changes of the flow late; ",
-      rough_text(enough), " s do not"));
 }
 
 /// Gives run.max_dt its default. Fluid at rest would leave dt without a bound, while sheets that it moves
@@ -330,14 +282,25 @@ void note_slow_sheets(FlowScene& scene, double given, double enough) {
 void complete_time_step(const Place& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
   const double given = p.fixed_dt > 0.0 ? p.fixed_dt : p.max_dt;
-  bound_step_by_mounts(scene);
+  bound_step_by_mounts(root, scene);
   if (!scene.has_sheets()) return;
-  const double resolved = dt_of_sheets_in_implicit_diffusion(p);
-  if (given > 0.0) return note_slow_sheets(scene, given, resolved);
+  // In h^2 / nu, implicit diffusion spreads the force of a sheet over a cell. The coupling takes the response
+  // of the fluid for that without diffusion, and corrects this within some nu dt / h^2 steps. Explicit steps
+  // are shorter.
+  const double h = least_width(p), resolved = p.diffusion == flow::Diffusion::crank_nicolson
+                                                  ? h * h * p.density / p.viscosity
+                                                  : std::numeric_limits<double>::infinity();
+  if (given > 2.0 * resolved)
+    scene.note(
+        p.fixed_dt > 0.0 ? "run.dt = " : "run.max_dt = ", rough_text(given),
+        " s: viscosity spreads the force of a sheet over several cells in a step, so that forces follow "
+        "changes of the flow late; ",
+        rough_text(resolved), " s do not");
+  if (given > 0.0) return;
   p.max_dt = std::min({p.max_dt > 0.0 ? p.max_dt : scene.end_time, scene.end_time, resolved});
   const double speed = known_speed(scene);
   if (speed > 0.0)
-    p.max_dt = std::min(p.max_dt, scene.cfl() * least_width(p) / speed);
+    p.max_dt = std::min(p.max_dt, scene.cfl() * h / speed);
   else if (!(scene.canopies.empty() && scene.flags.empty()) && !fluid_moves(scene))
     root.contradict("run",
                     "missing key \"run.max_dt\" (needed where neither stream nor gravity moves a sheet): the "
@@ -364,16 +327,13 @@ void check_steps(const Place& root, const FlowScene& scene) {
 void check_gravity(const Place& root, const FlowScene& scene) {
   const auto [x, y, z] = scene.gravity;
   const double gravity = std::hypot(x, y, z);
-  const auto check_all = [&](const std::string& array, const auto& cloths) {
-    for (std::size_t i = 0; i < cloths.size(); ++i) {
-      const auto& cloth = cloths[i];
+  const auto check_all = [&](const char* array, const auto& cloths) {
+    for (const auto& [at, cloth] : root.each(array, cloths)) {
       const double most = cloth.membrane_modulus / (cloth.area_density * cloth.edge_length);
       root.refuse_if(!(gravity <= most), "coupling.gravity", ": ", rough_text(gravity),
-                     " m/s^2 would stretch an edge of ", scene::element(array, i), " of ",
-                     rough_text(cloth.edge_length),
-                     " m to twice its length by the weight of its own cloth; "
-                     "at most ",
-                     rough_text(most), " m/s^2");
+                     " m/s^2 would stretch an edge of ", at.path(), " of ", rough_text(cloth.edge_length),
+                     " m to twice its length by the weight of its own cloth; at most ", rough_text(most),
+                     " m/s^2");
     }
   };
   check_all("canopy", scene.canopies);
@@ -393,36 +353,49 @@ void complete_fields(const Place& root, FlowScene& scene) {
 
 }  // namespace
 
-bool keeps_margin(const flow::Parameters& p, std::size_t axis, double low, double high, double margin) {
+device::ExpressionProgram checked_program(const Place& at, const std::string& key, const std::string& text) {
+  try {
+    return device_program(text);
+  } catch (const std::invalid_argument& refused) {
+    at.refuse(key, ": ", refused.what());
+  }
+}
+
+bool is_bounded(const flow::Parameters& p, std::size_t axis) {
+  return p.cells[axis] > 1 &&
+         (flow::is_stretched(p, axis) || p.boundary[2 * axis].kind != BoundaryKind::periodic);
+}
+
+std::string reach_text(const SheetReach& sheet) {
+  return sentence(sheet.name, " reaches from ", rounded_text(sheet.low), " to ", rounded_text(sheet.high),
+                  " m along ", axis_names[sheet.axis], sheet.when);
+}
+
+void check_margin(const Place& at, const flow::Parameters& p, const std::string& key, const SheetReach& sheet,
+                  double margin, const std::string& remedy) {
+  const std::size_t axis = sheet.axis;
   const auto [begin, end] = sheet_extent(p, axis);
-  const double rounding = 1e-9 * (p.high[axis] - p.low[axis]),
+  const double width = core_width(p, axis), rounding = 1e-9 * length_of(p, axis),
                least = margin > 0.0 ? margin + rounding : -rounding;
-  return low >= begin + least && high <= end - least;
+  if (sheet.low >= begin + least && sheet.high <= end - least) return;
+  const bool has_core = flow::is_stretched(p, axis);
+  if (has_core && begin + width >= end - width)
+    at.contradict(key, sheet.name, " has no room in the core of the grid, which has ",
+                  flow::core_of(p).cells[axis], " cells along ", axis_names[axis],
+                  ": cells of the core have widths that agree to 1e-9 of them");
+  at.contradict(key, reach_text(sheet), ", beyond ",
+                has_core       ? "the core of the grid less two cells at each end"
+                : margin > 0.0 ? "the cells beside the sides of the domain"
+                               : "the domain",
+                margin > 0.0 ? ": it must lie strictly between " : ": it must lie between ",
+                rounded_text(begin + margin), " and ", rounded_text(end - margin), " m", remedy);
 }
 
-std::string beyond_sides_text(const flow::Parameters& p, std::size_t axis) {
-  return flow::is_stretched(p, axis) ? "the core of the grid less two cells at each end"
-                                     : "the cells beside the sides of the domain";
-}
-
-void refuse_without_core(const Place& at, const flow::Parameters& p, const std::string& key,
-                         const std::string& name, std::size_t axis) {
-  const auto [begin, end] = sheet_extent(p, axis);
-  const double width = core_width(p, axis);
-  if (!flow::is_stretched(p, axis) || begin + width < end - width) return;
-  at.contradict(key, name, " has no room in the core of the grid, which has ", flow::core_of(p).cells[axis],
-                " cells along ", axis_names[axis],
-                ": cells of the core have widths that agree to 1e-9 of them");
-}
-
-void refuse_beyond_sides(const Place& root, const flow::Parameters& p, const std::string& key,
-                         const std::string& name, std::size_t axis, std::array<double, 2> extent,
-                         std::array<double, 2> allowed, const char* remedy) {
-  refuse_without_core(root, p, key, name, axis);
-  root.contradict(key, name, " reaches from ", rounded_text(extent[0]), " to ", rounded_text(extent[1]),
-                  " m along ", axis_names[axis], ", beyond ", beyond_sides_text(p, axis),
-                  ": it must lie strictly between ", rounded_text(allowed[0]), " and ",
-                  rounded_text(allowed[1]), " m", remedy);
+void check_margin(const Place& at, const flow::Parameters& p, const std::string& key, const std::string& name,
+                  std::size_t axis, const std::vector<fabric::Vector>& positions, const std::string& remedy) {
+  const auto [low, high] =
+      std::ranges::minmax(positions, {}, [axis](const fabric::Vector& x) { return x[axis]; });
+  check_margin(at, p, key, {name, axis, low[axis], high[axis]}, core_width(p, axis), remedy);
 }
 
 void complete_and_check(const Place& root, FlowScene& scene, framework::InitialCheck check) {
@@ -443,8 +416,7 @@ void complete_and_check(const Place& root, FlowScene& scene, framework::InitialC
   } else if (scene.canopies.empty()) {
     root.contradict("", "missing table \"fluid\": the fluid, without which a scene needs a [[canopy]]");
   }
-  check_and_place_canopies(root, scene.canopies);
-  check_canopies(root, scene);
+  complete_and_check_canopies(root, scene);
   Sheets sheets = make_all_sheets(scene.bodies, scene.canopies, p.density, p.viscosity);
   check_contact(root, scene, sheets.fabric.mesh);
   if (scene.has_fluid()) {

@@ -30,15 +30,13 @@ void check_closed_channels(const scene::Place& root, const FlowScene& scene);
 /// Checks the coefficients that follow from the porosity of a body or canopy.
 void check_porosity(const scene::Place& at, const flow::Parameters& p, const Porosity& porosity);
 
-/// Checks which canopies share payloads, and places them.
-void check_and_place_canopies(const scene::Place& root, std::vector<Canopy>& canopies);
-
 /// Sets the velocities at the start of canopies, and the gravity of a drop; checks [drop] and
 /// payload.velocity.
 void complete_drop(const scene::Place& root, FlowScene& scene);
 
-/// Checks every canopy against the grid, the steps, the bodies and the canopies before it.
-void check_canopies(const scene::Place& root, const FlowScene& scene);
+/// Places canopies that share payloads, and checks every canopy against the grid, the steps, the bodies and
+/// the canopies before it.
+void complete_and_check_canopies(const scene::Place& root, FlowScene& scene);
 
 /// Checks the thickness of contact against the `mesh` of all sheets.
 void check_contact(const scene::Place& root, const FlowScene& scene, const fabric::Mesh& mesh);
@@ -77,24 +75,34 @@ void check_images(const scene::Place& root, const FlowScene& scene, const Sheets
 /// to stop before them, which the coupling follows within many steps, without a given bound of dt.
 void note_narrow_channels(const scene::Place& root, FlowScene& scene, const Sheets& sheets);
 
-/// True if sheets that reach from `low` to `high` along an axis, m, keep more than `margin`, m, to the ends
-/// that they may reach (`sheet_extent`): exactly a cell from a side, round-off decides whether the grid has
-/// all faces around a vertex. With a margin of 0 they may touch the ends. Does not throw.
-bool keeps_margin(const flow::Parameters& p, std::size_t axis, double low, double high, double margin);
+/// Program of an expression for kernels. Refuses the key of one that is too long.
+device::ExpressionProgram checked_program(const scene::Place& at, const std::string& key,
+                                          const std::string& text);
 
-/// Words on where sheets must not reach along an axis: "the cells beside the sides of the domain". Throws
-/// only std::bad_alloc.
-std::string beyond_sides_text(const flow::Parameters& p, std::size_t axis);
+/// True if an axis has ends that sheets keep from: sides that are not periodic, or those of a core. Does not
+/// throw.
+bool is_bounded(const flow::Parameters& p, std::size_t axis);
 
-/// Refuses `name` as a fault of a key if the core of a stretched axis is too small for any sheet.
-void refuse_without_core(const scene::Place& at, const flow::Parameters& p, const std::string& key,
-                         const std::string& name, std::size_t axis);
+/// Part of the sheets, and where it reaches along an axis, m. `when`: clause on the time, where that matters.
+struct SheetReach {
+  std::string name;
+  std::size_t axis;
+  double low, high;
+  std::string when = "";
+};
 
-/// Refuses `name`, which reaches from `low` to `high` along an axis, m, beyond the cells beside the sides of
-/// the domain or out of the core, as a fault of a key. `remedy`: the end of the sentence.
-[[noreturn]] void refuse_beyond_sides(const scene::Place& root, const flow::Parameters& p,
-                                      const std::string& key, const std::string& name, std::size_t axis,
-                                      std::array<double, 2> extent, std::array<double, 2> allowed,
-                                      const char* remedy = "");
+/// "body[0] reaches from -1 to 1 m along x". Throws only std::bad_alloc.
+std::string reach_text(const SheetReach& sheet);
+
+/// Refuses, as a fault of a key, what does not keep more than `margin`, m, to the ends that it may reach
+/// (`sheet_extent`): exactly a cell from a side, round-off decides whether the grid has all faces around a
+/// vertex. With a margin of 0 it may touch the ends. `remedy`: the end of the sentence.
+void check_margin(const scene::Place& at, const flow::Parameters& p, const std::string& key,
+                  const SheetReach& sheet, double margin, const std::string& remedy = "");
+
+/// The same of cloth, whose forces act up to one cell beyond it.
+void check_margin(const scene::Place& at, const flow::Parameters& p, const std::string& key,
+                  const std::string& name, std::size_t axis, const std::vector<fabric::Vector>& positions,
+                  const std::string& remedy = "");
 
 }  // namespace drogue::parachute_app

@@ -10,32 +10,24 @@ namespace {
 
 using scene::Place;
 
-/// Checks that follow the run need rows of the history.
-void require_rows(const Place& verify, const FlowScene& scene, const std::string& key) {
-  verify.refuse_if(scene.output.history_every == 0, key,
-                   " needs rows of the history; output.history_every is 0");
-}
-
 void check_momentum(const Place& verify, const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
-  const auto acts = [](double force) { return force != 0.0; };
+  using Vector = std::array<double, 3>;
   for (std::size_t side = 0; side < 6; ++side)
     verify.refuse_if(p.boundary[side].kind != flow::BoundaryKind::periodic, "momentum", ": the side ",
                      side_names[side], " is not periodic, so that the momentum changes");
-  verify.refuse_if(std::ranges::any_of(p.body_force, acts) || std::ranges::any_of(p.pressure_drop, acts),
-                   "momentum", ": flow.body_force or flow.pressure_drop changes the momentum");
+  verify.refuse_if(p.body_force != Vector{} || p.pressure_drop != Vector{}, "momentum",
+                   ": flow.body_force or flow.pressure_drop changes the momentum");
   verify.refuse_if(scene.has_sheets(), "momentum",
                    ": the forces of a [[body]] or a [[canopy]] change the momentum of the fluid");
 }
 
-void check_curves(const Place& verify, const FlowScene& scene, const std::string& key,
+void check_curves(const Place& verify, const FlowScene& scene, const char* key,
                   const std::vector<Curve>& curves) {
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    const Place at = verify.at(key, i);
-    require_rows(at, scene, "");
-    at.refuse_if(!(curves[i].scale() > 0.0), "points",
+  for (const auto& [at, curve] : verify.each(key, curves)) {
+    at.refuse_if(!(curve.scale() > 0.0), "points",
                  ": a value must not be 0: the tolerance is relative to the largest");
-    for (const auto& [time, value] : curves[i].points)
+    for (const auto& [time, value] : curve.points)
       at.refuse_if(!(time >= 0.0 && time <= scene.end_time), "points", ": the time ", time,
                    " s is not between 0 and run.end_time = ", scene.end_time, " s");
   }
@@ -54,14 +46,11 @@ void require_airspeed(const Place& at, const FlowScene& scene, std::size_t canop
 }
 
 void check_leaks(const Place& verify, const FlowScene& scene) {
-  for (std::size_t i = 0; i < scene.verify.leaks.size(); ++i) {
-    const CanopyLeak& leak = scene.verify.leaks[i];
-    const Place at = verify.at("leak", i);
+  for (const auto& [at, leak] : verify.each("leak", scene.verify.leaks)) {
     check_canopy_number(at, scene, leak.canopy);
     at.refuse_if(!(leak.from < leak.to && leak.to <= scene.end_time), "to", " = ", leak.to,
                  " s must lie between from and run.end_time = ", scene.end_time, " s");
     require_airspeed(at, scene, static_cast<std::size_t>(leak.canopy));
-    require_rows(at, scene, "");
   }
 }
 
@@ -69,30 +58,27 @@ void check_leaks(const Place& verify, const FlowScene& scene) {
 void check_history(const Place& root, const FlowScene& scene) {
   const std::vector<framework::HistoryCheck>& checks = scene.verify.history;
   if (checks.empty()) return;
-  for (std::size_t i = 0; i < checks.size(); ++i)
+  for (const auto& [at, check] : root.each("verify.history", checks))
     for (std::size_t canopy = 0; canopy < scene.canopies.size(); ++canopy)
       for (const char* column : {"_airspeed", "_drag_coefficient", "_rate_of_descent"})
-        if (checks[i].column == "canopy_" + std::to_string(canopy) + column)
-          require_airspeed(root.at("verify.history", i), scene, canopy);
+        if (check.column == "canopy_" + std::to_string(canopy) + column) require_airspeed(at, scene, canopy);
   framework::require_measurable(root, checks, scene.output, {scene.end_time, "run.end_time"},
                                 history_columns(scene));
 }
 
 void check_peak_forces(const Place& verify, const FlowScene& scene) {
-  for (std::size_t i = 0; i < scene.verify.peak_forces.size(); ++i) {
-    const auto& [canopy, force, time] = scene.verify.peak_forces[i];
-    const Place at = verify.at("peak_force", i);
-    check_canopy_number(at, scene, canopy);
-    at.refuse_if(!scene.canopies[static_cast<std::size_t>(canopy)].has_lines(), "canopy",
+  for (const auto& [at, peak] : verify.each("peak_force", scene.verify.peak_forces)) {
+    check_canopy_number(at, scene, peak.canopy);
+    at.refuse_if(!scene.canopies[static_cast<std::size_t>(peak.canopy)].has_lines(), "canopy",
                  ": this canopy has no lines");
-    at.refuse_if(time && !((*time)[0] < (*time)[1]), "time", ": the first number must be the smaller");
+    at.refuse_if(peak.time && !((*peak.time)[0] < (*peak.time)[1]), "time",
+                 ": the first number must be the smaller");
   }
 }
 
 /// Energy is conserved unless parts of the cloth are cut off or collide.
 void check_energy_drift(const Place& verify, const FlowScene& scene) {
   const std::string key = "energy_drift";
-  require_rows(verify, scene, key);
   verify.refuse_if(scene.contact, key, ": contact of cloth with itself dissipates energy");
   for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
     const Canopy& canopy = scene.canopies[i];
@@ -105,9 +91,7 @@ void check_profiles(const Place& verify, const FlowScene& scene) {
   constexpr int least_cells = 4;
   const flow::Parameters& p = scene.parameters;
   const auto outside = [&](std::size_t axis, double x) { return !(x >= p.low[axis] && x <= p.high[axis]); };
-  for (std::size_t i = 0; i < scene.verify.profiles.size(); ++i) {
-    const Profile& profile = scene.verify.profiles[i];
-    const Place at = verify.at("profile", i);
+  for (const auto& [at, profile] : verify.each("profile", scene.verify.profiles)) {
     const auto along = static_cast<std::size_t>(profile.along);
     at.refuse_if(profile.points.empty() && !profile.minimum && !profile.maximum, "",
                  " needs points, minimum or maximum");
@@ -147,17 +131,15 @@ void check_verify(const Place& root, const FlowScene& scene) {
   check_curves(verify, scene, "kinetic_energy_curve", wanted.kinetic_energy_curves);
   check_curves(verify, scene, "dissipation_curve", wanted.dissipation_curves);
   check_history(root, scene);
+  for (const char* key : {"kinetic_energy_curve", "dissipation_curve", "leak", "force_balance",
+                          "intersections", "energy_drift"})
+    verify.refuse_if(verify.given(key) && scene.output.history_every == 0, key,
+                     " needs rows of the history; output.history_every is 0");
   check_leaks(verify, scene);
-  if (wanted.intersections) {
-    verify.refuse_if(!scene.contact, "intersections", " needs coupling.contact = true");
-    require_rows(verify, scene, "intersections");
-  }
+  verify.refuse_if(wanted.intersections && !scene.contact, "intersections", " needs coupling.contact = true");
   check_peak_forces(verify, scene);
   if (wanted.energy_drift) check_energy_drift(verify, scene);
-  if (wanted.force_balance) {
-    verify.refuse_if(scene.canopies.empty(), "force_balance", " needs a [[canopy]]");
-    require_rows(verify, scene, "force_balance");
-  }
+  verify.refuse_if(wanted.force_balance && scene.canopies.empty(), "force_balance", " needs a [[canopy]]");
   check_profiles(verify, scene);
 }
 

@@ -6,8 +6,8 @@ namespace drogue::parachute_app {
 namespace {
 
 using coupling::CouplingMethod;
-using scene::between, scene::Choices, scene::Condition, scene::not_negative, scene::positive, scene::Table,
-    scene::with_choice, scene::with_true;
+using scene::between, scene::ChoiceKey, scene::Choices, scene::Condition, scene::not_negative,
+    scene::positive, scene::Table, scene::with_given, scene::with_true;
 
 const Choices<Frame> frame_choices = {{"fixed", Frame::fixed}, {"follow", Frame::follow}};
 const Choices<AdvectionScheme> advection_choices = {{"central", AdvectionScheme::central},
@@ -52,15 +52,15 @@ void declare_fluid(Table& table, FlowScene& scene) {
 
 void declare_grid(Table& table, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  const Condition core = {[&scene] { return scene.core.has_value(); }, "with core", "core"};
+  const Condition core = with_given("core", scene.core);
   table.value("cells", p.cells, "Cells of one width along x, y, z; 1 for an axis along which nothing varies",
               {.range = between(1, most_cells_per_axis),
                .when = {[&scene] { return !scene.core && !scene.faces; }, "without core and faces", "core"}});
-  table.value("domain", domain_codec(p.low, p.high), "Ends of the domain along x, y, z",
+  table.value("domain", box_codec(scene.domain), "Ends of the domain along x, y, z",
               {.unit = "m",
                .when = {[&scene] { return !scene.faces; }, "without faces, which have them", "faces"},
                .required = true});
-  table.value("core", core_codec(scene.core),
+  table.value("core", box_codec(scene.core),
               "Box in the domain with cells of one width, outside of which they grow up to its ends; for "
               "canopies, flags and bodies",
               {.unit = "m"});
@@ -100,24 +100,22 @@ void declare_grid(Table& table, FlowScene& scene) {
 
 void declare_flow(Table& table, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  table.value("advection", scene.advection, advection_choices,
-              "Advective fluxes: second-order central or fifth-order upwind-biased");
-  table.value(
-      "weno", scene.weights, weights_choices, "Nonlinear weights of the reconstruction",
-      {.when = with_choice("advection", scene.advection, advection_choices, {AdvectionScheme::weno5})});
+  const ChoiceKey advection("advection", scene.advection, advection_choices);
+  const ChoiceKey pressure("pressure", p.pressure_solver, pressure_choices);
+  table.value(advection, "Advective fluxes: second-order central or fifth-order upwind-biased");
+  table.value("weno", scene.weights, weights_choices, "Nonlinear weights of the reconstruction",
+              {.when = advection.is({AdvectionScheme::weno5})});
   table.value("diffusion", p.diffusion, diffusion_choices,
               "Time integration of viscous stresses: explicit, which limits dt, or implicit");
   table.value("time", p.time_scheme, time_choices,
               "Time integration: Runge-Kutta of third order with three projections, or Adams-Bashforth of "
               "second order",
               {.default_text = "`\"rk3\"`; `\"ab2\"` with diffusion = \"crank-nicolson\""});
-  table.value("pressure", p.pressure_solver, pressure_choices,
+  table.value(pressure,
               "Solver of the pressure equation; `auto` is the faster direct one, in the preset exact "
               "diagonalization");
   table.value("pressure_tolerance", p.pressure_tolerance, "Relative residual at which the iterations end",
-              {.range = positive.at_most(1e-2),
-               .when = with_choice("pressure", p.pressure_solver, pressure_choices,
-                                   {flow::PressureSolver::hypre_pfmg})});
+              {.range = positive.at_most(1e-2), .when = pressure.is({flow::PressureSolver::hypre_pfmg})});
   table.value("turbulence", p.turbulence, turbulence_choices,
               "Model of unresolved scales; none is implicit large-eddy simulation");
   table.value("turbulence_constant",
@@ -147,10 +145,8 @@ void declare_drop(Table& table, Drop& drop) {
 void declare_coupling(Table& table, FlowScene& scene) {
   Exchange& coupling = scene.coupling;
   const Condition fluid = with_fluid(scene);
-  const auto with_method = [&coupling](const std::vector<CouplingMethod>& methods) {
-    return with_choice("method", coupling.method, method_choices, methods);
-  };
-  table.value("method", coupling.method, method_choices,
+  const ChoiceKey method("method", coupling.method, method_choices);
+  table.value(method,
               "Coupling of sheets to the fluid: by smoothed delta functions, against which canopies relax in "
               "each step of the cloth; likewise, but the cloth takes the force of the last step of the flow "
               "and imposes its velocity, as in [Shi]; or pressure jumps between the cells that a body "
@@ -160,7 +156,7 @@ void declare_coupling(Table& table, FlowScene& scene) {
       "corrections", coupling.corrections, corrections_choices,
       "Corrections of delta functions where the keys below do not replace them: `default` against leak, wide "
       "edges and late forces; `plain` has none",
-      {.when = fluid && with_method({CouplingMethod::spread})});
+      {.when = fluid && method.is({CouplingMethod::spread})});
   table.value(
       "filter", coupling.filter,
       "Weight of the present step in the running mean of the acceleration of the fluid at sheets",
@@ -173,7 +169,7 @@ void declare_coupling(Table& table, FlowScene& scene) {
               "vertex less what the vertex expects, smoothed along the sheet; 0: none, so that curved sheets "
               "leak in proportion to dt",
               {.range = between(0.0, 1.0),
-               .when = fluid && with_method({CouplingMethod::spread}),
+               .when = fluid && method.is({CouplingMethod::spread}),
                .default_text = "0.5 with default corrections, else 0; 0 with a [[flag]]"});
   table.former("defect_filter", "\"coupling.leak_filter\", by default 0.5");
   table.value("edge_inset", coupling.edge_inset,
@@ -181,12 +177,12 @@ void declare_coupling(Table& table, FlowScene& scene) {
               "fluid, to make up for the width of the delta function, which else acts beyond the edges; "
               "the fluid passes between sheets that touch",
               {.range = between(0.0, 1.0),
-               .when = fluid && with_method({CouplingMethod::spread, CouplingMethod::explicit_}),
+               .when = fluid && method.is({CouplingMethod::spread, CouplingMethod::explicit_}),
                .default_text = "with default corrections 0.59 cells at a Courant number of 0.5 and 0.07 more "
                                "at half of it; 0 without, and with a retraction"});
   table.value("allow_unstable", scene.allow_unstable,
               "Run with canopies whose added mass exceeds their own, which the method is unstable for",
-              {.when = with_method({CouplingMethod::explicit_})});
+              {.when = method.is({CouplingMethod::explicit_})});
   table.value("gravity", scene.gravity, "Acceleration of canopies, payloads and flags",
               {.unit = "m/s^2",
                .when = {[&scene] { return !scene.canopies.empty() || !scene.flags.empty(); },

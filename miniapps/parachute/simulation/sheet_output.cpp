@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "kernels/mesh/edges.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
+#include "miniapps/framework/mesh_output.hpp"
 #include "miniapps/parachute/canopy/periodic_images.hpp"
 
 namespace drogue::parachute_app {
@@ -18,14 +18,6 @@ Vector sum(std::span<const Vector> vectors) {
   for (const Vector& each : vectors)
     for (std::size_t axis = 0; axis < 3; ++axis) total[axis] += each[axis];
   return total;
-}
-
-/// Rows of a mesh dataset, each with n integers.
-template <std::size_t n>
-run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
-  return [&parts](std::uint64_t first, std::span<std::int64_t> values) {
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = parts[(first + k) / n][(first + k) % n];
-  };
 }
 
 /// Elements whose vertices are all in a range, as numbered from its beginning.
@@ -42,45 +34,15 @@ std::vector<std::array<int, n>> elements_between(const std::vector<std::array<in
   return result;
 }
 
-/// Adds the triangles of a range of vertices.
-void add_triangles(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
-                   run::FieldSink& fields) {
-  const auto triangles = elements_between(mesh.triangles, begin, end);
-  fields.add_mesh({.name = "triangles",
-                   .shape = {triangles.size(), 3},
-                   .units = "1",
-                   .centering = "face",
-                   .description = "vertices of every triangle",
-                   .grid = grid},
-                  source_of(triangles));
-}
-
-/// Adds the edges and lines of a range of vertices. Springs of mounts lead out of it.
-void add_edges(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
-               run::FieldSink& fields) {
-  const auto edges = elements_between(mesh::edges_of(mesh), begin, end);
-  fields.add_mesh({.name = "edges",
-                   .shape = {edges.size(), 2},
-                   .units = "1",
-                   .centering = "edge",
-                   .description = "vertices of every edge and line",
-                   .grid = grid},
-                  source_of(edges));
-}
-
-/// Adds the vertices at rest in a range. Add them last: they complete fields.xdmf.
-void add_vertices(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& grid,
-                  run::FieldSink& fields) {
-  fields.add_mesh({.name = "vertices",
-                   .shape = {end - begin, 3},
-                   .units = "m",
-                   .centering = "vertex",
-                   .description = "vertices at rest",
-                   .grid = grid},
-                  [&](std::uint64_t from, std::span<double> values) {
-                    for (std::size_t k = 0; k < values.size(); ++k)
-                      values[k] = mesh.rest[begin + (from + k) / 3][(from + k) % 3];
-                  });
+/// Writes the part of a mesh between two vertices. Springs of mounts lead out of it.
+void write_part(const fabric::Mesh& mesh, std::size_t begin, std::size_t end, const std::string& strings,
+                const std::string& grid, run::FieldSink& fields) {
+  const auto rest = std::span(mesh.rest).subspan(begin, end - begin);
+  fabric::Mesh part;
+  part.rest.assign(rest.begin(), rest.end());
+  part.triangles = elements_between(mesh.triangles, begin, end);
+  part.lines = elements_between(mesh.lines, begin, end);
+  framework::write_mesh(fields, part, strings, grid);
 }
 
 }  // namespace
@@ -160,19 +122,8 @@ run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name
 
 void write_canopy_mesh(const Sheets& sheets, run::FieldSink& fields) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
-  const std::size_t first = sheets.canopies.front().begin, end = mesh.rest.size();
-  const auto strings = elements_between(mesh.lines, first, end);
-  const std::string grid = "canopy";
-  add_triangles(mesh, first, end, grid, fields);
-  add_edges(mesh, first, end, grid, fields);
-  fields.add_mesh({.name = "strings",
-                   .shape = {strings.size(), 2},
-                   .units = "1",
-                   .centering = "edge",
-                   .description = "vertices of every reinforcement and line",
-                   .grid = grid},
-                  source_of(strings));
-  add_vertices(mesh, first, end, grid, fields);
+  write_part(mesh, sheets.canopies.front().begin, mesh.rest.size(),
+             "vertices of every reinforcement and line", "canopy", fields);
 }
 
 void copy_canopy_positions(const Sheets& sheets, std::span<const Vector> positions,
@@ -208,19 +159,7 @@ run::DatasetSpec position_spec(const SheetGrid& grid) {
 }
 
 void write_sheet_mesh(const Sheets& sheets, const SheetGrid& grid, run::FieldSink& fields) {
-  const fabric::Mesh& mesh = sheets.fabric.mesh;
-  add_triangles(mesh, grid.begin, grid.end, grid.name, fields);
-  add_edges(mesh, grid.begin, grid.end, grid.name, fields);
-  // A grid of triangles has strings too.
-  const std::vector<std::array<int, 2>> strings;
-  fields.add_mesh({.name = "strings",
-                   .shape = {0, 2},
-                   .units = "1",
-                   .centering = "edge",
-                   .description = "vertices of every line",
-                   .grid = grid.name},
-                  source_of(strings));
-  add_vertices(mesh, grid.begin, grid.end, grid.name, fields);
+  write_part(sheets.fabric.mesh, grid.begin, grid.end, "vertices of every line", grid.name, fields);
 }
 
 void copy_positions(std::size_t begin, std::span<const Vector> positions, std::span<double> values) {

@@ -42,12 +42,6 @@ ErrorSums errors_of(const std::vector<double>& values, const std::vector<double>
   return sums;
 }
 
-double volume_of(const flow::Parameters& p) {
-  double volume = 1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) volume *= p.high[axis] - p.low[axis];
-  return volume;
-}
-
 void check_curves(const Verify& wanted, const run::History& history, run::ResultDocument& result) {
   if (wanted.kinetic_energy_curves.empty() && wanted.dissipation_curves.empty()) return;
   const std::vector<double>&time = history.at("time"), &energy = history.at("kinetic_energy");
@@ -124,7 +118,7 @@ void Simulation::check_totals(run::ResultDocument& result) {
   result.metrics.set("pressure", "divergence_rms", totals.divergence_rms);
   if (wanted.divergence) result.add_check("divergence", totals.divergence_rms, *wanted.divergence);
   if (wanted.momentum) {
-    const double mass = _scene.parameters.density * volume_of(_scene.parameters);
+    const double mass = fluid_mass(_scene.parameters);
     result.add_check("momentum", _statistics.momentum_change(totals, mass), *wanted.momentum);
   }
   if (wanted.energy_growth)

@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
-#include "kernels/mesh/edges.hpp"
 #include "kernels/mesh/orientation.hpp"
+#include "miniapps/framework/mesh_output.hpp"
 #include "miniapps/springs/simulation/contact_state.hpp"
 #include "miniapps/springs/simulation/energy_balance.hpp"
 #include "miniapps/springs/simulation/history.hpp"
@@ -33,14 +33,6 @@ run::DatasetSpec field_spec(const std::string& name, const fabric::Mesh& mesh) {
             .centering = "vertex",
             .description = "velocities of the vertices"};
   return stress_spec(name, mesh);
-}
-
-/// Vertex numbers of edges or triangles as a dataset, row by row.
-template <std::size_t n>
-run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
-  return [&parts](std::uint64_t first, std::span<std::int64_t> values) {
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = parts[(first + k) / n][(first + k) % n];
-  };
 }
 
 /// Fields of one output, in the scene's numbering; empty where the scene does not request them.
@@ -110,38 +102,9 @@ std::vector<run::DatasetSpec> Simulation::field_specs() const {
 }
 
 void Simulation::write_mesh(run::FieldSink& fields) const {
-  const fabric::Mesh& mesh = _scene.mesh;
-  const auto edges = edges_of(mesh);
-  fields.add_mesh({.name = "triangles",
-                   .shape = {mesh.triangles.size(), 3},
-                   .units = "1",
-                   .centering = "face",
-                   .description = "vertices of every triangle"},
-                  source_of(mesh.triangles));
-  fields.add_mesh({.name = "edges",
-                   .shape = {edges.size(), 2},
-                   .units = "1",
-                   .centering = "edge",
-                   .description = "vertices of every edge and line"},
-                  source_of(edges));
-  // The dataset `edges` does not distinguish strings.
-  fields.add_mesh(
-      {.name = "strings",
-       .shape = {mesh.lines.size(), 2},
-       .units = "1",
-       .centering = "edge",
-       .description = "vertices of every piece of a string, those that reinforce edges of cloth alone last"},
-      source_of(mesh.lines));
-  // Add `vertices` last: it completes fields.xdmf.
-  fields.add_mesh({.name = "vertices",
-                   .shape = {mesh.rest.size(), 3},
-                   .units = "m",
-                   .centering = "vertex",
-                   .description = "vertices at rest"},
-                  [&mesh](std::uint64_t first, std::span<double> values) {
-                    const auto from = numbers(mesh.rest).subspan(first, values.size());
-                    std::ranges::copy(from, values.begin());
-                  });
+  framework::write_mesh(
+      fields, _scene.mesh,
+      "vertices of every piece of a string, those that reinforce edges of cloth alone last");
 }
 
 framework::FieldsTask Simulation::snapshot() {

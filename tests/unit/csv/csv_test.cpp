@@ -1,12 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <random>
 
@@ -14,6 +10,8 @@
 #include "common/csv/header.hpp"
 #include "common/csv/line_reader.hpp"
 #include "common/csv/numbers.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/temporary_file.hpp"
 
 namespace drogue::csv {
 namespace {
@@ -26,18 +24,8 @@ std::vector<std::string> split_line(const std::string& line) {
   return values;
 }
 
-/// Temporary file of a test.
-class CsvFile {
- public:
-  explicit CsvFile(const std::string& content)
-      : _path(::testing::TempDir() + "drogue_csv_test_" + std::to_string(::getpid()) + ".csv") {
-    std::ofstream(_path, std::ios::binary) << content;
-  }
-  ~CsvFile() { std::filesystem::remove(_path); }
-  [[nodiscard]] const std::filesystem::path& path() const { return _path; }
-
- private:
-  std::filesystem::path _path;
+struct CsvFile : testing::TemporaryFile {
+  explicit CsvFile(const std::string& content) : TemporaryFile(content, "test.csv") {}
 };
 
 TEST(CsvFields, SplitsALine) {
@@ -236,14 +224,8 @@ TEST(CsvHeader, FindsColumns) {
 std::string header_fault(const std::string& content) {
   const CsvFile file(content);
   LineReader reader(file.path());
-  try {
-    (void)read_header(reader, {"first", "second"});
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-    const std::string message = failure.what();
-    return message.substr(message.find(".csv:") + 5);
-  }
-  return "";
+  const std::string message = testing::refusal_of([&] { return read_header(reader, {"first", "second"}); });
+  return message.substr(message.find(".csv:") + 5);
 }
 
 TEST(CsvHeader, NamesTheSeparatorAndTheEncoding) {

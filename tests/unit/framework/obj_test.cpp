@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "common/program/failure.hpp"
 #include "miniapps/framework/obj_file.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace drogue::framework {
 namespace {
@@ -18,13 +18,7 @@ ObjContents read_mesh(const std::string& text) {
 }
 
 std::string mesh_error(const std::string& text) {
-  try {
-    read_mesh(text);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-    return failure.what();
-  }
-  return "";
+  return testing::refusal_of([&] { return read_mesh(text); });
 }
 
 TEST(ObjFile, ReadsVerticesFacesAndLines) {

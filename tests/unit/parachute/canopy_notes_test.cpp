@@ -1,14 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "common/scene/library.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
+#include "tests/support/temporary_file.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -32,12 +29,7 @@ end_time = 1
 )";
 
 std::vector<std::string> notes(const std::vector<std::string>& sets) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("notes" + std::to_string(::getpid()) + ".toml");
-  std::ofstream(file) << fit;
-  std::vector<std::string> found = read_flow_scene(file, sets).notices;
-  std::filesystem::remove(file);
-  return found;
+  return read_flow_scene(testing::TemporaryFile(fit).path(), sets).notices;
 }
 
 /// Asserts that a scene has this note alone.

@@ -1,17 +1,16 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "common/program/failure.hpp"
 #include "common/scene/library.hpp"
 #include "miniapps/parachute/scene/exchange.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/temporary_file.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -29,31 +28,13 @@ end_time = 1
 )";
 
 FlowScene read_text(const std::string& text, const std::vector<std::string>& sets = {}) {
-  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() /
-      ("flow-" + std::string(test->name()) + std::to_string(::getpid()) + ".toml");
-  std::ofstream(file) << text;
-  try {
-    FlowScene scene = read_flow_scene(file, sets);
-    std::filesystem::remove(file);
-    return scene;
-  } catch (const Failure&) {
-    std::filesystem::remove(file);
-    throw;
-  }
+  return read_flow_scene(testing::TemporaryFile(text).path(), sets);
 }
 
 std::string fingerprint_of(const FlowScene& scene) { return framework::fingerprint(scene_identity(scene)); }
 
 std::string error_of(const std::vector<std::string>& sets) {
-  try {
-    read_text(least, sets);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-    return failure.what();
-  }
-  return {};
+  return testing::refusal_of([&] { return read_text(least, sets); });
 }
 
 bool contains(const std::string& text, const std::string& part) {

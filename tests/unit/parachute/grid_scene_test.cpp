@@ -1,17 +1,14 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
-#include "common/program/failure.hpp"
 #include "kernels/flow/axis_lines.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/scene/run_size.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/temporary_file.hpp"
 
 // Grids with a core, and grids that are given by their faces.
 
@@ -34,32 +31,19 @@ const std::string cells = "grid.cells=[8,8,8]";
 
 class GridScene : public ::testing::Test {
  protected:
-  void SetUp() override {
-    _folder = std::filesystem::temp_directory_path() / ("grid-scene" + std::to_string(::getpid()));
-    std::filesystem::create_directory(_folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(_folder); }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(_folder / name) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { _file.add(name, text); }
   FlowScene read(const std::vector<std::string>& sets = {}, const std::string& text = with_core) const {
     write("scene.toml", text);
-    return read_flow_scene(_folder / "scene.toml", sets);
+    return read_flow_scene(_file.path(), sets);
   }
   /// Sentence with which a scene is refused, without the name of the file.
   std::string refusal(const std::vector<std::string>& sets, const std::string& text = with_core) const {
-    try {
-      static_cast<void>(read(sets, text));
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-      const std::string sentence = failure.what(), file = (_folder / "scene.toml").string();
-      return sentence.starts_with(file) ? sentence.substr(file.size() + 1) : sentence;
-    }
-    return {};
+    const std::string sentence = testing::refusal_of([&] { return read(sets, text); }),
+                      file = _file.path().string();
+    return sentence.starts_with(file) ? sentence.substr(file.size() + 1) : sentence;
   }
 
-  std::filesystem::path _folder;
+  const testing::TemporaryFile _file{with_core};
 };
 
 /// The scene with other text for its grid.

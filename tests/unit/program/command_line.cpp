@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/program/failure.hpp"
 #include "common/program/mini_app_options.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace drogue {
 namespace {
@@ -16,12 +16,7 @@ MiniAppOptions parse(std::vector<const char*> words) {
 
 /// Message of the usage failure for these arguments.
 std::string usage_failure(const std::vector<const char*>& words) {
-  try {
-    parse(words);
-  } catch (const Failure& failure) {
-    return failure.code() == ExitCode::usage ? failure.what() : "another exit code";
-  }
-  return "no failure";
+  return testing::refusal_of([&] { return parse(words); }, ExitCode::usage);
 }
 
 TEST(MiniAppOptions, HasTheDocumentedDefaults) {

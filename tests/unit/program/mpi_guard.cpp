@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/program/failure.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace drogue {
 namespace {
@@ -47,15 +47,10 @@ TEST(MpiGuard, RecognizesLaunchers) {
     const Launcher launcher(variables);
     EXPECT_EQ(launched_rank().rank, 2) << variables[0].first;
     EXPECT_EQ(launched_rank().ranks, 4) << variables[0].first;
-    try {
-      require_one_rank();
-      FAIL() << variables[0].first;
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::usage);
-      EXPECT_NE(std::string(failure.what()).find("not 4"), std::string::npos) << failure.what();
-      // `run_program` prints the name of the program.
-      EXPECT_EQ(std::string(failure.what()).find("drogue-"), std::string::npos) << failure.what();
-    }
+    const std::string refusal = testing::refusal_of(require_one_rank, ExitCode::usage);
+    EXPECT_NE(refusal.find("not 4"), std::string::npos) << variables[0].first << refusal;
+    // `run_program` prints the name of the program.
+    EXPECT_EQ(refusal.find("drogue-"), std::string::npos) << refusal;
   }
 }
 

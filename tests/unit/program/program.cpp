@@ -24,9 +24,9 @@ struct ChildResult {
 };
 
 ChildResult run(const std::function<ExitCode()>& body) {
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   const int code = run_program("drogue-gas", body);
-  return {code, testing::internal::GetCapturedStderr()};
+  return {code, ::testing::internal::GetCapturedStderr()};
 }
 
 TEST(RunProgram, PrintsNothingOnSuccess) {

@@ -6,17 +6,13 @@
 #include <cmath>
 #include <fstream>
 
+#include "tests/support/refusal.hpp"
+
 namespace drogue::study {
 namespace {
 
 std::string refusal(const std::string& text) {
-  try {
-    (void)parse_ensemble(text);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::usage);
-    return failure.what();
-  }
-  return "none";
+  return testing::refusal_of([&] { return parse_ensemble(text); }, ExitCode::usage);
 }
 
 TEST(Ensemble, ParsesItsAxes) {
@@ -40,12 +36,8 @@ TEST(Ensemble, RefusesUnknownAxesAndThoseOfTwoStudies) {
         {"cells=1,mesh=4", "--study: unknown name 'mesh'; did you mean \"meshes\"?"},
         {"nonsense", "--study: unknown name 'nonsense'; valid names are ensemble, cells, jobs, meshes"},
         {"ensemble=2,", "--study: a part is empty; valid names are ensemble, cells, jobs, meshes"}})
-    try {
-      (void)is_ensemble(text, {"meshes"});
-      FAIL() << text;
-    } catch (const Failure& failure) {
-      EXPECT_STREQ(failure.what(), what);
-    }
+    EXPECT_EQ(testing::refusal_of([name = text] { return is_ensemble(name, {"meshes"}); }, ExitCode::usage),
+              what);
 }
 
 TEST(Ensemble, RefusesOtherAxes) {

@@ -1,16 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "common/program/failure.hpp"
 #include "miniapps/gas/scene/scene.hpp"
 #include "tests/support/damaged.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/temporary_file.hpp"
 
 namespace drogue::gas_app {
 namespace {
@@ -28,28 +27,16 @@ std::vector<std::string> sound_scenes() {
   return texts;
 }
 
-class DamagedGasScene : public ::testing::Test {
- protected:
-  void TearDown() override { std::filesystem::remove(file); }
+/// True if the scene is refused. Only a scene error with file and line is allowed.
+bool is_refused(const std::string& text) {
+  const testing::TemporaryFile file(text);
+  const std::string refusal =
+      testing::refusal_of([&] { return read_gas_scene(file.path(), {}, SchemeSource::scene); });
+  EXPECT_TRUE(refusal.empty() || refusal.starts_with(file.path().string() + ":")) << refusal << text;
+  return !refusal.empty();
+}
 
-  /// True if the scene is refused. Only a scene error with file and line is allowed.
-  bool is_refused(const std::string& text) const {
-    std::ofstream(file, std::ios::binary) << text;
-    try {
-      static_cast<void>(read_gas_scene(file, {}, SchemeSource::scene));
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::invalid_scene) << text;
-      EXPECT_TRUE(std::string(failure.what()).starts_with(file.string() + ":")) << failure.what();
-      return true;
-    }
-    return false;
-  }
-
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("drogue-damaged-" + std::to_string(::getpid()) + ".toml");
-};
-
-TEST_F(DamagedGasScene, IsRejectedWithFileAndLineUnlessStillValid) {
+TEST(DamagedGasScene, IsRejectedWithFileAndLineUnlessStillValid) {
   constexpr unsigned mutations = 2000;
   const std::vector<std::string> sound = sound_scenes();
   unsigned refused = 0;
@@ -59,7 +46,7 @@ TEST_F(DamagedGasScene, IsRejectedWithFileAndLineUnlessStillValid) {
   EXPECT_LT(refused, mutations);
 }
 
-TEST_F(DamagedGasScene, UndamagedSceneIsValid) {
+TEST(DamagedGasScene, UndamagedSceneIsValid) {
   for (const std::string& text : sound_scenes()) EXPECT_FALSE(is_refused(text)) << text;
 }
 

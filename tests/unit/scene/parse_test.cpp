@@ -4,25 +4,13 @@
 
 #include <cmath>
 
-#include "common/program/failure.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace drogue::scene {
 namespace {
 
-/// Message of the thrown failure; checks its exit code.
-template <class Call>
-std::string thrown_by(Call call, ExitCode code = ExitCode::invalid_scene) {
-  try {
-    call();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), code);
-    return failure.what();
-  }
-  return "";
-}
-
 std::string syntax_error(const std::string& text) {
-  return thrown_by([&] { parse_text(text, "f.toml"); });
+  return testing::refusal_of([&] { parse_text(text, "f.toml"); });
 }
 
 TEST(NodeText, RoundsComputedNumbersInSentences) {
@@ -61,9 +49,9 @@ TEST(Parse, ReportsTheLineOfASyntaxError) {
 }
 
 TEST(Parse, ReportsUnreadableFilesAsUsageErrors) {
-  EXPECT_NE(thrown_by([] { parse_file("no-such.toml"); }, ExitCode::usage).find("no-such.toml"),
+  EXPECT_NE(testing::refusal_of([] { parse_file("no-such.toml"); }, ExitCode::usage).find("no-such.toml"),
             std::string::npos);
-  EXPECT_NE(thrown_by([] { parse_file("."); }, ExitCode::usage).find("folder"), std::string::npos);
+  EXPECT_NE(testing::refusal_of([] { parse_file("."); }, ExitCode::usage).find("folder"), std::string::npos);
 }
 
 Node with_set(const std::string& assignment) {
@@ -91,7 +79,7 @@ TEST(Set, ReportsTheAssignmentInError) {
   for (const std::string bad : {"gas.gamma.x=1", "gas", "=1", "gas.=1", ".gas=1", "a..b=1",
                                 "gas.gamma=", "gas.gamma=[1", "gas.gamma=\"", "a.list.2=1", "a.list.x=1",
                                 "a.list.99999999999999999999=1", "gas.gamma=1\nx=2", "gas.gamma=1]"}) {
-    const std::string message = thrown_by([&] { with_set(bad); });
+    const std::string message = testing::refusal_of([&] { with_set(bad); });
     EXPECT_EQ(message.substr(0, bad.size() + 8), "--set " + bad + ": ") << bad;
   }
   EXPECT_EQ(with_set("gas.gamma=2").as<Node::Table>()->front().node.as<Node::Table>()->front().origin,
@@ -102,7 +90,7 @@ TEST(Set, RejectsBracketsThatEncloseNoIndex) {
   for (const std::string bad :
        {"b[0.c=9", "b[0=9", "b[=9", "b0].c=9", "b[].c=9", "b[0]c=9", "b[0]].c=9", "b[[0]].c=9", "b[-1].c=9",
         "b[x].c=9", "b.[0].c=9", "[0].c=9", "gas[gamma=2", "gas]gamma=2", "gas[gamma]=2", "gas[a=[0, 1]"})
-    EXPECT_EQ(thrown_by([&] { with_set(bad); }),
+    EXPECT_EQ(testing::refusal_of([&] { with_set(bad); }),
               "--set " + bad + ": the key is not of the form table.key or array[0].key");
 }
 

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "common/program/failure.hpp"
 #include "common/scene/document.hpp"
 #include "common/scene/nearest.hpp"
 #include "common/scene/parse.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace drogue::scene {
 namespace {
@@ -54,9 +54,9 @@ void declare(Table& root, Fabric& cloth) {
       "material",
       [&](Table& material) {
         const Choices<Shape> shapes = {{"disk", Shape::disk}, {"string", Shape::string}};
-        material.value("shape", cloth.shape, shapes, "Shape");
-        material.value("tension_only", cloth.tension_only, "No pushing",
-                       {.when = with_choice("shape", cloth.shape, shapes, {Shape::string})});
+        const ChoiceKey shape("shape", cloth.shape, shapes);
+        material.value(shape, "Shape");
+        material.value("tension_only", cloth.tension_only, "No pushing", {.when = shape.is({Shape::string})});
         material.value("stiffness", cloth.stiffness, "Stiffness", {.unit = "N/m", .range = not_negative});
         material.value("count", cloth.count, "Count", {.range = between(1, 10)});
         material.value("seed", cloth.seed, "Seed");
@@ -95,13 +95,7 @@ std::string print_cloth(Fabric cloth) {
 }
 
 std::string error_of(const std::string& text, const std::vector<std::string>& sets = {}) {
-  try {
-    read_cloth(text, sets);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-    return failure.what();
-  }
-  return "";
+  return testing::refusal_of([&] { return read_cloth(text, sets); });
 }
 
 TEST(Schema, ReadsEveryType) {
@@ -223,7 +217,7 @@ TEST(Schema, ConditionsNameTheirKeys) {
   bool contact = true;
   std::optional<double> width;
   std::string file = "cloth.obj";
-  const Condition of_kind = with_choice("kind", kind, kinds, {2, 1});
+  const Condition of_kind = ChoiceKey("kind", kind, kinds).is({2, 1});
   EXPECT_EQ(of_kind.text, "with kind = \"b\" or \"c\"");
   EXPECT_EQ(of_kind.decided_by, "kind");
   EXPECT_TRUE(of_kind.applies());
@@ -245,24 +239,15 @@ TEST(Place, RefusesAKeyByItsOriginItsPathAndASentence) {
   Table root;
   declare(root, cloth);
   read(root, parse_text(head + "[[pin]]\nwhere = \"x\"\nmotion = 1\n", "c.toml"));
-  const auto refusal = [](const auto& refuse) -> std::string {
-    try {
-      refuse();
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-      return failure.what();
-    }
-    return "";
-  };
   const Place pin = Place(root).at("pin", 0);
   EXPECT_EQ(pin.path("motion"), "pin[0].motion");
   EXPECT_TRUE(pin.given("motion"));
   EXPECT_FALSE(pin.given("axes"));
-  EXPECT_EQ(refusal([&] { pin.refuse("motion", " = ", 1.5, " m in ", 2, " steps"); }),
+  EXPECT_EQ(testing::refusal_of([&] { pin.refuse("motion", " = ", 1.5, " m in ", 2, " steps"); }),
             "c.toml:6: pin[0].motion = 1.5 m in 2 steps");
-  EXPECT_EQ(refusal([&] { pin.refuse_if(true, "", " is loose"); }), "c.toml:4: pin[0] is loose");
-  EXPECT_EQ(refusal([&] { pin.contradict("axes", "no axes"); }), "c.toml:4: no axes");
-  EXPECT_EQ(refusal([&] { pin.refuse_if(false, "", " is loose"); }), "");
+  EXPECT_EQ(testing::refusal_of([&] { pin.refuse_if(true, "", " is loose"); }), "c.toml:4: pin[0] is loose");
+  EXPECT_EQ(testing::refusal_of([&] { pin.contradict("axes", "no axes"); }), "c.toml:4: no axes");
+  EXPECT_EQ(testing::refusal_of([&] { pin.refuse_if(false, "", " is loose"); }), "");
 }
 
 TEST(Nearest, CountsEdits) {

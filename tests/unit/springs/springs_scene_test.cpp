@@ -1,41 +1,19 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
-#include "common/program/failure.hpp"
 #include "common/scene/library.hpp"
 #include "miniapps/springs/scene/scene.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/temporary_file.hpp"
 
 namespace drogue::springs_app {
 namespace {
 
 const std::filesystem::path source = DROGUE_SOURCE_DIR;
 const std::filesystem::path shipped = source / "miniapps/springs/scenes";
-
-/// Temporary folder with a scene and a mesh.
-class SceneFolder {
- public:
-  explicit SceneFolder(const std::string& text, const std::string& mesh = "") {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    _path = std::filesystem::temp_directory_path() /
-            (std::string("drogue-springs-") + test->name() + "-" + std::to_string(::getpid()));
-    std::filesystem::create_directory(_path);
-    std::ofstream(_path / "scene.toml", std::ios::binary) << text;
-    if (!mesh.empty()) std::ofstream(_path / "m.obj", std::ios::binary) << mesh;
-  }
-  ~SceneFolder() { std::filesystem::remove_all(_path); }
-  SceneFolder(const SceneFolder&) = delete;
-  SceneFolder& operator=(const SceneFolder&) = delete;
-
-  [[nodiscard]] std::filesystem::path scene() const { return _path / "scene.toml"; }
-
- private:
-  std::filesystem::path _path;
-};
 
 const std::string least = "app = \"springs\"\n[mesh]\ndisk = {}\n[time]\nend_time = 1\n";
 const std::string with_file = "app = \"springs\"\n[mesh]\nfile = \"m.obj\"\n[time]\nend_time = 1\n";
@@ -44,19 +22,14 @@ const std::string rope = "v 0 0 0\nv 1 0 0\nv 3 0 0\nl 1 2 3\n";
 
 SpringsScene read_text(const std::string& text, const std::vector<std::string>& sets = {},
                        const std::string& mesh = "") {
-  const SceneFolder folder(text, mesh);
-  return read_springs_scene(folder.scene(), sets);
+  const testing::TemporaryFile scene(text);
+  if (!mesh.empty()) scene.add("m.obj", mesh);
+  return read_springs_scene(scene.path(), sets);
 }
 
 std::string error_of(const std::vector<std::string>& sets, const std::string& text = least,
                      const std::string& mesh = "") {
-  try {
-    read_text(text, sets, mesh);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
-    return failure.what();
-  }
-  return "";
+  return testing::refusal_of([&] { return read_text(text, sets, mesh); });
 }
 
 bool holds(const std::string& text, const std::string& words) {
@@ -168,8 +141,9 @@ TEST(SpringsScene, PrintsIntegersWithoutAPoint) {
 }
 
 TEST(SpringsScene, ResolvesFilesRelativeToTheScene) {
-  const SceneFolder folder(with_file, triangle);
-  const SpringsScene scene = read_springs_scene(folder.scene());
+  const testing::TemporaryFile file(with_file);
+  file.add("m.obj", triangle);
+  const SpringsScene scene = read_springs_scene(file.path());
   EXPECT_EQ(scene.mesh.triangles.size(), 1U);
   const std::string printed = print_springs_scene(scene);
   EXPECT_EQ(print_springs_scene(read_text(printed)), printed) << "from another folder";

@@ -1,14 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cmath>
 #include <fstream>
 #include <numbers>
 
-#include "common/program/failure.hpp"
 #include "miniapps/springs/verify/samples.hpp"
 #include "miniapps/springs/verify/study_points.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/temporary_file.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -16,13 +15,8 @@ namespace {
 const std::filesystem::path scenes = std::filesystem::path(DROGUE_SOURCE_DIR) / "miniapps/springs/scenes";
 
 std::string refusal(const std::string& scene, const std::string& lists) {
-  try {
-    study_points(scenes / (scene + ".toml"), {}, lists);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::usage);
-    return failure.what();
-  }
-  return "";
+  return testing::refusal_of([&] { return study_points(scenes / (scene + ".toml"), {}, lists); },
+                             ExitCode::usage);
 }
 
 TEST(SpringsStudy, ComputesLengthAndAreaOfAMesh) {
@@ -82,11 +76,8 @@ TEST(SpringsStudy, StringsKeepTheirAxialStiffnessOnEveryMesh) {
 }
 
 TEST(SpringsStudy, StringsBesideClothKeepTheirStiffnessInEveryModel) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("drogue-study-" + std::to_string(::getpid()));
-  std::filesystem::create_directory(folder);
-  std::ofstream(folder / "m.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nv 0 0 -3\nf 1 2 3\nl 1 4 5\n";
-  std::ofstream(folder / "s.toml") << "app = \"springs\"\n[mesh]\nfile = \"m.obj\"\n[time]\nend_time = 1\n";
+  const testing::TemporaryFile scene("app = \"springs\"\n[mesh]\nfile = \"m.obj\"\n[time]\nend_time = 1\n");
+  scene.add("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nv 0 0 -3\nf 1 2 3\nl 1 4 5\n");
   const std::vector<std::string> of_material = {
       "membrane_modulus=500,line_density=0.3,axial_stiffness=50",
       "membrane_modulus=500,line_density=0.3,stiffness=40",
@@ -95,8 +86,8 @@ TEST(SpringsStudy, StringsBesideClothKeepTheirStiffnessInEveryModel) {
   };
   for (const std::string& keys : of_material) {
     const std::vector<std::string> sets = {"material={" + keys + "}"};
-    const SpringsScene base = read_springs_scene(folder / "s.toml", sets);
-    const auto points = study_points(folder / "s.toml", sets, "models=edge:quadratic:biquadratic");
+    const SpringsScene base = read_springs_scene(scene.path(), sets);
+    const auto points = study_points(scene.path(), sets, "models=edge:quadratic:biquadratic");
     ASSERT_EQ(points.size(), 3U);
     for (const StudyPoint& point : points) {
       EXPECT_EQ(point.scene.fabric.line_density, 0.3) << keys;
@@ -106,7 +97,6 @@ TEST(SpringsStudy, StringsBesideClothKeepTheirStiffnessInEveryModel) {
     const double edge = base.fabric.material.model == fabric::Model::edge ? 70.0 : 250.0 * std::sqrt(3.0);
     EXPECT_DOUBLE_EQ(points[0].scene.fabric.material.stiffness, edge) << keys;
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(SpringsStudy, RefusesInvalidAxes) {
