@@ -22,6 +22,14 @@ if(NOT Kokkos_ENABLE_OPENMP)
   message(STATUS "Kokkos has no OpenMP: --backend openmp will not be compiled in")
 endif()
 
+# Programs are compiled for the processor of Kokkos, in whose vectors they pack cells and vertices.
+set(_processors "${Kokkos_ARCH}")
+list(FILTER _processors EXCLUDE REGEX "KEPLER|MAXWELL|PASCAL|VOLTA|TURING|AMPERE|ADA|HOPPER|BLACKWELL|GFX|VEGA|^INTEL_")
+if(NOT _processors AND NOT CMAKE_CXX_FLAGS MATCHES "-m(arch|cpu)=")
+  message(WARNING "The Kokkos in ${Kokkos_DIR} was built for no processor, and programs may take 1.8 times as long: build it with "
+                  "-DKokkos_ARCH_NATIVE=ON, or configure with -DCMAKE_CXX_FLAGS=-march=native.")
+endif()
+
 if(DROGUE_CUDA)
   # The mdspan-based View of Kokkos 4.7.0, compiled by nvcc 13.0 as C++20, computes wild addresses in a plain deep_copy. The old View
   # implementation of the same release is right, and the default of later patches.
