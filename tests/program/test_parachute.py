@@ -858,6 +858,37 @@ class Canopies(parachute_program.FlowTest):
         # A run that is continued has the same bits.
         self.assert_continues(self.history("explicit"), heavy, [*sets, method, "run.end_time=0.1", "output.times=[0.1]"], [*sets, method])
 
+    def test_what_makes_the_drag_of_a_body_unfit_is_printed_and_kept(self):
+        scene = self.write("""\
+app = "parachute"
+[fluid]
+density = 1.2
+viscosity = 1.8e-5
+velocity = [0, 0, 8]
+[grid]
+cells = [16, 16, 24]
+domain = [[-1, 1], [-1, 1], [-1, 2]]
+boundary = { x = "slip", y = "slip", z = ["inflow", "outflow"] }
+[[body]]
+kind = "cup"
+axis = "z"
+opening = "low"
+centre = [0, 0, 0]
+radius = 0.3
+edge_length = 0.08
+[run]
+end_time = 0.3
+""")
+        warnings = ["grid.domain: the body covers 7.07 % of its section across z, so that its drag is that in a duct and not in free air; "
+                    "a square section of 3.76 m has at most 2 %",
+                    "run.end_time: 4 widths of body[0] pass with the stream, and its wake starts up in some 40, so that its drag is not yet "
+                    "that of a steady stream; 3.6 s leave time for a mean"]
+        process = self.start(scene, "--out", "out", sets=["run.max_steps=2"])
+        self.assertEqual(warnings, self.result("out")["warnings"])
+        self.assertEqual([f"drogue-parachute: {warning}" for warning in warnings], process.stderr.splitlines()[:2])
+        wide = ["grid.domain=[[-1.88,1.88],[-1.88,1.88],[-1,2]]", "grid.cells=[32,32,24]", "run.end_time=3.6"]
+        self.assertEqual("", self.expect(0, scene, "--check", sets=wide).stderr)
+
     def test_what_makes_the_numbers_of_a_canopy_unfit_is_printed_and_kept(self):
         scene = self.write(CANOPY.replace("[run]", "[coupling]\nedge_inset = 0\n[run]"))
         process = self.start(scene, "--out", "out", sets=["run.end_time=0.02", "output={}", "verify={}"])

@@ -428,6 +428,7 @@ void complete_and_check(const Place& root, FlowScene& scene, framework::InitialC
     check_images(root, scene, sheets);
     note_narrow_channels(root, scene, sheets);
     note_unfit_canopies(root, scene);
+    note_unfit_bodies(scene);
     note_compressibility(scene);
   } else {
     check_steps(root, scene);

@@ -53,6 +53,10 @@ void check_method(const scene::Place& root, const FlowScene& scene);
 /// another canopy.
 void note_unfit_canopies(const scene::Place& root, FlowScene& scene);
 
+/// Notes bodies at rest whose drag is not that in free air: the part of the section that they cover, and a
+/// run that ends while their wake starts up.
+void note_unfit_bodies(FlowScene& scene);
+
 /// Sentence on a core that a canopy leaves once it leans by an angle about its payload, or about the middle
 /// between both where the grid follows that: "one that leans by N degrees" and `when`. Empty if it has room.
 [[nodiscard]] std::string narrow_core_text(const FlowScene& scene, std::size_t canopy, double degrees,

@@ -11,7 +11,8 @@ namespace drogue::parachute_app {
 [[nodiscard]] double frontal_area(const Body& body, const fabric::Vector& direction);
 
 /// Describes the mean drag of body i, 2 F / (rho U^2 A) with its `frontal_area` A, in the group `body_i` of
-/// the result as `describe_flights` does that of canopies. What has none is left out: bodies that move, a
+/// the result as `describe_flights` does that of canopies: of the second half of the run, or of what comes
+/// after the start of its wake, if that is less. What has none is left out: bodies that move, a
 /// stream that is 0, varies in these means or enters at no side, a face along it. Throws only std::bad_alloc.
 void describe_bodies(const FlowScene& scene, const run::History& history, run::ResultDocument& result);
 

@@ -93,6 +93,41 @@ TEST(BodyDrag, IsTheMeanOfTheSecondHalfWithItsErrorBar) {
   EXPECT_EQ(flight_title("body_0.drag_coefficient"), "body[0] C_D");
 }
 
+TEST(BodyDrag, BeginsAfterTheStartOfTheWakeIfTheRunGoesOnFarEnough) {
+  const SceneFile file(sphere_in_air);
+  const auto begin = [&](const std::string& speed) {
+    return described(file.read({"fluid.velocity=[" + speed + ",0,0]"}), 0.0)
+        .metrics.real("body_0", "from")
+        .value();
+  };
+  EXPECT_DOUBLE_EQ(begin("11.9"), 2.0) << "too short a run";
+  EXPECT_DOUBLE_EQ(begin("12.5"), 3.2) << "40 diameters";
+  EXPECT_DOUBLE_EQ(begin("25"), 2.0) << "the second half";
+}
+
+TEST(BodyNotes, NameASectionThatIsTooNarrowAndARunThatIsTooShort) {
+  const SceneFile file(sphere_in_air);
+  const auto notes = [&](const std::vector<std::string>& sets) { return file.read(sets).notices; };
+  const std::string narrow =
+      "grid.domain: the body covers 4.91 % of its section across x, so that its drag is that in a duct and "
+      "not in free air; a square section of 6.27 m has at most 2 %";
+  EXPECT_EQ(notes({}),
+            (std::vector<std::string>{
+                narrow,
+                "run.end_time: 40 widths of body[0] pass with the stream, and its wake starts up in "
+                "some 40, so that its drag is not yet that of a steady stream; 4.8 s leave time for a "
+                "mean"}));
+  EXPECT_EQ(notes({"run.end_time=4.8"}), std::vector{narrow});
+  const std::vector<std::string> wide = {"grid.domain=[[-3.2,3.2],[-3.2,3.2],[-3.2,3.2]]",
+                                         "grid.cells=[64,64,64]", "run.end_time=4.8"};
+  EXPECT_TRUE(notes(wide).empty());
+  // A steady wake, at a Reynolds number of 100.
+  EXPECT_EQ(notes({"fluid.viscosity=0.125", "run.end_time=1.5"}), std::vector{narrow});
+  // What has no drag coefficient has no note.
+  EXPECT_TRUE(notes({"fluid.velocity=[\"10+y\", 0, 0]"}).empty());
+  EXPECT_TRUE(notes({"body[0].motion.y=\"0.1*sin(t)\""}).empty());
+}
+
 TEST(BodyDrag, NeedsASteadyStreamAndABodyAtRest) {
   const SceneFile file(sphere_in_air);
   const auto has_drag = [&](const std::vector<std::string>& sets) {
