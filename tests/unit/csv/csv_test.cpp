@@ -277,7 +277,8 @@ TEST(CsvFields, RefusesLinesThatAreNotUtf8) {
     EXPECT_EQ(fields.split(line), "the line is not UTF-8; save the file as UTF-8") << line;
     EXPECT_EQ(fields.size(), 0U);
   }
-  EXPECT_EQ(shown(std::string(39, 'a') + "\xC3\xA9" + "b"), '"' + std::string(39, 'a') + "...\"");
+  const std::string letters(39, 'a');
+  EXPECT_EQ(shown(letters + "\xC3\xA9" + "b"), "\"" + letters + "...\"");
 }
 
 TEST(CsvFields, DropsTrailingEmptyFields) {
