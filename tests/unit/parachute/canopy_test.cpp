@@ -252,7 +252,7 @@ TEST(Canopy, PleatedConeStartsWithoutElasticEnergy) {
           // 1 % of strain in all of the 57 m^2 has 57 J.
           EXPECT_LT(energy, closure > 0.25 ? 0.3 : 0.004) << closure << ", " << edge_length << ", " << gores;
         }
-  // The shape of the scene `reefed`.
+  // Nearly closed, as before a reefing line is cut.
   Canopy reefed = c9(0.42);
   reefed.shape = CanopyShape::partly_closed, reefed.closure = 0.25;
   const Sheets sheets = make_all_sheets({}, {reefed}, 1.225, 1.8e-5);
