@@ -132,9 +132,10 @@ function(drogue_add_python_test file label)
   set(_name "${label}.${_stem}")
   add_test(NAME "${_name}"
     COMMAND "${Python3_EXECUTABLE}" -B -m unittest discover -v -s "${_folder}" -t "${_folder}" -p "${_filename}")
-  # Python tests take longest: first, so that none runs alone at the end. Waiting threads yield their cores to other tests.
+  # Python tests take longest: first, so that none runs alone at the end. Waiting threads yield their cores to other tests;
+  # those of numpy's linear algebra spin, so that it gets one.
   set_tests_properties("${_name}" PROPERTIES LABELS "${_labels}" COST 100 TIMEOUT ${_timeout} ENVIRONMENT
-    "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};PYTHONPATH=${PROJECT_SOURCE_DIR}/tests/support;OMP_NUM_THREADS=2;OMP_WAIT_POLICY=passive")
+    "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};PYTHONPATH=${PROJECT_SOURCE_DIR}/tests/support;OMP_NUM_THREADS=2;OMP_WAIT_POLICY=passive;OPENBLAS_NUM_THREADS=1")
 endfunction()
 
 # drogue_first_include(result <file>): the own header before which a file includes only Kokkos and standard headers, or nothing.

@@ -73,7 +73,8 @@ std::vector<double> stretched_faces(const StretchedAxis& axis) {
   }
   const auto distances = [&](const Series& series) {
     std::vector<double> from_core;
-    for (int k = 1; k <= series.cells; ++k) from_core.push_back(spacing * geometric_sum(series.ratio, k));
+    double sum = 0.0, power = 1.0;  // as in geometric_sum, for every number of cells
+    for (int k = 0; k < series.cells; ++k) from_core.push_back(spacing * (sum += power *= series.ratio));
     return from_core;
   };
   std::vector<double> faces;

@@ -1,4 +1,4 @@
-"""Every shipped small scene of a parachute meets its bounds."""
+"""Every shipped small scene of a parachute or of a turbulent wake meets its bounds."""
 
 import math
 
@@ -18,6 +18,11 @@ class ShippedParachutes(parachute_program.FlowTest):
     def test_openmp_meets_the_bounds(self):
         self.assertGreaterEqual(len(parachute_program.CANOPIES), 13)
         self.assert_all_pass("openmp", parachute_program.CANOPIES, 3)
+
+    def test_turbulent_wakes_meet_the_tolerances(self):
+        for scene in sorted(parachute_program.WAKES):
+            with self.subTest(scene):
+                self.expect(0, scene, "--quiet", "--backend", "serial")
 
     def inflated(self, law):
         """Mean drag, relative deviation of the area and mean lateral force over the mean drag of porous-c9 in a duct, with a law."""

@@ -102,23 +102,23 @@ class Drives(parachute_program.FlowTest):
                 self.assertIn(1.0, [round(t, 12) for t in rows["time"]])
 
     def test_outputs_and_ends_at_a_jump(self):
-        inflow = ("fluid={viscosity=1e-3,density=1,velocity=['(t<1) ? 0 : 1/cosh(5*y)^2+0.1',0,0]}",
+        inflow = ("fluid={viscosity=1e-3,density=1,velocity=['(t<0.4) ? 0 : 1/cosh(5*y)^2+0.1',0,0]}",
                   "grid={cells=[32,24,1],domain=[[0,4],[-1.5,1.5],[0,1]],boundary={x=['inflow','outflow'],y='slip'}}")
-        wall = ("grid.wall_velocity={y_high=['(t<1) ? 0 : 1',0,0]}",)
+        wall = ("grid.wall_velocity={y_high=['(t<0.4) ? 0 : 1',0,0]}",)
         for scheme in SCHEMES:
             for drive in (inflow, wall):
                 for text in (CHANNEL, CHANNEL + CYLINDER) if drive is wall else (CHANNEL,):
                     with self.subTest(scheme, drive=drive[0], bodies=text.count("body")):
-                        scene = (flow(scheme), *drive, "run.end_time=1.5")
+                        scene = (flow(scheme), *drive, "run.end_time=0.6")
                         through = self.check(text, *scene)
-                        stopped = self.check(text, *scene, "output.times=[1,1.5]")
-                        self.assertIn(1.0, stopped["time"])
-                        self.assertEqual(0, stopped["max_speed"][stopped["time"].index(1.0)])
+                        stopped = self.check(text, *scene, "output.times=[0.4,0.6]")
+                        self.assertIn(0.4, stopped["time"])
+                        self.assertEqual(0, stopped["max_speed"][stopped["time"].index(0.4)])
                         self.assertAlmostEqual(1, stopped["momentum_x"][-1] / through["momentum_x"][-1], delta=1e-6)
                         # The state at the end of a run is that of an output, also after a restart.
-                        self.check(text, *scene, "output.times=[1]", "run.end_time=1")
+                        self.check(text, *scene, "output.times=[0.4]", "run.end_time=0.4")
                         self.expect(0, self.write(text), "--quiet", "--backend", "serial", "--out", "out", "--restart", "auto",
-                                    sets=[*scene, "output.times=[1,1.5]"])
+                                    sets=[*scene, "output.times=[0.4,0.6]"])
                         self.assertEqual(stopped, self.history("out"))
 
     def test_pulses_shorter_than_a_step(self):

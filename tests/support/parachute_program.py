@@ -8,6 +8,8 @@ SMALL_SCENES = [name for name in SCENES if not name.endswith("-full")]
 # Small scenes with canopies.
 CANOPIES = [name for name in SMALL_SCENES
             if "[[canopy]]" in (gas_program.SOURCE / f"miniapps/parachute/scenes/{name}.toml").read_text(encoding="utf-8")]
+# Bodies with turbulent wakes, each half a minute on one core.
+WAKES = {"cup", "cup-reversed", "disk-normal"}
 
 # A gust through a short channel with a moving wall: every type of side but periodic ones, in three dimensions.
 GUST = """\

@@ -1,3 +1,4 @@
+// ctest-label: no-sanitizer
 #include <gtest/gtest.h>
 
 #include <vector>

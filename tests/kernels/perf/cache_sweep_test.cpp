@@ -1,3 +1,4 @@
+// ctest-label: no-sanitizer
 #include "perf/memory/cache_sweep.hpp"
 
 #include <gtest/gtest.h>

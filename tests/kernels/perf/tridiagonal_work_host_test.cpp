@@ -1,3 +1,4 @@
+// ctest-label: no-sanitizer
 #include "perf/models/tridiagonal.hpp"
 
 #include <gtest/gtest.h>
