@@ -261,6 +261,8 @@ double least_width(const flow::Parameters& p);
 
 /// Length of the domain along an axis, m. Does not throw.
 inline double length_of(const flow::Parameters& p, std::size_t axis) { return p.high[axis] - p.low[axis]; }
+/// Length of a vector. Does not throw.
+inline double length_of(const fabric::Vector& v) { return std::hypot(v[0], v[1], v[2]); }
 
 /// Mass of the fluid, kg. Does not throw.
 inline double fluid_mass(const flow::Parameters& p) {

@@ -73,8 +73,6 @@ std::optional<Vector> stream_from(const FlowScene& scene, double from) {
 /// Least ratio of a run to the start of a wake that leaves time for a mean behind it.
 constexpr double rest_of_start = 1.2;
 
-double length_of(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
-
 /// A body at rest in a stream that becomes steady.
 struct BodyInStream {
   std::size_t index;

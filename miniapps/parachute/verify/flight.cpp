@@ -26,8 +26,6 @@ constexpr double largest_pressure_ratio = 1.3;
 /// Part of the area in flight that a canopy has at the start if it opens at all.
 constexpr double closed_area = 0.9;
 
-double length_of(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
-
 /// Direction in which the air passes a canopy in steady flight: upwards if its payload falls, else that of
 /// the stream; zero without either.
 Vector direction_of(const FlowScene& scene, std::size_t i) {
