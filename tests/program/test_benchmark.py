@@ -9,6 +9,9 @@ import sys
 
 import perf_program
 
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/scripts")
+from plot.evidence import perf_record  # noqa: E402
+
 # Stands for a program of the suite: plan.json beside it has the exit code, and what differs in its result. A number of prices by
 # their errors makes prices of the known puts.
 PROGRAM = """#!{python}
@@ -143,6 +146,7 @@ class Planned(perf_program.PerfTest):
                 self.assertEqual(("failed", "passed"), (gas["check"], puts["check"]))
                 self.assertEqual(([], None, None), (gas["samples"], gas["median"], gas["facts"]["figure_of_merit"]))
                 self.assertEqual(50.0, puts["facts"]["figure_of_merit"])
+                self.assertEqual(["failed", "passed"], [perf_record.parse(json.dumps(record), "rows").check for record in (gas, puts)])
 
     def test_answer_that_is_missing_fails(self):
         self.assertEqual(["failed"], self.verdicts(5, {"drogue-gas": {"check": ["l2_density", 7e-5]}}, "--filter", "sod"))
