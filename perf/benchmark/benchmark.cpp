@@ -156,11 +156,14 @@ std::vector<std::string> command_of(const Request& request, const Row& row) {
   return words;
 }
 
+/// A row in the sentence of a failure.
+std::string described(const Row& row) {
+  return row.problem.name + " on " + std::to_string(row.ranks) + (row.ranks == 1 ? " rank" : " ranks");
+}
+
 /// Failure of a run, with a way out where mpirun counts fewer slots than ranks.
 Failure failure_of(const Request& request, const Row& row, int status, const std::filesystem::path& log) {
-  const std::string units =
-      row.problem.name + " on " + std::to_string(row.ranks) + (row.ranks == 1 ? " rank" : " ranks");
-  Failure failure = failed_run(units, status, log);
+  Failure failure = failed_run(described(row), status, log);
   const std::string sentence = failure.what();
   if (row.ranks == 1 || !request.launcher.empty() || sentence.find(" slots ") == std::string::npos)
     return failure;
@@ -186,9 +189,8 @@ void run_once(const Request& request, const Row& row, const std::vector<std::str
   if (answers.result.is_discarded() || answers.result.value("ranks", 0) < 1)
     throw failure_of(request, row, status, log);
   if (answers.result["ranks"] != row.ranks)
-    throw Failure(ExitCode::usage, problem.name + " on " + std::to_string(row.ranks) +
-                                       " ranks: the launcher started " + answers.result["ranks"].dump() +
-                                       " of them");
+    throw Failure(ExitCode::usage,
+                  described(row) + ": the launcher started " + answers.result["ranks"].dump() + " of them");
   answers.found =
       std::max(answers.found,
                problem.puts > 0 ? error_of_prices(prices) : error_of_check(answers.result, problem.quantity));
