@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <thread>
+
+#include <unistd.h>
 
 #include "common/program/failure.hpp"
 #include "common/program/signals.hpp"
@@ -85,10 +89,39 @@ double error_of_check(const nlohmann::json& result, const std::string& name) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// Variables of OpenMP, which the programs inherit.
+std::map<std::string, std::string> openmp_variables() {
+  std::map<std::string, std::string> found;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string text = *variable;
+    const std::size_t end = text.find('=');
+    if (text.starts_with("OMP_") && end != std::string::npos)
+      found[text.substr(0, end)] = text.substr(end + 1);
+  }
+  return found;
+}
+
+/// Threads of a rank that the user gives; 0 if they are not given.
+int given_threads(const Request& request) {
+  const char* variable = std::getenv("OMP_NUM_THREADS");
+  return request.threads > 0 || variable == nullptr ? request.threads : std::max(0, std::atoi(variable));
+}
+
+/// Ranks that share the processors. All rows of weak scaling have the threads of the largest, since their
+/// ranks are compared.
+int sharing_ranks(const Request& request, int ranks) { return request.weak ? request.ranks : ranks; }
+
+/// Whether only a launcher of the user knows how many ranks share the processors of a node.
+bool on_unknown_nodes(const Request& request, int ranks) {
+  return request.backend == device::Backend::openmp && !request.launcher.empty() &&
+         sharing_ranks(request, ranks) > 1 && given_threads(request) == 0;
+}
+
 int threads_of(const Request& request, int ranks) {
   if (request.threads > 0) return request.threads;
-  if (request.backend != device::Backend::openmp) return 1;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks);
+  if (request.backend != device::Backend::openmp || on_unknown_nodes(request, ranks)) return 1;
+  if (const int given = given_threads(request); given > 0) return given;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / sharing_ranks(request, ranks));
 }
 
 /// Words that start the ranks of a row.
@@ -103,38 +136,61 @@ std::vector<std::string> launcher_of(const Request& request, int ranks, int thre
   return words;
 }
 
-std::vector<std::string> command_of(const Request& request, const Problem& problem, int ranks) {
-  std::vector<std::string> arguments = problem.arguments;
+std::vector<std::string> command_of(const Request& request, const Row& row) {
+  std::vector<std::string> arguments = row.problem.arguments;
   arguments.insert(arguments.end(),
                    {"--quiet", "--backend", std::string(device::name(request.backend)), "--out"});
-  if (problem.puts > 0)
-    arguments.insert(arguments.end(), {problem.name + ".csv", "--result", problem.name + ".json"});
+  if (row.problem.puts > 0)
+    arguments.insert(arguments.end(), {row.name + ".csv", "--result", row.name + ".json"});
   else
-    arguments.insert(arguments.end(), {problem.name, "--overwrite"});
-  const int threads = threads_of(request, ranks);
-  return program_words(launcher_of(request, ranks, threads), threads, problem.program, arguments);
+    arguments.insert(arguments.end(), {row.name, "--overwrite"});
+  const int threads = threads_of(request, row.ranks);
+  std::vector<std::string> words =
+      program_words(launcher_of(request, row.ranks, threads), threads, row.problem.program, arguments);
+  // Who repeats the command has the same binding of threads.
+  std::map<std::string, std::string> variables = openmp_variables();
+  variables.erase("OMP_NUM_THREADS");
+  std::vector<std::string> settings;
+  for (const auto& [name, value] : variables) settings.push_back(name + "=" + value);
+  words.insert(words.begin() + 2, settings.begin(), settings.end());
+  return words;
+}
+
+/// A row in the sentence of a failure.
+std::string described(const Row& row) {
+  return row.problem.name + " on " + std::to_string(row.ranks) + (row.ranks == 1 ? " rank" : " ranks");
+}
+
+/// Failure of a run, with a way out where mpirun counts fewer slots than ranks.
+Failure failure_of(const Request& request, const Row& row, int status, const std::filesystem::path& log) {
+  Failure failure = failed_run(described(row), status, log);
+  const std::string sentence = failure.what();
+  if (row.ranks == 1 || !request.launcher.empty() || sentence.find(" slots ") == std::string::npos)
+    return failure;
+  return {failure.code(),
+          sentence + " For more ranks than cores give --launcher \"mpirun --oversubscribe -n {ranks}\""};
 }
 
 /// One run. Throws Failure as the program does.
-void run_once(const Request& request, const Problem& problem, int ranks,
-              const std::vector<std::string>& command, Answers& answers) {
-  const std::filesystem::path out = request.folder / problem.name, prices = out.string() + ".csv",
+void run_once(const Request& request, const Row& row, const std::vector<std::string>& command,
+              Answers& answers) {
+  const Problem& problem = row.problem;
+  const std::filesystem::path out = request.folder / row.name, prices = out.string() + ".csv",
                               log = out.string() + ".log",
                               result = out.string() + (problem.puts > 0 ? ".json" : "/result.json");
   for (const std::filesystem::path& old : {out, prices, log, result}) std::filesystem::remove_all(old);
   const int status = run_child(command, request.folder, log, true);
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
-  const std::string units = problem.name + " on " + std::to_string(ranks) + (ranks == 1 ? " rank" : " ranks");
   const bool wrong = status == static_cast<int>(ExitCode::verification_failed) ||
                      status == static_cast<int>(ExitCode::numerical_failure);
-  if (status != 0 && !wrong) throw failed_run(units, status, log);
+  if (status != 0 && !wrong) throw failure_of(request, row, status, log);
   std::ifstream file(result);
   answers.result = nlohmann::json::parse(file, nullptr, false);
   if (answers.result.is_discarded() || answers.result.value("ranks", 0) < 1)
-    throw failed_run(units, status, log);
-  if (answers.result["ranks"] != ranks)
+    throw failure_of(request, row, status, log);
+  if (answers.result["ranks"] != row.ranks)
     throw Failure(ExitCode::usage,
-                  units + ": the launcher started " + answers.result["ranks"].dump() + " of them");
+                  described(row) + ": the launcher started " + answers.result["ranks"].dump() + " of them");
   answers.found =
       std::max(answers.found,
                problem.puts > 0 ? error_of_prices(prices) : error_of_check(answers.result, problem.quantity));
@@ -147,13 +203,12 @@ void run_once(const Request& request, const Problem& problem, int ranks,
   answers.bytes = std::max(answers.bytes, answers.result["peak_bytes"][place].get<std::int64_t>());
 }
 
-Answers run_problem(const Request& request, const Problem& problem, int ranks,
-                    const std::vector<std::string>& command) {
-  if (problem.puts > 0) write_batch(request.folder / problem.arguments[1], problem.puts);
+Answers run_row(const Request& request, const Row& row, const std::vector<std::string>& command) {
+  if (row.problem.puts > 0) write_batch(request.folder / row.problem.arguments[1], row.problem.puts);
   Answers answers;
   answers.cores = device::host_cores();
   const Stopwatch watch;
-  do run_once(request, problem, ranks, command, answers);
+  do run_once(request, row, command, answers);
   while (answers.passed && answers.seconds.size() < most_runs &&
          watch.seconds() * (1.0 + 1.0 / static_cast<double>(answers.seconds.size())) < repeated_seconds);
   return answers;
@@ -168,45 +223,68 @@ std::string shown(std::vector<std::string> command, const std::string& program) 
 }
 
 /// Columns of the table.
-constexpr const char* columns = "%-17s %-13s %-24s %-8s %15s %11s %10s  %-22s %-26s %s\n";
+constexpr const char* columns = "%-17s %-13s %-24s %-8s %15s %11s %10s  %-22s %-34s %s\n";
 
-void print_row(const Request& request, const Problem& problem, int ranks, const Record& record,
-               const Answers& answers) {
+/// Median of the figures of merit, and in weak scaling its share of that of one rank times the ranks; neither
+/// belongs to a wrong answer.
+struct Figures {
+  std::optional<double> merit, efficiency;
+};
+
+std::string figures_text(const Problem& problem, const Figures& figures) {
+  if (!figures.merit) return "-";
   const Merit merit = merits.at(problem.merit);
-  const std::string rate = record.passed() && !answers.merits.empty()
-                               ? printed("%.4g %s", merit.scale * run::median(answers.merits), merit.unit)
-                               : "-";
+  const std::string text = printed("%.4g %s", merit.scale * *figures.merit, merit.unit);
+  return figures.efficiency ? text + printed(", %.1f %%", 100.0 * *figures.efficiency) : text;
+}
+
+void print_row(const Request& request, const Row& row, const Record& record, const Answers& answers,
+               const Figures& figures) {
+  const Problem& problem = row.problem;
+  const int threads = threads_of(request, row.ranks);
   const std::string answer = printed("%s %.3g, expected %.3g to %.3g: %s", problem.quantity.c_str(),
                                      answers.found, problem.low, problem.high, verdict(record));
   std::printf(
       columns, problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
-      std::string(device::name(request.backend)).c_str(),
-      printed("%d x %d", ranks, threads_of(request, ranks)).c_str(),
+      std::string(device::name(request.backend)).c_str(), printed("%d x %d", row.ranks, threads).c_str(),
       printed("%.0f", 1e-6 * static_cast<double>(answers.bytes)).c_str(), median_text(record, 1.0, 3).c_str(),
       record.passed() && record.samples.size() == 1 ? "one run" : interval_text(record, 1.0, 3).c_str(),
-      rate.c_str(), answer.c_str());
+      figures_text(problem, figures).c_str(), answer.c_str());
   const int others = answers.cores.running - 1, online = answers.cores.online;
-  if (others > 0 && others + ranks * threads_of(request, ranks) > online)
+  if (others > 0 && others + row.ranks * threads > online)
     std::printf("  too slow: threads of other programs ran when it began, %d on %d cores\n", others, online);
   if (const std::string reason = answers.result.value("message", ""); !reason.empty())
     std::printf("  %s\n", reason.c_str());
   std::fflush(stdout);
 }
 
-/// Runs a problem, prints its row and adds its record. Returns its command.
-std::string add_row(const Request& request, const Problem& problem, int ranks, Table& table) {
-  const std::vector<std::string> command = command_of(request, problem, ranks);
+nlohmann::json or_null(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+/// Runs a row, prints its line and adds its record. `of_one` is the figure of merit of the row of one rank in
+/// weak scaling. Returns its command.
+std::string add_row(const Request& request, const Row& row, std::optional<double>& of_one, Table& table) {
+  const Problem& problem = row.problem;
+  const std::vector<std::string> command = command_of(request, row);
   const std::string text = shown(command, problem.program);
-  const Answers answers = run_problem(request, problem, ranks, command);
+  const Answers answers = run_row(request, row, command);
   const std::string backend(device::name(request.backend)),
       size = size_names[static_cast<std::size_t>(request.size)];
-  const Record record{.name = "benchmark/" + problem.name + "/" + backend + "/" + size + "/ranks/" +
-                              std::to_string(ranks) + (request.weak ? "/weak" : ""),
-                      .unit_of_work = "run",
-                      .bound = "time of the steps",
-                      .samples = answers.seconds,
-                      .error = answers.found,
-                      .tolerance = answers.passed && answers.found >= problem.low ? problem.high : -1.0};
+  Record record{.name = "benchmark/" + problem.name + "/" + backend + "/" + size + "/ranks/" +
+                        std::to_string(row.ranks) + (request.weak ? "/weak" : ""),
+                .unit_of_work = "run",
+                .bound = "time of the steps",
+                .samples = answers.seconds,
+                .error = answers.found,
+                .tolerance = answers.passed && answers.found >= problem.low ? problem.high : -1.0};
+  Figures figures;
+  if (!record.passed())
+    record.samples.clear();
+  else if (!answers.merits.empty())
+    figures.merit = run::median(answers.merits);
+  if (request.weak && row.ranks == 1) of_one = figures.merit;
+  if (figures.merit && of_one) figures.efficiency = *figures.merit / (*of_one * row.ranks);
   table.add(record, provenance_of(answers.result),
             {{"backend", backend},
              {"cells", problem.items},
@@ -214,7 +292,7 @@ std::string add_row(const Request& request, const Problem& problem, int ranks, T
              {"problem", problem.name},
              {"size", size},
              {"extent", problem.extent},
-             {"ranks", ranks},
+             {"ranks", row.ranks},
              {"threads", answers.result["threads"]},
              {"device", answers.result["device"]},
              {"memory_bytes", answers.bytes},
@@ -222,27 +300,44 @@ std::string add_row(const Request& request, const Problem& problem, int ranks, T
              {"quantity", problem.quantity},
              {"expected", {problem.low, problem.high}},
              {"merit", problem.merit},
-             {"figure_of_merit",
-              answers.merits.empty() ? nlohmann::json() : nlohmann::json(run::median(answers.merits))},
+             {"figure_of_merit", or_null(figures.merit)},
+             {"efficiency", or_null(figures.efficiency)},
+             {"environment", openmp_variables()},
              {"command", text}});
-  print_row(request, problem, ranks, record, answers);
+  print_row(request, row, record, answers, figures);
   return text;
 }
 
 }  // namespace
 
-void run(const Request& request, Table& table) {
-  std::string commands;
-  std::printf(columns, "program", "problem", "size", "backend", "ranks x threads", "memory, MB", "time, s",
-              "95 % of the median", "figure of merit", "error of the answer");
-  const auto add = [&](const Problem& problem, int ranks) {
-    if (request.wants(problem.name)) commands += "  " + add_row(request, problem, ranks, table) + "\n";
-  };
+std::vector<Row> rows(const Request& request) {
+  std::vector<Row> found;
   if (request.weak)
-    for (const int ranks : unit_counts(request.ranks)) add(flow_problem(request.size, ranks), ranks);
+    for (const int ranks : unit_counts(request.ranks)) {
+      const Problem problem = flow_problem(request.size, ranks);
+      found.push_back({problem, ranks, problem.name + "-ranks-" + std::to_string(ranks)});
+    }
   else
-    for (const Problem& problem : problems(request.size)) add(problem, problem.parallel ? request.ranks : 1);
-  if (table.records.empty()) return;
+    for (const Problem& problem : problems(request.size))
+      found.push_back({problem, problem.parallel ? request.ranks : 1, problem.name});
+  return found;
+}
+
+void run(const Request& request, const std::vector<Row>& rows, Table& table) {
+  for (const Row& row : rows)
+    if (const std::string& program = row.problem.program; !std::filesystem::exists(program_file(program)))
+      throw Failure(ExitCode::io_error,
+                    "needs " + program + ": build target " + program + " beside drogue-perf");
+  std::printf(columns, "program", "problem", "size", "backend", "ranks x threads",
+              device::needs_device(request.backend) ? "arrays, MB" : "process, MB", "time, s",
+              "95 % of the median", request.weak ? "figure of merit, efficiency" : "figure of merit",
+              "error of the answer");
+  if (std::ranges::any_of(rows, [&](const Row& row) { return on_unknown_nodes(request, row.ranks); }))
+    std::printf("  one thread per rank with --launcher: --threads or OMP_NUM_THREADS gives other numbers\n");
+  std::fflush(stdout);
+  std::string commands;
+  std::optional<double> of_one;
+  for (const Row& row : rows) commands += "  " + add_row(request, row, of_one, table) + "\n";
   const nlohmann::json& from = table.records.back()["provenance"];
   std::printf(
       "drogue %s, commit %s; Kokkos %s; %s; %s; %s\ncommands, in a folder with the batch of options:\n%s",

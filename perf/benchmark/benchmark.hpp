@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,18 +14,27 @@ namespace drogue::perf::benchmark {
 struct Request {
   Size size = Size::small;
   device::Backend backend{};
-  bool weak = false;                  ///< the flow alone, on 1, 2, 4, ... ranks with equal cells on each
-  int ranks = 1;                      ///< of flow
-  int threads = 0;                    ///< of a rank; 0: with OpenMP its share of the processors, else 1
+  bool weak = false;  ///< the flow alone, on 1, 2, 4, ... ranks with equal cells on each
+  int ranks = 1;      ///< of flow
+  int threads = 0;    ///< of a rank; 0: those of OMP_NUM_THREADS, or a share of the processors
   std::vector<std::string> launcher;  ///< words that start `{ranks}` ranks; empty: those of mpirun
   std::filesystem::path folder;       ///< in which the programs run
-  std::function<bool(const std::string&)> wants;  ///< whether a problem is run, by its name
 };
 
-/// Runs the problems by the programs, which stand beside this one, checks their answers, prints a row for
-/// each and then the commands, and adds the records to `table`. Call it without an initialised runtime.
-/// Throws Failure as a program does, but for one that computed a wrong result: its row failed. Throws
-/// Failure(interrupted) after a signal.
-void run(const Request& request, Table& table);
+/// A problem on some ranks.
+struct Row {
+  Problem problem;
+  int ranks;
+  std::string name;  ///< of its files in the folder, which no other row has
+};
+
+/// All rows of a request, in the order of the table. Throws only std::bad_alloc.
+[[nodiscard]] std::vector<Row> rows(const Request& request);
+
+/// Runs the rows by the programs, which stand beside this one, checks their answers, prints a line for each
+/// and then the commands, and adds the records to `table`. Call it without an initialised runtime. Throws
+/// Failure(io_error) before all runs if a program is missing, then as a program does, but for one that
+/// computed a wrong result: its row failed. Throws Failure(interrupted) after a signal.
+void run(const Request& request, const std::vector<Row>& rows, Table& table);
 
 }  // namespace drogue::perf::benchmark

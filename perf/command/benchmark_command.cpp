@@ -50,26 +50,40 @@ void make_new_folder(const std::filesystem::path& folder) {
                   "the folder '" + folder.string() + "' of --keep holds files; name a new one");
 }
 
+/// Rows of a request that the filter takes. Throws Failure(usage) if there are none, or none of the ranks.
+std::vector<benchmark::Row> rows_of(const BenchmarkOptions& options, const benchmark::Request& request) {
+  const std::regex filter = filter_of(options.filter);
+  std::vector<benchmark::Row> rows = benchmark::rows(request);
+  std::string known;
+  for (const benchmark::Row& row : rows)
+    if (known.find(row.problem.name) == std::string::npos)
+      known += (known.empty() ? "" : ", ") + row.problem.name;
+  std::erase_if(rows,
+                [&](const benchmark::Row& row) { return !std::regex_search(row.problem.name, filter); });
+  if (rows.empty())
+    throw Failure(ExitCode::usage, "no problem matches '" + options.filter + "'; there are " + known);
+  if (options.ranks > 1 &&
+      std::ranges::none_of(rows, &benchmark::Problem::parallel, &benchmark::Row::problem))
+    throw Failure(ExitCode::usage,
+                  "--ranks are those of taylor-green, and --filter '" + options.filter + "' leaves it out");
+  return rows;
+}
+
 ExitCode run_benchmark(const BenchmarkOptions& options) {
   const auto size = std::ranges::find(benchmark::size_names, options.size) - benchmark::size_names.begin();
   const device::Backend backend = device::wanted_backend(options.backend);
   require(backend);
   if (options.threads > 0 && backend == device::Backend::serial)
     throw Failure(ExitCode::usage, "the backend serial has one thread; give --backend openmp");
-  const std::regex filter = filter_of(options.filter);
-  std::string known;
   benchmark::Request request{.size = static_cast<benchmark::Size>(size),
                              .backend = backend,
                              .weak = options.weak,
                              .ranks = options.ranks,
                              .threads = options.threads,
-                             .launcher = launcher_of(options),
-                             .folder = options.keep,
-                             .wants = [&](const std::string& problem) {
-                               if (known.find(problem) == std::string::npos)
-                                 known += (known.empty() ? "" : ", ") + problem;
-                               return std::regex_search(problem, filter);
-                             }};
+                             .launcher = {},
+                             .folder = options.keep};
+  const std::vector<benchmark::Row> rows = rows_of(options, request);
+  request.launcher = launcher_of(options);
   run::require_writable(options.out);
   std::optional<run::TemporaryFolder> temporary;
   if (options.keep.empty())
@@ -79,13 +93,11 @@ ExitCode run_benchmark(const BenchmarkOptions& options) {
   install_signal_handlers();
   Table table;
   try {
-    benchmark::run(request, table);
+    benchmark::run(request, rows, table);
   } catch (const Failure&) {
     if (!table.records.empty()) write_records(options.out, table.records);
     throw;
   }
-  if (table.records.empty())
-    throw Failure(ExitCode::usage, "no problem matches '" + options.filter + "'; there are " + known);
   write_records(options.out, table.records);
   return code_of(table.passed);
 }
@@ -109,8 +121,10 @@ Command benchmark_command(CLI::App& program) {
       ->capture_default_str();
   app->add_flag("--weak", options->weak,
                 "The flow alone on 1, 2, 4, ... and --ranks ranks, with equal cells on each");
-  app->add_option("--threads", options->threads,
-                  "Threads of a rank; default, of OpenMP: all processors over its ranks")
+  app->add_option(
+         "--threads", options->threads,
+         "Threads of a rank; default, of OpenMP: OMP_NUM_THREADS, else one with --launcher, else all "
+         "processors over the ranks, with --weak over --ranks")
       ->check(CLI::Range(1, 4096));
   app->add_option("--launcher", options->launcher,
                   "Words that start the ranks, as 'srun -n {ranks}'; default: mpirun -n {ranks}");

@@ -139,13 +139,16 @@ std::vector<std::string> launcher_words(int ranks, int threads) {
   return words;
 }
 
+std::filesystem::path program_file(const std::string& program) {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / program;
+}
+
 std::vector<std::string> program_words(const std::vector<std::string>& launcher, int threads,
                                        const std::string& program,
                                        const std::vector<std::string>& arguments) {
   std::vector<std::string> words = {"env", "OMP_NUM_THREADS=" + std::to_string(threads)};
   words.insert(words.end(), launcher.begin(), launcher.end());
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  words.push_back((folder / program).string());
+  words.push_back(program_file(program).string());
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;
 }

@@ -27,6 +27,10 @@ void require_launcher();
 /// Words that start what follows on some ranks: `mpirun -n RANKS`. Throws only std::bad_alloc.
 std::vector<std::string> launcher_words(int ranks, int threads);
 
+/// File of a program of this suite, which stands beside this one. Throws std::filesystem::filesystem_error
+/// without /proc.
+std::filesystem::path program_file(const std::string& program);
+
 /// Words that start a program of this suite, which stands beside this one, with some threads of OpenMP, by
 /// the words of a launcher, if there are any. Throws std::filesystem::filesystem_error without /proc.
 std::vector<std::string> program_words(const std::vector<std::string>& launcher, int threads,

@@ -11,15 +11,16 @@ _UNITS = {"cell_steps_per_s": (1e-6, "M cell-steps/s"), "vertex_steps_per_s": (1
 
 
 def merit(facts):
-    """Figure of merit with its unit."""
+    """Figure of merit with its unit, and the efficiency of weak scaling."""
     scale, unit = _UNITS[facts["merit"]]
-    return f"{number(scale * facts['figure_of_merit'])} {unit}"
+    share = facts.get("efficiency")
+    return f"{number(scale * facts['figure_of_merit'])} {unit}" + (f", {number(100 * share)} %" if share else "")
 
 
 def row(record):
     """Line of a problem."""
     facts = record.facts
-    return [f"`{facts['problem']}`", facts["extent"], f"{facts['ranks']} x {facts['threads']}", number(1e-9 * facts["memory_bytes"]),
+    return [f"`{facts['problem']}`", facts["extent"], f"{facts['ranks']} x {facts['threads']}", number(1e-6 * facts["memory_bytes"]),
             number(statistics.median(record.samples)), merit(facts),
             f"{number(record.error)} ({' .. '.join(map(number, facts['expected']))})"]
 
@@ -40,7 +41,8 @@ def section(file):
     if (most := max(record.facts["ranks"] for record in records)) > 1:
         options += f"{' --weak' if records[0].case.endswith('/weak') else ''} --ranks {most}"
     origin = f"{place(records)}, {records[0].run_id[0][:10]}, commit {here['git']} ([record](evidence/{file.name})): `drogue-perf benchmark {options}`."
-    heading = ["problem", "size", "ranks x threads", "memory, GB", "time, s", "figure of merit", "error (expected)"]
+    memory = "process, MB" if facts["backend"] in ("serial", "openmp") else "arrays, MB"
+    heading = ["problem", "size", "ranks x threads", memory, "time, s", "figure of merit", "error (expected)"]
     return ["", origin, "", *table(heading, map(row, records), (0, 1, 5, 6))]
 
 

@@ -143,12 +143,14 @@ class Benchmark(unittest.TestCase):
 
     def test_table_and_summary_show_figures_with_errors(self):
         self.write("here", "puts/openmp/small/ranks/1")
-        self.write("weak", "taylor-green/cuda/large/ranks/4/weak", ranks=4, merit="cell_steps_per_s", figure_of_merit=3e9)
+        self.write("weak", "taylor-green/cuda/large/ranks/4/weak", backend="cuda", ranks=4, merit="cell_steps_per_s", figure_of_merit=3e9, efficiency=0.93)
         text = benchmark.renewed(self.PAGE, self.evidence)
-        self.assertIn("| `puts` | 4096 options | 1 x 2 | 0.023 | 2 | 2048 options/s | 1.9e-6 (1e-6 .. 2e-6) |", text)
+        self.assertIn("| `puts` | 4096 options | 1 x 2 | 23 | 2 | 2048 options/s | 1.9e-6 (1e-6 .. 2e-6) |", text)
         self.assertIn("`drogue-perf benchmark --size small --backend openmp`", text)
         self.assertIn("--weak --ranks 4`", text)
-        self.assertIn("3000 M cell-steps/s", text)
+        self.assertIn("| 3000 M cell-steps/s, 93 % |", text)
+        self.assertIn("| process, MB |", text)
+        self.assertIn("| arrays, MB |", text)
         self.assertTrue(text.startswith("A\n") and text.endswith("B\n") and "old" not in text)
         summary, = benchmark.summary(self.evidence)
         self.assertIn("2 threads of an core, size small ([record](docs/evidence/benchmark-here.jsonl)): 2048 options/s (`puts`).", summary)

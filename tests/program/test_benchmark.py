@@ -9,11 +9,14 @@ import sys
 
 import perf_program
 
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/scripts")
+from plot.evidence import perf_record  # noqa: E402
+
 # Stands for a program of the suite: plan.json beside it has the exit code, and what differs in its result. A number of prices by
 # their errors makes prices of the known puts.
 PROGRAM = """#!{python}
 import json, os, pathlib, sys, time
-words, here = sys.argv[1:], pathlib.Path(sys.argv[0])
+words, here, ranks = sys.argv[1:], pathlib.Path(sys.argv[0]), int(os.environ.get("RANKS", "1"))
 plan = json.loads((here.parent / "plan.json").read_text()).get(here.name, {{}})
 with (here.parent / "calls.jsonl").open("a") as calls:
     calls.write(json.dumps([here.name, *words]) + "\\n")
@@ -32,15 +35,17 @@ else:
     result = out / "result.json"
 check = plan.get("check", ["none", 0.0])
 result.write_text(json.dumps({{
-    "ranks": plan.get("ranks", int(os.environ.get("RANKS", "1"))), "threads": int(os.environ["OMP_NUM_THREADS"]), "device": "a device",
+    "ranks": plan.get("ranks", ranks), "threads": int(os.environ["OMP_NUM_THREADS"]), "device": "a device",
     "provenance": {{}}, "timing": {{"compute_s": plan.get("seconds", 10.0)}}, "peak_bytes": {{"host": 2000000, "device": 0}},
     "checks": [{{"name": check[0], "value": check[1], "tolerance": 1.0, "passed": True}}],
-    "figure_of_merit": {{"cell_steps_per_s": 3e6, "vertex_steps_per_s": 4e6, "options_per_s": 50.0, "simulated_s_per_s": 0.25}}}}))
+    "figure_of_merit": {{"cell_steps_per_s": plan.get("share", 1.0) ** (ranks - 1) * 3e6 * ranks,
+                        "vertex_steps_per_s": 4e6, "options_per_s": 50.0, "simulated_s_per_s": 0.25}}}}))
 sys.exit(plan.get("code", 0))
 """
 LAUNCHER = """#!{python}
 import os, sys
-os.execve(sys.argv[3], sys.argv[3:], {{**os.environ, "RANKS": sys.argv[2]}})
+words = sys.argv[3:] if sys.argv[3] != "--bind-to" else sys.argv[5:]
+os.execve(words[0], words, {{**os.environ, "RANKS": sys.argv[2]}})
 """
 
 
@@ -82,6 +87,7 @@ class Benchmark(perf_program.PerfTest):
             (2, ["--weak", "--filter", "sod"], "no problem matches 'sod'; there are taylor-green"),
             (2, ["--filter", "("], "is not a valid regular expression"),
             (2, ["--ranks", "0"], "--ranks"),
+            (2, ["--ranks", "2", "--filter", "sod|puts"], "--ranks are those of taylor-green, and --filter 'sod|puts' leaves it out"),
             (2, ["--launcher", "srun"], "--launcher starts several ranks: give their number by --ranks"),
             (2, ["--weak", "--ranks", "4", "--launcher", "srun -n 4"], "--weak runs on 1, 2, 4, ... ranks: write {ranks} for their number in --launcher"),
             (2, ["--backend", "serial", "--threads", "2"], "the backend serial has one thread"),
@@ -89,7 +95,9 @@ class Benchmark(perf_program.PerfTest):
             (6, ["--out", "none/rows.jsonl"], "none/rows.jsonl"),
         ):
             with self.subTest(words):
-                self.assertIn(sentence, self.expect(code, "benchmark", *words).stderr)
+                process = self.expect(code, "benchmark", *words)
+                self.assertIn(sentence, process.stderr)
+                self.assertEqual("", process.stdout)
         process = self.expect(77, "benchmark", "--ranks", "2", environment={"PATH": str(self.folder)})
         self.assertIn("need mpirun, and no folder of PATH holds it", process.stderr)
 
@@ -111,11 +119,13 @@ class Planned(perf_program.PerfTest):
         file.write_text(text.format(python=sys.executable))
         file.chmod(0o755)
 
-    def benchmark(self, code, plan, *words):
-        """Standard output and error, and records, with a plan; asserts the exit code."""
+    def benchmark(self, code, plan, *words, backend="serial", **environment):
+        """Standard output and error, and records, with a plan; asserts the exit code. OMP_* are those of `environment` alone."""
         (self.bin / "plan.json").write_text(json.dumps(plan))
-        done = subprocess.run([self.bin / "drogue-perf", "benchmark", "--backend", "serial", "--out", "rows.jsonl", *words], cwd=self.folder,
-                              capture_output=True, text=True, check=False, env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        inherited = {name: value for name, value in os.environ.items() if not name.startswith("OMP_")}
+        done = subprocess.run([self.bin / "drogue-perf", "benchmark", "--backend", backend, "--out", "rows.jsonl", *words], cwd=self.folder,
+                              capture_output=True, text=True, check=False,
+                              env={**inherited, "PATH": f"{self.folder}:{os.environ['PATH']}", **environment})
         self.assertEqual(code, done.returncode, f"{done.stdout}{done.stderr}")
         rows = self.folder / "rows.jsonl"
         return done.stdout, done.stderr, self.records("rows.jsonl") if rows.exists() else []
@@ -134,6 +144,9 @@ class Planned(perf_program.PerfTest):
                 self.assertRegex(row, rf" FAILED +- +l1_density {error:g}, expected \S+ to \S+: FAILED$")
                 self.assertNotIn("cell-steps/s", row)
                 self.assertEqual(("failed", "passed"), (gas["check"], puts["check"]))
+                self.assertEqual(([], None, None), (gas["samples"], gas["median"], gas["facts"]["figure_of_merit"]))
+                self.assertEqual(50.0, puts["facts"]["figure_of_merit"])
+                self.assertEqual(["failed", "passed"], [perf_record.parse(json.dumps(record), "rows").check for record in (gas, puts)])
 
     def test_answer_that_is_missing_fails(self):
         self.assertEqual(["failed"], self.verdicts(5, {"drogue-gas": {"check": ["l2_density", 7e-5]}}, "--filter", "sod"))
@@ -142,7 +155,7 @@ class Planned(perf_program.PerfTest):
         for code, seconds in ((4, 0.0), (5, 10.0)):
             plan = {"drogue-parachute": {"code": code, "seconds": seconds, "check": ["canopy_0_drag_coefficient_mean", 0.01]}}
             record, = self.benchmark(5, plan, "--filter", "c9-flat")[2]
-            self.assertEqual(("failed", [seconds] if seconds else []), (record["check"], record["samples"]))
+            self.assertEqual(("failed", []), (record["check"], record["samples"]))
 
     def test_prices_are_compared_with_known_ones_and_with_their_stated_errors(self):
         for code, plan in ((0, {}), (5, {"errors": [0, 0, 0, 0, 3e-6], "stated": 1.0}), (5, {"errors": [0, 2.1e-6, 0, 0, 0]})):
@@ -175,7 +188,9 @@ class Planned(perf_program.PerfTest):
 
     def test_program_that_is_missing_is_named(self):
         (self.bin / "drogue-springs").unlink()
-        self.assertIn("bin/drogue-springs", self.benchmark(6, {}, "--filter", "drum")[1])
+        text, sentence, records = self.benchmark(6, {}, "--filter", "sod|drum")
+        self.assertIn("needs drogue-springs: build target drogue-springs beside drogue-perf", sentence)
+        self.assertEqual(("", []), (text, records))
 
     def test_weak_scaling_gives_each_rank_a_cube(self):
         plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3]}}
@@ -195,6 +210,45 @@ class Planned(perf_program.PerfTest):
         for words in ((), ("--launcher", "mpirun -n {ranks}")):
             records = self.benchmark(0, plan, "--weak", "--ranks", "4", *words)[2]
             self.assertEqual([1, 2, 4], [record["facts"]["ranks"] for record in records])
+
+    def test_weak_scaling_has_equal_threads_and_an_efficiency_in_all_rows(self):
+        plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3], "share": 0.9}}
+        most = 2 * os.cpu_count()
+        for words, environment, threads in (((), {}, 1), (("--threads", "3"), {"OMP_NUM_THREADS": "2"}, 3), ((), {"OMP_NUM_THREADS": "2"}, 2)):
+            text, _, records = self.benchmark(0, plan, "--weak", "--ranks", str(most), *words, backend="openmp", **environment)
+            self.assertEqual({threads}, {record["facts"]["threads"] for record in records})
+            for record, row in zip(records, [line for line in text.splitlines() if line.startswith("drogue-")], strict=True):
+                facts = record["facts"]
+                self.assertAlmostEqual(0.9 ** (facts["ranks"] - 1), facts["efficiency"])
+                self.assertIn(f" {facts['ranks']} x {threads} ", row)
+                self.assertIn(f" M cell-steps/s, {100 * facts['efficiency']:.1f} % ", row)
+
+    def test_weak_scaling_keeps_the_files_of_each_row(self):
+        plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3]}}
+        _, _, records = self.benchmark(0, plan, "--weak", "--ranks", "2", "--keep", "kept")
+        for ranks, record in enumerate(records, 1):
+            self.assertIn(f" --out taylor-green-ranks-{ranks} ", record["facts"]["command"])
+            self.assertEqual(ranks, json.loads((self.folder / f"kept/taylor-green-ranks-{ranks}/result.json").read_text())["ranks"])
+
+    def test_processors_are_shared_by_the_ranks_unless_a_launcher_may_use_other_nodes(self):
+        plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3]}}
+        note, launcher = "one thread per rank with --launcher", ("--launcher", "mpirun -n {ranks}")
+        for words, environment, threads, stated in (((), {}, os.cpu_count(), False), (("--ranks", "2"), {}, max(1, os.cpu_count() // 2), False),
+                                                    (("--ranks", "2", *launcher), {}, 1, True),
+                                                    (("--ranks", "2", *launcher), {"OMP_NUM_THREADS": "3"}, 3, False)):
+            text, _, (record,) = self.benchmark(0, plan, "--filter", "taylor-green", *words, backend="openmp", **environment)
+            self.assertEqual((threads, None, stated), (record["facts"]["threads"], record["facts"]["efficiency"], note in text), words)
+
+    def test_variables_of_openmp_are_in_record_and_command(self):
+        variables = {"OMP_NUM_THREADS": "3", "OMP_PLACES": "{0},{1}", "OMP_PROC_BIND": "spread"}
+        text, _, (record,) = self.benchmark(0, {"drogue-gas": {"check": ["l1_density", 9.1e-5]}}, "--filter", "sod", backend="openmp", **variables)
+        self.assertEqual((variables, 3), (record["facts"]["environment"], record["facts"]["threads"]))
+        self.assertIn("\n  env OMP_NUM_THREADS=3 'OMP_PLACES={0},{1}' OMP_PROC_BIND=spread drogue-gas sod ", text)
+
+    def test_too_few_slots_of_mpirun_have_a_way_out(self):
+        self.put(self.folder / "mpirun", "#!/bin/sh\necho 'There are not enough slots available to satisfy the 4 slots that were requested:' >&2\nexit 1\n")
+        sentence = self.benchmark(2, {}, "--filter", "taylor-green", "--ranks", "4")[1]
+        self.assertIn('were requested. For more ranks than cores give --launcher "mpirun --oversubscribe -n {ranks}"', sentence)
 
     def test_launcher_of_the_user_must_start_the_ranks(self):
         plan = {"drogue-parachute": {"check": ["kinetic_energy_curve_0", 2.06e-3]}}

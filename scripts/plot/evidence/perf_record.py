@@ -50,7 +50,7 @@ _FACTS = {
     "scaling": {"backend": str, "cells": int, "threads": int},
     "benchmark": {
         "backend": str, "cells": int, "problem": str, "size": str, "extent": str, "ranks": int, "threads": int, "memory_bytes": int,
-        "quantity": str, "merit": str, "figure_of_merit": float, "command": str,
+        "quantity": str, "merit": str, "command": str,
     },
     "ladder": {"ladder": str, "rung": str, "backend": str, "cells": int, "predicted_s": float, "predicted_bound": str},
     "machine": {"host": dict},
@@ -74,6 +74,7 @@ STATED = ("machine", "occupancy", "flow-memory")  # computed or read, never time
 # Counted work of a step, for its bounds.
 _COUNTS = {"instructions": float, "launches": int, "driver": str}
 _OPTIONAL = {
+    "benchmark": {"figure_of_merit": float, "efficiency": float, "environment": dict},
     "flow-step": {"bytes": float, "solution_error": float, **_COUNTS},
     "flow-pressure": {"tolerance": float, "iterations": int},
     "flow-memory": {"driver_bytes": int},
