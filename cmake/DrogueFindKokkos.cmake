@@ -94,7 +94,11 @@ drogue_before_search(Kokkos)
 find_package(Kokkos 4.5 CONFIG QUIET)
 drogue_after_search(Kokkos "Kokkos" "every kernel needs Kokkos, of which ${_tried} were tried")
 drogue_before_search(KokkosKernels)
+# Those beside a Kokkos that is named come before those of set-up.
+set(_prefixes "${CMAKE_PREFIX_PATH}")
+list(PREPEND CMAKE_PREFIX_PATH ${Kokkos_NAMED})
 find_package(KokkosKernels 4.5 CONFIG QUIET)
+set(CMAKE_PREFIX_PATH "${_prefixes}")
 drogue_after_search(KokkosKernels "Kokkos Kernels" "batched linear algebra needs Kokkos Kernels \
 ${Kokkos_VERSION_MAJOR}.${Kokkos_VERSION_MINOR}, the release of Kokkos in ${Kokkos_DIR}")
 include("${CMAKE_CURRENT_LIST_DIR}/DrogueCheckKokkos.cmake")
