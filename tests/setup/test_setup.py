@@ -115,3 +115,22 @@ class Setup(FolderTest):
             self.fake(tool, f'exec {real} "$@"')
         (self.fakes / "apt-get").unlink()
         self.assertIn("use --system", self.refused(PATH=self.fakes))
+
+    def test_reasons_to_go_without_packages(self):
+        log = self.deps / "log/apt-update.log"
+        log.parent.mkdir(parents=True)
+        script = f"cd {SOURCE} && . scripts/lib/common.sh && . scripts/lib/packages.sh && why_no_packages"
+
+        def reason():
+            environment = os.environ | {"PATH": f"{self.fakes}:{os.environ['PATH']}", "DROGUE_DEPS": str(self.deps)}
+            return subprocess.run(["bash", "-c", script], env=environment, capture_output=True, text=True, check=True).stdout.strip()
+
+        self.fake("id", "echo 0")
+        self.assertEqual("", reason())
+        log.write_text("Err:1 http://deb.debian.org/debian bookworm InRelease\n  Temporary failure resolving\n", encoding="utf-8")
+        self.assertEqual("no network", reason())
+        log.write_text("Hit:1 http://deb.debian.org/debian bookworm InRelease\nErr:2 http://x.org\n", encoding="utf-8")
+        self.assertEqual("", reason())
+        self.fake("id", "echo 1000")
+        self.fake("sudo", "exit 1")
+        self.assertEqual("no right to install packages", reason())
