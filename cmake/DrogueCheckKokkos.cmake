@@ -53,15 +53,12 @@ if(DROGUE_CUDA)
   endif()
 endif()
 
-# Releases that were tried (docs/building.md#releases-of-kokkos). A patch counts as its release; patch 99, the development after it,
-# does not.
+# A patch counts as its release; patch 99, the development after it, does not.
 option(DROGUE_UNTRIED_KOKKOS "Take releases of Kokkos and Kokkos Kernels that were not tried" OFF)
-set(_tried 4.5 4.6 4.7)
 set(_release "${Kokkos_VERSION_MAJOR}.${Kokkos_VERSION_MINOR}")
 set(_release_of_kernels "${KokkosKernels_VERSION_MAJOR}.${KokkosKernels_VERSION_MINOR}")
 if(NOT DROGUE_UNTRIED_KOKKOS)
-  if(NOT _release IN_LIST _tried OR Kokkos_VERSION_PATCH EQUAL 99)
-    list(JOIN _tried ", " _tried)
+  if(NOT _release IN_LIST DROGUE_TRIED_KOKKOS OR Kokkos_VERSION_PATCH EQUAL 99)
     message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} in ${Kokkos_DIR} was not tried, as ${_tried} were: point Kokkos_ROOT at one of "
                         "these, or try it with -DDROGUE_UNTRIED_KOKKOS=ON.")
   elseif(NOT _release_of_kernels STREQUAL _release)

@@ -1,7 +1,11 @@
 #!/usr/bin/env bash
 # Configures and builds one preset into build/PRESET.
 #
-#   scripts/build.sh [PRESET] [--system] [-DNAME=VALUE ...] [--target NAME ...]      PRESET: host (default), cuda, hip, exact, cuda-exact, asan, debug
+#   scripts/build.sh [PRESET] [--system] [-DNAME=VALUE ...] [--target NAME ...]
+#     PRESET    host (default), cuda, hip, exact, cuda-exact, asan, debug
+#     --system  take Kokkos and all libraries from find_package, not from scripts/setup.sh
+#     -D...     an option of CMake; docs/building.md lists those of Drogue
+#     --target  a program such as drogue-gas instead of everything
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 
 preset=host options=() targets=()
@@ -10,7 +14,8 @@ while [ $# -gt 0 ]; do
     --system) options+=(-DDROGUE_SYSTEM=ON) ;;
     -D*) options+=("$1") ;;
     --target) targets+=(--target "${2:?--target needs a name}") && shift ;;
-    -*) fail "unknown argument $1: see the head of scripts/build.sh." ;;
+    -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" && exit 0 ;;
+    -*) fail "unknown argument $1: see scripts/build.sh --help." ;;
     *) preset="$1" ;;
   esac
   shift

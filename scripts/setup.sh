@@ -4,11 +4,12 @@
 #   scripts/setup.sh [--system] [--no-cuda] [--hip] [--developer] [--bundle]
 #     --system     install nothing: only check that the tools are there; libraries come from find_package
 #     --no-cuda    no CUDA build of Kokkos although nvcc is there
-#     --hip        the compiler of HIP and a HIP build of Kokkos, for AMD GPUs of architecture gfx90a
+#     --hip        the compiler of HIP and a HIP build of Kokkos, for AMD GPUs
 #     --developer  the formatter and the linter too
 #     --bundle     the portable builds of Kokkos that scripts/bundle.sh links as well
 #
 # Environment: DROGUE_DEPS (folder for Kokkos, default build/deps), DROGUE_CUDA_ARCH (80|86|89|90|100|native, default 90),
+# DROGUE_HIP_ARCH (gfx906|gfx908|gfx90a|gfx942, default gfx90a),
 # DROGUE_KOKKOS_ARCHIVE (a copy of the source archive, for machines without network), DROGUE_JOBS.
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 . "$root/scripts/lib/packages.sh"
@@ -57,6 +58,7 @@ if [ "$system" = yes ]; then
   exit 0
 fi
 
+[ "$hip" = no ] || check_hip_architecture
 [ -z "${DROGUE_KOKKOS_ARCHIVE:-}" ] || check_archive "$DROGUE_KOKKOS_ARCHIVE"
 packages="$APT_PACKAGES"
 # A ROCm of the system comes first.
@@ -66,6 +68,7 @@ mkdir -p "$deps" 2>/dev/null && [ -w "$deps" ] || fail "cannot write to $deps: c
 # shellcheck disable=SC2086  # one word a package
 install_packages $packages
 check_tools
+[ "$hip" = no ] || check_hipcc
 
 # One set-up at a time: several clones may share DROGUE_DEPS.
 exec 9>"$deps/.lock"

@@ -75,6 +75,23 @@ kokkos_cuda_flags() {
   [ "$1" != 100 ] || printf -- ' --generate-code=arch=compute_100,code=[compute_100,sm_100]'
 }
 
+hip_arch="${DROGUE_HIP_ARCH:-gfx90a}"
+# check_hip_architecture: stops unless it is an AMD Instinct whose waves have 64 lanes, which kernels/device/warp.hpp describes.
+check_hip_architecture() {
+  case "$hip_arch" in
+    gfx906 | gfx908 | gfx90a | gfx942) ;;
+    *) fail "DROGUE_HIP_ARCH=$hip_arch is not one of gfx906, gfx908, gfx90a, gfx942." ;;
+  esac
+}
+
+# check_hipcc: stops unless the compiler knows the architecture, in place of an error amid the build of Kokkos.
+check_hipcc() {
+  local hipcc
+  hipcc="$(find_hipcc)"
+  "$hipcc" -x hip "--offload-arch=$hip_arch" --cuda-device-only -nogpulib -nogpuinc -fsyntax-only /dev/null >/dev/null 2>&1 ||
+    fail "$hipcc does not compile for DROGUE_HIP_ARCH=$hip_arch: put hipcc of a newer ROCm first in PATH."
+}
+
 # variant_stamp VARIANT ARCH: what the installation depends on, ARCH where it is for CUDA. Native code of another processor is built anew.
 variant_stamp() {
   {
@@ -83,7 +100,10 @@ variant_stamp() {
     "${CXX:-c++}" -dumpfullversion -dumpmachine
     [ "$1" = bundle ] || grep -m 1 '^flags' /proc/cpuinfo
     cat "$root/cmake/kokkos_in_one.cmake"
-    case "$1" in *cuda*) printf '%s\n' "$2" && cat "$root/cmake/cuda13_kokkos45.hpp" && "$nvcc" --version ;; hip) "$(find_hipcc)" --version ;; esac
+    case "$1" in
+      *cuda*) printf '%s\n' "$2" && cat "$root/cmake/cuda13_kokkos45.hpp" && "$nvcc" --version ;;
+      hip) printf '%s\n' "$hip_arch" && "$(find_hipcc)" --version ;;
+    esac
   } 2>/dev/null | sha256sum
 }
 
@@ -136,7 +156,7 @@ build_kokkos() {
     hip)
       # Without OpenMP and other libraries of ROCm, which Debian 12 lacks. As C++17: Clang 15 crashes in <regex> of gcc 12 as C++20 for a device.
       common+=("-DCMAKE_CXX_COMPILER=$(find_hipcc)" -DCMAKE_CXX_STANDARD=17)
-      kokkos+=(-DKokkos_ENABLE_HIP=ON -DKokkos_ARCH_AMD_GFX90A=ON -DKokkos_ENABLE_OPENMP=OFF -DKokkos_ENABLE_ROCTHRUST=OFF)
+      kokkos+=(-DKokkos_ENABLE_HIP=ON "-DKokkos_ARCH_AMD_${hip_arch^^}=ON" -DKokkos_ENABLE_OPENMP=OFF -DKokkos_ENABLE_ROCTHRUST=OFF)
       kernels+=(-DKokkosKernels_ENABLE_TPL_ROCBLAS=OFF -DKokkosKernels_ENABLE_TPL_ROCSPARSE=OFF
         -DKokkosKernels_ENABLE_TPL_ROCSOLVER=OFF)
       ;;

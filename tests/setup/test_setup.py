@@ -1,6 +1,7 @@
 """Every failure of scripts/setup.sh is one sentence with the remedy. Fakes stand in for the tools of the system."""
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -41,6 +42,23 @@ class Setup(FolderTest):
 
     def test_unknown_argument(self):
         self.assertIn("--cude", self.refused("--cude"))
+
+    def test_help_is_the_head_of_the_script(self):
+        for name in ("setup", "build", "test", "demo", "bench", "bundle"):
+            said = subprocess.run([SOURCE / f"scripts/{name}.sh", "--help"], capture_output=True, text=True, check=True).stdout
+            head = (SOURCE / f"scripts/{name}.sh").read_text(encoding="utf-8").split("\n. ")[0].splitlines()[1:]
+            self.assertEqual([line.removeprefix("#").removeprefix(" ") for line in head], said.splitlines())
+
+    def test_architecture_of_hip(self):
+        self.assertIn("DROGUE_HIP_ARCH=gfx9 is not one of gfx906,", self.refused("--hip", DROGUE_HIP_ARCH="gfx9"))
+        page = (SOURCE / "docs/building.md").read_text(encoding="utf-8")
+        row = re.search(r"(?m)^\| `DROGUE_HIP_ARCH` \| (.+) \|$", page)[1]
+        self.assertIn(f"not one of {', '.join(re.findall(r'gfx[0-9a-z]+', row))}.", self.refused("--hip", DROGUE_HIP_ARCH="none"))
+        self.fake("hipcc", '[[ "$*" != *=gfx942* ]]')
+        message = self.refused("--hip", DROGUE_HIP_ARCH="gfx942")
+        self.assertIn("does not compile for DROGUE_HIP_ARCH=gfx942: put hipcc of a newer ROCm first in PATH", message)
+        self.fake("python3", "exit 1")
+        self.assertIn("venv failed", self.refused("--hip"))
 
     def test_rejects_a_wrong_hash(self):
         archive = self.fakes / "kokkos.tar.gz"
@@ -97,3 +115,22 @@ class Setup(FolderTest):
             self.fake(tool, f'exec {real} "$@"')
         (self.fakes / "apt-get").unlink()
         self.assertIn("use --system", self.refused(PATH=self.fakes))
+
+    def test_reasons_to_go_without_packages(self):
+        log = self.deps / "log/apt-update.log"
+        log.parent.mkdir(parents=True)
+        script = f"cd {SOURCE} && . scripts/lib/common.sh && . scripts/lib/packages.sh && why_no_packages"
+
+        def reason():
+            environment = os.environ | {"PATH": f"{self.fakes}:{os.environ['PATH']}", "DROGUE_DEPS": str(self.deps)}
+            return subprocess.run(["bash", "-c", script], env=environment, capture_output=True, text=True, check=True).stdout.strip()
+
+        self.fake("id", "echo 0")
+        self.assertEqual("", reason())
+        log.write_text("Err:1 http://deb.debian.org/debian bookworm InRelease\n  Temporary failure resolving\n", encoding="utf-8")
+        self.assertEqual("no network", reason())
+        log.write_text("Hit:1 http://deb.debian.org/debian bookworm InRelease\nErr:2 http://x.org\n", encoding="utf-8")
+        self.assertEqual("", reason())
+        self.fake("id", "echo 1000")
+        self.fake("sudo", "exit 1")
+        self.assertEqual("no right to install packages", reason())

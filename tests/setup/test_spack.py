@@ -75,7 +75,7 @@ class Spack(unittest.TestCase):
         self.assertEqual(listed.split(", "), [item.value for item in loop.iter.elts])
 
     def test_versions_are_those_of_cmake(self):
-        tried = re.search(r"(?m)^set\(_tried ([0-9. ]+)\)$", CMAKE)[1].split()
+        tried = re.search(r"(?m)^set\(DROGUE_TRIED_KOKKOS ([0-9. ]+)\)$", CMAKE)[1].split()
         for name, module in (("kokkos", "Kokkos"), ("kokkos-kernels", "KokkosKernels")):
             self.assertEqual(tried[0], re.search(rf"find_package\({module} ([0-9.]+) ", CMAKE)[1])
             for spec in (next(spec for spec in specs()[name] if "@" in spec), self.environment()[name]):
