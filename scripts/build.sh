@@ -23,15 +23,16 @@ done
 
 cd "$root"
 nvcc="$(find_nvcc)"
+# Defaults come first: the last of two settings counts.
 case "$preset" in
   cuda*)
     [ -n "$nvcc" ] || fail "preset $preset needs nvcc: install the CUDA toolkit, or build preset host."
-    options+=("-DDROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH:-90}")
+    options=("-DDROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH:-90}" ${options[@]+"${options[@]}"})
     ;;
   hip)
     hipcc="$(find_hipcc)"
     [ -n "$hipcc" ] || fail "preset $preset needs hipcc: run scripts/setup.sh --hip, or build preset host."
-    options+=("-DCMAKE_CXX_COMPILER=$hipcc")
+    options=("-DCMAKE_CXX_COMPILER=$hipcc" ${options[@]+"${options[@]}"})
     ;;
 esac
 # The log is short when all is well; on failure the part that matters is shown.
