@@ -291,7 +291,12 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
 
 std::string flight_report(const run::ResultDocument& result) {
   std::string text;
-  for (const run::Metrics::Group& group : result.metrics.groups()) {
+  const auto& groups = result.metrics.groups();
+  const auto rate = result.metrics.real("figure_of_merit", "simulated_s_per_s");
+  if (rate &&
+      std::ranges::any_of(groups, [](const auto& group) { return group.name.starts_with("canopy_"); }))
+    text += "  " + scene::rough_text(*rate) + " s of flight per second of steps\n";
+  for (const run::Metrics::Group& group : groups) {
     if (!(group.name.starts_with("canopy_") || group.name.starts_with("body_")) || group.values.empty())
       continue;
     const auto value = [&](const std::string& name) { return result.metrics.real(group.name, name); };

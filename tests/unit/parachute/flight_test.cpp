@@ -171,7 +171,9 @@ TEST(Flight, ReportPrintsWhatThereIs) {
   result.metrics.set("canopy_0", "inflated_diameter_ratio", 0.6712);
   result.metrics.set("canopy_0", "peak_line_force", 10034.0);
   result.metrics.set("canopies", "vertices", std::int64_t{3});
+  result.metrics.set("figure_of_merit", "simulated_s_per_s", 0.3305);
   EXPECT_EQ(flight_report(result),
+            "  0.331 s of flight per second of steps\n"
             "canopy[0], means from 2 s on; +- is 95 % by the scatter in this run\n"
             "  C_D0                              0.812 +- 0.025\n"
             "  D_p/D_0                           0.6712  (no error bar: too short a run, or a drift)\n"
