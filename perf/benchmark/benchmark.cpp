@@ -144,16 +144,13 @@ std::vector<std::string> command_of(const Request& request, const Row& row) {
     arguments.insert(arguments.end(), {row.name + ".csv", "--result", row.name + ".json"});
   else
     arguments.insert(arguments.end(), {row.name, "--overwrite"});
-  const int threads = threads_of(request, row.ranks);
-  std::vector<std::string> words =
-      program_words(launcher_of(request, row.ranks, threads), threads, row.problem.program, arguments);
   // Who repeats the command has the same binding of threads.
-  std::map<std::string, std::string> variables = openmp_variables();
-  variables.erase("OMP_NUM_THREADS");
   std::vector<std::string> settings;
-  for (const auto& [name, value] : variables) settings.push_back(name + "=" + value);
-  words.insert(words.begin() + 2, settings.begin(), settings.end());
-  return words;
+  for (const auto& [name, value] : openmp_variables())
+    if (name != "OMP_NUM_THREADS") settings.push_back(name + "=" + value);
+  const int threads = threads_of(request, row.ranks);
+  return program_words(launcher_of(request, row.ranks, threads), threads, row.problem.program, arguments,
+                       settings);
 }
 
 /// A row in the sentence of a failure.

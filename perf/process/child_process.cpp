@@ -144,9 +144,10 @@ std::filesystem::path program_file(const std::string& program) {
 }
 
 std::vector<std::string> program_words(const std::vector<std::string>& launcher, int threads,
-                                       const std::string& program,
-                                       const std::vector<std::string>& arguments) {
+                                       const std::string& program, const std::vector<std::string>& arguments,
+                                       const std::vector<std::string>& settings) {
   std::vector<std::string> words = {"env", "OMP_NUM_THREADS=" + std::to_string(threads)};
+  words.insert(words.end(), settings.begin(), settings.end());
   words.insert(words.end(), launcher.begin(), launcher.end());
   words.push_back(program_file(program).string());
   words.insert(words.end(), arguments.begin(), arguments.end());

@@ -31,9 +31,11 @@ std::vector<std::string> launcher_words(int ranks, int threads);
 /// without /proc.
 std::filesystem::path program_file(const std::string& program);
 
-/// Words that start a program of this suite, which stands beside this one, with some threads of OpenMP, by
-/// the words of a launcher, if there are any. Throws std::filesystem::filesystem_error without /proc.
+/// Words that start a program of this suite, which stands beside this one, with some threads of OpenMP and
+/// other `settings` NAME=VALUE of its environment, by the words of a launcher, if there are any. Throws
+/// std::filesystem::filesystem_error without /proc.
 std::vector<std::string> program_words(const std::vector<std::string>& launcher, int threads,
-                                       const std::string& program, const std::vector<std::string>& arguments);
+                                       const std::string& program, const std::vector<std::string>& arguments,
+                                       const std::vector<std::string>& settings = {});
 
 }  // namespace drogue::perf

@@ -13,13 +13,12 @@ import collections
 import csv
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from plot import style  # noqa: E402
-from recording import assignments  # noqa: E402
+from recording import run_parachute  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SPACINGS = (0.4, 0.3, 0.2, 0.15, 0.1)
@@ -30,17 +29,16 @@ QUANTITIES = (
 )
 
 
-def fly(program, record):
+def fly(programs, record):
     """Runs the ten studies one after the other, and writes their rows."""
     rows = []
     with tempfile.TemporaryDirectory() as work:
+        options = argparse.Namespace(bin=programs, out=pathlib.Path(work))
         for coupling in NAMES:
             for spacing in SPACINGS:
-                folder = pathlib.Path(work) / f"{coupling}-{spacing}"
-                sets = assignments(f"grid.spacing={spacing}", f"canopy[0].edge_length={0.7 * spacing:.4g}",
-                                   f'coupling.corrections="{coupling}"', "run.end_time=2", "output={fields=[],restart_every=0}",
-                                   "verify={divergence=1e-9}")
-                subprocess.run([program, "c9-flat-full", *sets, "--study", "ensemble=4,jobs=1", "--out", folder], check=True)
+                sets = (f"grid.spacing={spacing}", f"canopy[0].edge_length={0.7 * spacing:.4g}", f'coupling.corrections="{coupling}"',
+                        "run.end_time=2", "output={fields=[],restart_every=0}", "verify={divergence=1e-9}")
+                folder = run_parachute(options, "c9-flat-full", f"{coupling}-{spacing}", sets, ["--study", "ensemble=4,jobs=1"])
                 with open(folder / "runs.csv", newline="") as file:
                     rows += [{"coupling": coupling, "spacing": spacing} | row for row in csv.DictReader(file)]
     with open(record, "w", newline="") as file:
@@ -78,7 +76,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/images/flight-precision.png")
     options = parser.parse_args()
     if options.bin:
-        fly(options.bin / "drogue-parachute", options.record)
+        fly(options.bin, options.record)
     flights = collections.defaultdict(list)
     with open(options.record, newline="") as file:
         for row in csv.DictReader(file):

@@ -15,8 +15,6 @@ using std::numbers::pi;
 
 /// Least number of cells across an open canopy whose forces hardly depend on them.
 constexpr double least_cells = 12.0;
-/// Largest part of a section that an open canopy may cover in free air.
-constexpr double most_blockage = 0.02;
 
 /// Diameter of an open canopy, m: two thirds of the nominal one, as of flat circular canopies (0.64 to 0.70,
 /// Knacke, Parachute Recovery Systems Design Manual, 1992).

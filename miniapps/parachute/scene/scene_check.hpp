@@ -48,6 +48,9 @@ void check_frame(const scene::Place& root, const FlowScene& scene);
 /// moves with it, sharp coupling prescribed motion.
 void check_method(const scene::Place& root, const FlowScene& scene);
 
+/// Largest part of a section that open canopies, or bodies, may cover in free air.
+inline constexpr double most_blockage = 0.02;
+
 /// Notes canopies with lines whose drag and speed are not those in free air, or depend on the cells: a narrow
 /// or short domain, its sides, coarse cells, edges that act beyond the cloth, long lines, dimensions of
 /// another canopy.

@@ -128,7 +128,7 @@ std::vector<BodyInStream> bodies_in_stream(const FlowScene& scene) {
     if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
   }
   for (std::size_t k = 0; k < 3; ++k)
-    if (k != axis) section *= p.high[k] - p.low[k];
+    if (k != axis) section *= length_of(p, k);
   std::vector<BodyInStream> found;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
@@ -153,23 +153,22 @@ double rounded_up(double value) {
 
 /// Notes a section of which bodies cover so much that they have the drag of a duct.
 void note_blockage(FlowScene& scene, const std::vector<BodyInStream>& bodies) {
-  constexpr double most = 0.02;
   const flow::Parameters& p = scene.parameters;
   const std::size_t axis = bodies.front().axis;
   double area = 0.0, blockage = 0.0, depth = 0.0;
   for (std::size_t k = 0; k < 3; ++k)
-    if (k != axis && p.cells[k] == 1) depth = p.high[k] - p.low[k];
+    if (k != axis && p.cells[k] == 1) depth = length_of(p, k);
   for (const BodyInStream& body : bodies) area += body.area, blockage += body.blockage;
-  if (blockage <= most) return;
-  const double needed = area / most;
-  scene.notices.push_back(sentence(
-      "grid.domain: ", bodies.size() > 1 ? "bodies cover up to " : "the body covers ",
-      rough_text(100.0 * blockage), " % of its section across ", axis_names[axis],
-      bodies.size() > 1 ? ", so that their" : ", so that its",
-      " drag is that in a duct and not in free air; ",
-      depth > 0.0 ? sentence("sides ", rough_text(rounded_up(needed / depth)), " m apart have")
-                  : sentence("a square section of ", rough_text(rounded_up(std::sqrt(needed))), " m has"),
-      " at most ", rough_text(100.0 * most), " %"));
+  if (blockage <= most_blockage) return;
+  const double needed = area / most_blockage;
+  scene.note("grid.domain: ", bodies.size() > 1 ? "bodies cover up to " : "the body covers ",
+             rough_text(100.0 * blockage), " % of its section across ", axis_names[axis],
+             bodies.size() > 1 ? ", so that their" : ", so that its",
+             " drag is that in a duct and not in free air; ",
+             depth > 0.0
+                 ? sentence("sides ", rough_text(rounded_up(needed / depth)), " m apart have")
+                 : sentence("a square section of ", rough_text(rounded_up(std::sqrt(needed))), " m has"),
+             " at most ", rough_text(100.0 * most_blockage), " %");
 }
 
 }  // namespace
@@ -181,11 +180,10 @@ void note_unfit_bodies(FlowScene& scene) {
   for (const BodyInStream& body : bodies) {
     const double needed = rest_of_start * body.start;
     if (body.passed >= needed) continue;
-    scene.notices.push_back(
-        sentence("run.end_time: ", rough_text(body.passed), " widths of ", element("body", body.index),
-                 " pass with the stream, and its wake starts up in some ", rough_text(body.start),
-                 ", so that its drag is not yet that of a steady stream; ",
-                 rough_text(rounded_up(time_of(scene, body, needed))), " s leave time for a mean"));
+    scene.note("run.end_time: ", rough_text(body.passed), " widths of ", element("body", body.index),
+               " pass with the stream, and its wake starts up in some ", rough_text(body.start),
+               ", so that its drag is not yet that of a steady stream; ",
+               rough_text(rounded_up(time_of(scene, body, needed))), " s leave time for a mean");
   }
 }
 
