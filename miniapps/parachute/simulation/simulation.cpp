@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -150,13 +151,37 @@ framework::SimulationTime Simulation::now() {
 framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits,
                                           const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
+  // Another thread evaluates a row while the device takes the next steps.
+  std::future<framework::HistoryRow> row;
+  const auto deliver = [&] {
+    if (row.valid()) rows(row.get());
+  };
+  const auto begin_row = [&] {
+    deliver();
+    row = std::async(std::launch::async, [this, state = row_state()] { return row_of(state); });
+  };
+  framework::StopReason reason{};
+  try {
+    reason = take_steps(limits, begin_row, poll);
+  } catch (...) {
+    deliver();
+    throw;
+  }
+  deliver();
+  return reason;
+}
+
+/// `advance`, with `begin_row` where a row is due.
+framework::StopReason Simulation::take_steps(const framework::AdvanceLimits& limits,
+                                             const std::function<void()>& begin_row,
+                                             const framework::Poll& poll) {
   const auto forward = [&](const flow::Status& status) { return poll({status.step, status.time}); };
   const auto at_pause = [&](std::int64_t step) {
     return limits.pause_step >= 0 && step >= limits.pause_step;
   };
   const auto fails_by_image = [&] {
     if (!meets_image()) return false;
-    if (limits.row_every > 0) rows(row());
+    if (limits.row_every > 0) begin_row();
     return true;
   };
   while (true) {
@@ -173,7 +198,7 @@ framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits
     const std::int64_t step = _solver->progress().step;
     const bool failed = _stop == flow::Stop::failed || _stop == flow::Stop::max_steps;
     // The last good state of a failed run ends its history.
-    if (limits.row_every > 0 && (failed || (step > before && step % limits.row_every == 0))) rows(row());
+    if (limits.row_every > 0 && (failed || (step > before && step % limits.row_every == 0))) begin_row();
     if (failed) return framework::StopReason::failed;
     if (_stop == flow::Stop::target)
       return _images.applies() && fails_by_image() ? framework::StopReason::failed
@@ -183,22 +208,33 @@ framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits
   }
 }
 
-framework::HistoryRow Simulation::row() {
-  const flow::Totals now = _solver->totals();
+framework::HistoryRow Simulation::row() { return row_of(row_state()); }
+
+Simulation::RowState Simulation::row_state() {
+  RowState state = {.flow = _solver->totals(), .progress = {}, .sheets = {}, .fabric = {}};
+  if (_coupled == nullptr) {
+    state.progress.flow = _solver->progress();
+    return state;
+  }
+  state.progress = _coupled->progress();
+  state.sheets = sheet_state();
+  if (_scene.canopies.empty()) return state;
+  state.fabric = _coupled->fabric().totals();
+  state.on_air = _coupled->total_force_on_air();
+  return state;
+}
+
+framework::HistoryRow Simulation::row_of(const RowState& state) {
+  const flow::Totals& now = state.flow;
   framework::HistoryRow row = {now.time,
                                {static_cast<double>(now.step), now.dt, now.kinetic_energy, now.enstrophy,
                                 now.dissipation, now.momentum[0], now.momentum[1], now.momentum[2],
                                 now.max_speed, now.divergence_rms, now.divergence_max}};
   for (std::size_t side = 0; side < 6; ++side)
     if (!is_periodic(_scene.parameters, side)) row.values.push_back(now.outflow[side]);
-  const std::vector<fabric::Vector> forces = body_forces();
-  for (const fabric::Vector& force : forces) row.values.insert(row.values.end(), force.begin(), force.end());
-  const coupling::Progress progress =
-      _coupled != nullptr ? _coupled->progress() : coupling::Progress{_solver->progress(), {}, {}};
-  append_outside_forces(forces, progress.flow.last_dt, row);
-  append_displacements(row);
-  append_canopy_values(progress.frame, row);
-  append_flag_values(row);
+  append_body_values(state, row);
+  if (!_scene.canopies.empty()) append_canopy_values(state, row);
+  append_flag_values(state.sheets, row);
   return row;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 
 #include "kernels/coupling/sheet/solver.hpp"
@@ -59,18 +60,28 @@ class Simulation final : public framework::Simulation {
   /// Values of the fields of one output, in the order of the scene, then positions of grids that move.
   using Snapshot = std::vector<std::vector<double>>;
 
+  /// What a row of the history needs of the device: of the sheets, what the columns of the scene ask for.
+  struct RowState {
+    flow::Totals flow;
+    coupling::Progress progress;
+    SheetState sheets;
+    fabric::Totals fabric;    ///< with canopies
+    fabric::Vector on_air{};  ///< total force, with canopies, N
+  };
+
+  framework::StopReason take_steps(const framework::AdvanceLimits& limits,
+                                   const std::function<void()>& begin_row, const framework::Poll& poll);
+  [[nodiscard]] RowState row_state();
+  [[nodiscard]] framework::HistoryRow row_of(const RowState& state);
   [[nodiscard]] bool meets_image();
   void sample_fields(Snapshot& snapshot);
   [[nodiscard]] std::vector<double> download_whole(std::size_t axis);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
-  [[nodiscard]] std::vector<fabric::Vector> body_forces();
   [[nodiscard]] SheetState sheet_state();
-  void append_outside_forces(const std::vector<fabric::Vector>& forces, double dt,
-                             framework::HistoryRow& row);
-  void append_displacements(framework::HistoryRow& row);
-  void append_flag_values(framework::HistoryRow& row);
-  void append_canopy_values(const coupling::FrameMotion& frame, framework::HistoryRow& row);
+  void append_body_values(const RowState& state, framework::HistoryRow& row);
+  void append_canopy_values(const RowState& state, framework::HistoryRow& row) const;
+  void append_flag_values(const SheetState& state, framework::HistoryRow& row) const;
   void sample_flow_field(flow::CellField field, std::span<double> values);
   void require_converged_pressure(flow::CellField field);
   [[nodiscard]] std::string residual_text(double residual) const;
