@@ -79,8 +79,7 @@ struct PersistentPairsFunctor {
     const auto points = of.tables(member, halo, 3);
     const int rank = member.team_rank(), lane = rank % slice, team = of.patches.team, slices = team / slice,
               slots = static_cast<int>(of.patches.max_triangle_slots);
-    auto* const memory = static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
-        2 * 3 * of.patches.max_triangle_slots * sizeof(double), alignof(double)));
+    auto* const memory = team_numbers<double>(member, 2 * 3 * of.patches.max_triangle_slots);
     const struct { TeamSlicedEll<2> springs; } local{TeamSlicedEll<2>(member, slices, of.patches.springs)};
     OwnVertex own = of.begin(member, halo, points);
 

@@ -115,9 +115,7 @@ struct PersistentSteps {
   template <class Member>
   KOKKOS_FUNCTION Tables tables(const Member& member, const Halo& halo, int count) const {
     const int rows = patches.team + halo.count;
-    return {static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
-                3 * static_cast<std::size_t>(count * rows) * sizeof(double), alignof(double))),
-            rows, count};
+    return {team_numbers<double>(member, 3 * static_cast<std::size_t>(count * rows)), rows, count};
   }
 
   /// Loads the thread's vertex, if any, and stores the positions of the first two stages.

@@ -4,6 +4,12 @@
 
 namespace drogue::fabric {
 
+/// `count` numbers in the scratch memory of the team of `member`.
+template <class T, class Member>
+KOKKOS_FUNCTION T* team_numbers(const Member& member, std::size_t count) {
+  return static_cast<T*>(member.team_scratch(0).get_shmem_aligned(count * sizeof(T), alignof(T)));
+}
+
 /// Array in the scratch memory of a team.
 template <class T>
 struct TeamList {
@@ -21,9 +27,7 @@ struct TeamTable {
 /// Table of `rows` points in the scratch memory of the team of `member`.
 template <class Member>
 KOKKOS_FUNCTION TeamTable team_table(const Member& member, std::size_t rows) {
-  return {static_cast<double*>(
-              member.team_scratch(0).get_shmem_aligned(3 * rows * sizeof(double), alignof(double))),
-          static_cast<int>(rows)};
+  return {team_numbers<double>(member, 3 * rows), static_cast<int>(rows)};
 }
 
 /// `SlicedEll` of a patch in the scratch memory of its team.
@@ -42,9 +46,10 @@ struct TeamSlicedEll {
   KOKKOS_FUNCTION TeamSlicedEll(const Member& member, int slices, const Views& from) {
     const int patch = member.league_rank() * slices;
     const int begin = from.first(patch), slots = (from.first(patch + slices) - begin) * slice;
-    value = {doubles(member, values * slots), slots};
-    first.data = integers(member, slices + 1);
-    neighbour.data = integers(member, slots);
+    const auto count = static_cast<std::size_t>(slots);
+    value = {team_numbers<double>(member, values * count), slots};
+    first.data = team_numbers<int>(member, static_cast<std::size_t>(slices) + 1);
+    neighbour.data = team_numbers<int>(member, count);
     for (int s = member.team_rank(); s <= slices; s += member.team_size())
       first(s) = from.first(patch + s) - begin;
     for (int slot = member.team_rank(); slot < slots; slot += member.team_size()) {
@@ -65,18 +70,6 @@ struct TeamSlicedEll {
   template <class Index, class Read, class Visit>
   KOKKOS_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Visit& visit) const {
     for_each_slot_pair(first, i, index, read, visit);
-  }
-
- private:
-  template <class Member>
-  KOKKOS_FUNCTION static double* doubles(const Member& member, int count) {
-    return static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
-        static_cast<std::size_t>(count) * sizeof(double), alignof(double)));
-  }
-  template <class Member>
-  KOKKOS_FUNCTION static int* integers(const Member& member, int count) {
-    return static_cast<int*>(member.team_scratch(0).get_shmem_aligned(
-        static_cast<std::size_t>(count) * sizeof(int), alignof(int)));
   }
 };
 
