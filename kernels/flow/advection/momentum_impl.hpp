@@ -24,6 +24,26 @@ KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carr
          nu_over_h * (load_field<R>(carried) - load_field<R>(carried - stride_d));
 }
 
+/// Widths around a cell of an axis, which a thread reads once for all components; a load of each where it is
+/// used costs more than the fluxes.
+struct CellWidths {
+  double before, own;     ///< 1 / width of the cell before and of this one, 1/m
+  double gap, gap_after;  ///< 1 / distance of the centre from those of the cells before and after, 1/m
+  double skew;            ///< `AxisRow::skew`
+
+  static KOKKOS_FUNCTION CellWidths around(const MacGrid& g, int axis, int i) {
+    return {g.inverse_width(axis, i - 1), g.inverse_width(axis, i), g.inverse_gap(axis, i),
+            g.inverse_gap(axis, i + 1), g.skew(axis, i)};
+  }
+  /// `MacGrid::inverse_extent` of a component of this axis or another one.
+  [[nodiscard]] KOKKOS_FUNCTION double inverse_extent(bool own_axis) const { return own_axis ? gap : own; }
+  /// `MacGrid::inverse_step` of it, and at the next index.
+  [[nodiscard]] KOKKOS_FUNCTION double inverse_step(bool own_axis) const { return own_axis ? before : gap; }
+  [[nodiscard]] KOKKOS_FUNCTION double inverse_step_after(bool own_axis) const {
+    return own_axis ? own : gap_after;
+  }
+};
+
 /// Momentum stage on a device; on grids with stretched axes another kernel, so that the widths cost nothing
 /// on others. A thread marches along z and keeps the fluxes through the face between two planes.
 template <class ExecutionSpace, Advection scheme, bool adams_bashforth, bool is_stretched>
@@ -45,10 +65,13 @@ struct MomentumFunctor {
     if (i >= g.n[0] || j >= g.n[1]) return;
     const int k_end = k_begin + planes < g.n[2] ? k_begin + planes : g.n[2];
     std::int64_t at = g.offset(i, j, k_begin);
+    const CellWidths x = widths(0, i), y = widths(1, j);
+    CellWidths z = widths(2, k_begin);
     double below[3] = {0.0, 0.0, 0.0};
     if (g.n[2] > 1)
-      for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at, {i, j, k_begin});
+      for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at, z.inverse_step(c == 2), skew(c, x, y, z));
     for (int k = k_begin; k < k_end; ++k, at += g.stride[2]) {
+      if (is_stretched && k > k_begin) z = widths(2, k);
       double value[3], rates[3];
 #if defined(__CUDA_ARCH__)
 #pragma unroll 1  // code for three components would not fit the instruction cache: up to five times slower
@@ -58,16 +81,19 @@ struct MomentumFunctor {
         // Loaded first, so that its latency is hidden by the fluxes.
         const double other = adams_bashforth ? factors.old_rate * setup.old_rate(place)
                                              : device::load_constant(setup.state.data() + place);
+        const double skewed = skew(c, x, y, z);
         double rate = setup.acceleration[c];
         if (g.n[0] > 1)
-          rate -= inverse_extent(c, 0, i) *
-                  (flux(c, 0, at + g.stride[0], {i + 1, j, k}) - flux(c, 0, at, {i, j, k}));
+          rate -=
+              x.inverse_extent(c == 0) * (flux(c, 0, at + g.stride[0], x.inverse_step_after(c == 0), skewed) -
+                                          flux(c, 0, at, x.inverse_step(c == 0), skewed));
         if (g.n[1] > 1)
-          rate -= inverse_extent(c, 1, j) *
-                  (flux(c, 1, at + g.stride[1], {i, j + 1, k}) - flux(c, 1, at, {i, j, k}));
+          rate -=
+              y.inverse_extent(c == 1) * (flux(c, 1, at + g.stride[1], y.inverse_step_after(c == 1), skewed) -
+                                          flux(c, 1, at, y.inverse_step(c == 1), skewed));
         if (g.n[2] > 1) {
-          const double above = flux(c, 2, at + g.stride[2], {i, j, k + 1});
-          rate -= inverse_extent(c, 2, k) * (above - below[c]);
+          const double above = flux(c, 2, at + g.stride[2], z.inverse_step_after(c == 2), skewed);
+          rate -= z.inverse_extent(c == 2) * (above - below[c]);
           below[c] = above;
         }
         if (setup.eddy.data() != nullptr) rate += setup.eddy(place);
@@ -86,23 +112,27 @@ struct MomentumFunctor {
     }
   }
 
-  /// Flux of component c along axis d into the control volume at `index`, whose place is `at`.
-  KOKKOS_FUNCTION double flux(int c, int d, std::int64_t at, const int (&index)[3]) const {
+  KOKKOS_FUNCTION CellWidths widths(int axis, int i) const {
+    if constexpr (is_stretched) return CellWidths::around(setup.grid, axis, i);
+    const double inverse = setup.grid.inverse_h[axis];
+    return {inverse, inverse, inverse, inverse, 0.0};
+  }
+  /// Skew of the velocity that carries a component across its own axis.
+  static KOKKOS_FUNCTION double skew(int c, const CellWidths& x, const CellWidths& y, const CellWidths& z) {
+    return c == 0 ? x.skew : c == 1 ? y.skew : z.skew;
+  }
+  /// Flux of component c along axis d into the control volume at the place `at`.
+  KOKKOS_FUNCTION double flux(int c, int d, std::int64_t at, double inverse_step, double skewed) const {
     const MacGrid& g = setup.grid;
     const double *u = setup.stage.data(), *carried = u + c * g.component + at,
                  *carrier = u + d * g.component + at;
     const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
     if constexpr (is_stretched)
-      return momentum_flux<scheme, double>(carried, carrier, stride_c, g.stride[d],
-                                           setup.nu * g.inverse_step(c, d, index[d]), setup.epsilon,
-                                           c == d ? 0.0 : g.skew(c, index[c]));
+      return momentum_flux<scheme, double>(carried, carrier, stride_c, g.stride[d], setup.nu * inverse_step,
+                                           setup.epsilon, c == d ? 0.0 : skewed);
     else
-      return momentum_flux<scheme, double>(carried, carrier, stride_c, g.stride[d], setup.nu * g.inverse_h[d],
+      return momentum_flux<scheme, double>(carried, carrier, stride_c, g.stride[d], setup.nu * inverse_step,
                                            setup.epsilon);
-  }
-  /// 1 / width of the control volumes of component c along axis d, 1/m.
-  KOKKOS_FUNCTION double inverse_extent(int c, int d, int i) const {
-    return is_stretched ? setup.grid.inverse_extent(c, d, i) : setup.grid.inverse_h[d];
   }
 };
 

@@ -120,18 +120,11 @@ struct CorrectionFunctor {
     std::int64_t stride = 1;
     const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
     const double p = setup.pressure(cell);
-    if (setup.total_pressure.data() != nullptr) {
-      double& total = setup.total_pressure(cell);
-      // The viscous term makes the pressure of second order up to the sides: Brown, Cortez and Minion 2001,
-      // eq. (10). The velocity on outflows is explicit: beside them the term would amplify it by about nu dt
-      // / h^2.
-      const double nu = is_beside_outflow(index) ? 0.0 : setup.nu;
-      total = setup.is_increment ? total + p - 0.5 * nu * dt * setup.divergence(cell) : p;
-    }
-    double rate = 0.0;
+    double rate = 0.0, value[3], last[3] = {0.0, 0.0, 0.0};
     for (int axis = 0; axis < 3; stride *= g.n[axis], ++axis) {
       const std::int64_t place = axis * g.component + at;
-      double value = setup.predicted(place), beyond = 0.0;
+      double beyond = 0.0;
+      value[axis] = setup.predicted(place);
       if (g.n[axis] > 1) {
         double below = p;  // no gradient across a boundary with a prescribed velocity
         if (index[axis] > 0)
@@ -142,25 +135,42 @@ struct CorrectionFunctor {
           below = setup.pressure_below[axis][axis == 1 ? i + g.n[0] * k : i + g.n[0] * j];
         else if (setup.is_outflow(2 * axis))
           below = -p;
-        value -= dt * widths_of<is_stretched>(g).inverse_gap(axis, index[axis]) * (p - below);
-        if (index[axis] + 1 == g.n[axis] && !g.periodic[axis]) {
-          const std::int64_t high = place + g.stride[axis];
-          double last = setup.predicted(high);
+        value[axis] -= dt * widths_of<is_stretched>(g).inverse_gap(axis, index[axis]) * (p - below);
+        if (is_last(axis, index[axis])) {
+          last[axis] = setup.predicted(place + g.stride[axis]);
           if (setup.is_outflow(2 * axis + 1))
-            last += 2.0 * dt * widths_of<is_stretched>(g).inverse_gap(axis, g.n[axis]) * p;
-          setup.velocity(high) = last;
-          if (!setup.is_neighbour(2 * axis + 1)) beyond = Kokkos::fabs(last);
+            last[axis] += 2.0 * dt * widths_of<is_stretched>(g).inverse_gap(axis, g.n[axis]) * p;
+          if (!setup.is_neighbour(2 * axis + 1)) beyond = Kokkos::fabs(last[axis]);
         }
       }
-      setup.velocity(place) = value;
-      const double speed = Kokkos::fabs(value);
+      const double speed = Kokkos::fabs(value[axis]);
       // A factor of zero keeps a NaN.
       if (is_stretched && g.is_stretched(axis))
         rate += g.inverse_least_width(axis, index[axis]) * (beyond > speed ? beyond : speed);
       else
         rate += (g.n[axis] > 1 ? g.inverse_h[axis] : 0.0) * (beyond > speed ? beyond : speed);
     }
+    // Stored last: a store between the loads would hold back those behind it.
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t place = axis * g.component + at;
+      setup.velocity(place) = value[axis];
+      if (is_last(axis, index[axis])) setup.velocity(place + g.stride[axis]) = last[axis];
+    }
+    if (setup.total_pressure.data() != nullptr) {
+      double& total = setup.total_pressure(cell);
+      // The viscous term makes the pressure of second order up to the sides: Brown, Cortez and Minion 2001,
+      // eq. (10). The velocity on outflows is explicit: beside them the term would amplify it by about nu dt
+      // / h^2.
+      const double nu = is_beside_outflow(index) ? 0.0 : setup.nu;
+      total = setup.is_increment ? total + p - 0.5 * nu * dt * setup.divergence(cell) : p;
+    }
     return rate;
+  }
+
+  /// True for the last cell of an axis that ends at a side.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_last(int axis, int i) const {
+    const MacGrid& g = setup.grid;
+    return g.n[axis] > 1 && i + 1 == g.n[axis] && !g.periodic[axis];
   }
 };
 
