@@ -92,7 +92,7 @@ Problem parachute_problem(Size size) {
                     "verify={history=[{column=\"canopy_0_drag_coefficient\",statistic=\"mean\",from=1.2,to=2,"
                     "value=0.775,tolerance=0.1}],divergence=1e-11,force_balance=1e-14}"}),
              scene("c9-flat-full", {output})});
-  const std::int64_t cells = of<std::int64_t>(size, {257725, 1392384, 7041024});
+  const std::int64_t cells = of<std::int64_t>(size, {257725, 1545564, 8105276});
   return {.name = "c9-flat",
           .program = "drogue-parachute",
           .extent = printed("%lld cells", static_cast<long long>(cells)),

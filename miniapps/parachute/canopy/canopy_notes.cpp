@@ -107,6 +107,20 @@ void note_long_lines(const Place& at, FlowScene& scene, const Canopy& canopy) {
       "0.80 are published and lines of 0.7 to 0.8 diameters have 0.8");
 }
 
+/// Notes a perturbation that strains the cloth so far that it springs apart: docs/parachute-notebook.md,
+/// inflation.
+void note_strained_start(const Place& at, FlowScene& scene, const Canopy& canopy) {
+  constexpr double most_strain = 0.05;
+  const double amplitude = canopy.perturbation.amplitude, edge = canopy.edge_length;
+  if (amplitude <= most_strain * edge) return;
+  scene.note(at.path("perturbation.amplitude"), " = ", rough_text(amplitude), " m strains edges of ",
+             rough_text(edge), " m by ", rough_text(100.0 * amplitude / edge),
+             " %: the cloth springs apart as it starts, which changes the opening, and may pull harder than "
+             "that does; amplitudes of at most ",
+             rough_text(100.0 * most_strain), " % of an edge, here ", rough_text(most_strain * edge),
+             " m, do not");
+}
+
 bool blows_along(const FlowScene& scene, std::size_t axis) {
   return constant_value(scene.velocity[axis]).value_or(0.0) != 0.0;
 }
@@ -219,6 +233,7 @@ void note_unfit_canopies(const Place& root, FlowScene& scene) {
     note_short_wake(at, scene, scene.canopies[i]);
     if (const std::string text = narrow_core_text(scene, i, expected_lean); !text.empty()) scene.note(text);
     note_long_lines(at, scene, scene.canopies[i]);
+    note_strained_start(at, scene, scene.canopies[i]);
     note_defaults_of_another_canopy(at, scene, scene.canopies[i]);
   }
   note_wide_edges(scene, cells(coarsest));

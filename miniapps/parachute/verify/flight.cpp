@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <utility>
 
 #include "common/run/history_statistics.hpp"
@@ -269,6 +270,14 @@ void describe_lean(const FlowScene& scene, const run::History& history, std::siz
     result.warnings.push_back(text);
 }
 
+/// True of a time, s, at which the air has passed less than a twentieth of a canopy.
+bool is_of_the_start(const FlowScene& scene, const run::History& history, std::size_t i, double time) {
+  if (history.empty() || !scene.lack_of_airspeed(i).empty()) return false;
+  const double speed = std::ranges::max(history.at("canopy_" + std::to_string(i) + "_airspeed")),
+               diameter = std::sqrt(4.0 / std::numbers::pi * scene.canopies[i].nominal_area());
+  return speed * time < 0.05 * diameter;
+}
+
 }  // namespace
 
 void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run::History& history,
@@ -286,6 +295,12 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
       result.warnings.push_back(part_name(group) +
                                 ": the largest line force is that of the end of the run, and may still grow; "
                                 "a longer run.end_time shows the peak");
+    else if (is_of_the_start(scene, history, i, time))
+      result.warnings.push_back(part_name(group) + ": the largest line force is that of the start, " +
+                                scene::rough_text(time) +
+                                " s, before the air has passed a twentieth of the canopy, and not of the "
+                                "opening: cloth that starts strained pulls so, as by a large "
+                                "perturbation.amplitude");
   }
 }
 

@@ -179,6 +179,15 @@ TEST(CanopyNotes, LinesLongerThanPublishedDragIsFor) {
   EXPECT_TRUE(notes({"canopy[0].lines={length=8.1}"}).empty());
 }
 
+TEST(CanopyNotes, PerturbationsThatStrainTheCloth) {
+  expect_note(
+      {"canopy[0].perturbation={amplitude=0.02,seed=1}"},
+      "canopy[0].perturbation.amplitude = 0.02 m strains edges of 0.2 m by 10 %: the cloth springs apart "
+      "as it starts, which changes the opening, and may pull harder than that does; amplitudes of at "
+      "most 5 % of an edge, here 0.01 m, do not");
+  EXPECT_TRUE(notes({"canopy[0].perturbation={amplitude=0.01,seed=1}"}).empty());
+}
+
 TEST(CanopyNotes, SpeedsNearThatOfSoundInAirAndWaterAlone) {
   const std::string end =
       ", beyond the 0.3 up to which an incompressible flow stands for it: drag and forces lack its "

@@ -150,6 +150,22 @@ TEST(Flight, WarnsOfALargestForceAtTheEnd) {
       << warnings(scene.end_time)[0];
 }
 
+TEST(Flight, WarnsOfALargestForceOfTheStart) {
+  const FlowScene scene = SceneFile().read();
+  const auto warnings = [&](double time) {
+    run::ResultDocument result;
+    describe_flights(scene, peaks_of({9000.0, time}),
+                     history_of(scene, {{"canopy_0_airspeed", [](double) { return 10.0; }}}), result);
+    return result.warnings;
+  };
+  const double diameter = std::sqrt(4.0 / std::numbers::pi * nominal);
+  EXPECT_TRUE(warnings(0.0051 * diameter).empty());
+  ASSERT_EQ(warnings(0.0049 * diameter).size(), 1U);
+  EXPECT_TRUE(warnings(0.0049 * diameter)[0].starts_with(
+      "canopy[0]: the largest line force is that of the start, 0.0418 s"))
+      << warnings(0.0049 * diameter)[0];
+}
+
 TEST(Flight, WithoutRowsHasThePeakAlone) {
   const FlowScene scene = SceneFile().read({"output.history_every=0"});
   const auto values = described(scene, {}, {10.0, 1.0});
