@@ -53,17 +53,14 @@ if(DROGUE_CUDA)
   endif()
 endif()
 
-# A patch counts as its release; patch 99, the development after it, does not.
 option(DROGUE_UNTRIED_KOKKOS "Take releases of Kokkos and Kokkos Kernels that were not tried" OFF)
-set(_release "${Kokkos_VERSION_MAJOR}.${Kokkos_VERSION_MINOR}")
-set(_release_of_kernels "${KokkosKernels_VERSION_MAJOR}.${KokkosKernels_VERSION_MINOR}")
 if(NOT DROGUE_UNTRIED_KOKKOS)
-  if(NOT _release IN_LIST DROGUE_TRIED_KOKKOS OR Kokkos_VERSION_PATCH EQUAL 99)
+  if(NOT Kokkos_VERSION IN_LIST DROGUE_TRIED_KOKKOS)
     message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} in ${Kokkos_DIR} was not tried, as ${_tried} were: point Kokkos_ROOT at one of "
                         "these, or try it with -DDROGUE_UNTRIED_KOKKOS=ON.")
-  elseif(NOT _release_of_kernels STREQUAL _release)
+  elseif(NOT KokkosKernels_VERSION STREQUAL Kokkos_VERSION)
     message(FATAL_ERROR "Kokkos Kernels ${KokkosKernels_VERSION} in ${KokkosKernels_DIR} was not tried with Kokkos "
-                        "${Kokkos_VERSION}: point KokkosKernels_ROOT at release ${_release}, or try it with "
+                        "${Kokkos_VERSION}: point KokkosKernels_ROOT at release ${Kokkos_VERSION}, or try it with "
                         "-DDROGUE_UNTRIED_KOKKOS=ON.")
   endif()
 endif()

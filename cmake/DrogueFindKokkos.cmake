@@ -1,7 +1,7 @@
 # Finds Kokkos and Kokkos Kernels. An installation that is named and cannot be used stops CMake, rather than that another is taken.
 
 # Releases that were tried (docs/building.md#releases-of-kokkos).
-set(DROGUE_TRIED_KOKKOS 4.5 4.6 4.7)
+set(DROGUE_TRIED_KOKKOS 4.5.1 4.6.1 4.7.0)
 list(JOIN DROGUE_TRIED_KOKKOS ", " _tried)
 
 # drogue_is_below(<result> <folder> <root>...): whether the folder is one of the roots or below, by its name or without symbolic links.
@@ -100,5 +100,5 @@ list(PREPEND CMAKE_PREFIX_PATH ${Kokkos_NAMED})
 find_package(KokkosKernels 4.5 CONFIG QUIET)
 set(CMAKE_PREFIX_PATH "${_prefixes}")
 drogue_after_search(KokkosKernels "Kokkos Kernels" "batched linear algebra needs Kokkos Kernels \
-${Kokkos_VERSION_MAJOR}.${Kokkos_VERSION_MINOR}, the release of Kokkos in ${Kokkos_DIR}")
+${Kokkos_VERSION}, the release of Kokkos in ${Kokkos_DIR}")
 include("${CMAKE_CURRENT_LIST_DIR}/DrogueCheckKokkos.cmake")

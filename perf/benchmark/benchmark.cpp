@@ -158,16 +158,6 @@ std::string described(const Row& row) {
   return row.problem.name + " on " + std::to_string(row.ranks) + (row.ranks == 1 ? " rank" : " ranks");
 }
 
-/// Failure of a run, with a way out where mpirun counts fewer slots than ranks.
-Failure failure_of(const Request& request, const Row& row, int status, const std::filesystem::path& log) {
-  Failure failure = failed_run(described(row), status, log);
-  const std::string sentence = failure.what();
-  if (row.ranks == 1 || !request.launcher.empty() || sentence.find(" slots ") == std::string::npos)
-    return failure;
-  return {failure.code(),
-          sentence + " For more ranks than cores give --launcher \"mpirun --oversubscribe -n {ranks}\""};
-}
-
 /// One run. Throws Failure as the program does.
 void run_once(const Request& request, const Row& row, const std::vector<std::string>& command,
               Answers& answers) {
@@ -180,11 +170,11 @@ void run_once(const Request& request, const Row& row, const std::vector<std::str
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
   const bool wrong = status == static_cast<int>(ExitCode::verification_failed) ||
                      status == static_cast<int>(ExitCode::numerical_failure);
-  if (status != 0 && !wrong) throw failure_of(request, row, status, log);
+  if (status != 0 && !wrong) throw failed_run(described(row), status, log);
   std::ifstream file(result);
   answers.result = nlohmann::json::parse(file, nullptr, false);
   if (answers.result.is_discarded() || answers.result.value("ranks", 0) < 1)
-    throw failure_of(request, row, status, log);
+    throw failed_run(described(row), status, log);
   if (answers.result["ranks"] != row.ranks)
     throw Failure(ExitCode::usage,
                   described(row) + ": the launcher started " + answers.result["ranks"].dump() + " of them");

@@ -31,7 +31,7 @@ std::vector<std::string> launcher_of(const BenchmarkOptions& options) {
   if (options.weak && !options.launcher.empty() && options.launcher.find("{ranks}") == std::string::npos)
     throw Failure(ExitCode::usage,
                   "--weak runs on 1, 2, 4, ... ranks: write {ranks} for their number in --launcher");
-  if (options.launcher.empty() && options.ranks > 1) require_launcher();
+  if (options.launcher.empty() && options.ranks > 1) require_launcher(options.ranks);
   std::istringstream text(options.launcher);
   std::vector<std::string> words;
   for (std::string word; text >> word;) words.push_back(word);

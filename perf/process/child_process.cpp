@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "common/program/failure.hpp"
+#include "common/run/files/temporary_folder.hpp"
 
 namespace drogue::perf {
 
@@ -119,17 +120,31 @@ Failure failed_run(const std::string& units, int status, const std::filesystem::
             failed +
                 "mpirun refuses to run as root; run as another user, or, in a container, set "
                 "OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"};
+  if (!reason.of_program && reason.sentence.find("not enough slots") != std::string::npos)
+    return {ExitCode::usage,
+            failed +
+                "mpirun has fewer slots than ranks, by default one per core; take fewer ranks, or let them "
+                "share cores by OMPI_MCA_rmaps_base_oversubscribe=1, with Open MPI 5 "
+                "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe"};
   // A launcher that starts nothing ends with 1, which no program of this suite does.
   if (status == 1 && !reason.sentence.empty()) return {ExitCode::usage, failed + reason.sentence};
   const std::string end = describe_end(status);
   return {ExitCode::io_error, failed + (reason.sentence.empty() ? end : end + ": " + reason.sentence)};
 }
 
-void require_launcher() {
+void require_launcher(int ranks) {
   std::istringstream folders(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
+  bool found = false;
   for (std::string folder; std::getline(folders, folder, ':');)
-    if (std::filesystem::exists(std::filesystem::path(folder) / "mpirun")) return;
-  throw Failure(ExitCode::no_backend, "several ranks need mpirun, and no folder of PATH holds it");
+    found = found || std::filesystem::exists(std::filesystem::path(folder) / "mpirun");
+  if (!found)
+    throw Failure(ExitCode::no_backend, "several ranks need mpirun, and no folder of PATH holds it");
+  const run::TemporaryFolder folder("drogue-launcher");
+  const std::filesystem::path log = folder.path() / "log";
+  std::vector<std::string> words = launcher_words(ranks, 1);
+  words.emplace_back("true");
+  if (const int status = run_child(words, folder.path(), log, true); status != 0)
+    throw failed_run(std::to_string(ranks) + " ranks", status, log);
 }
 
 std::vector<std::string> launcher_words(int ranks, int threads) {

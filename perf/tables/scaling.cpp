@@ -244,7 +244,8 @@ const char* name(ScalingUnit unit) { return unit == ScalingUnit::ranks ? "ranks"
 
 Table print_program_scaling(const ScalingRequest& request, const std::vector<device::Backend>& backends,
                             bool quick) {
-  if (request.unit == ScalingUnit::ranks) require_launcher();
+  if (request.unit == ScalingUnit::ranks)
+    for (const device::Backend backend : backends) require_launcher(most_units(request, backend));
   std::printf("Steps of drogue-parachute, %s scaling over %s\n%-52s%14s  %-28s %11s",
               request.weak ? "weak" : "strong", name(request.unit), "case", "us per step", "95 %",
               "efficiency");

@@ -498,8 +498,8 @@ class Scaling(perf_program.PerfTest):
 LAUNCHER_FOR_ONE = """#!{python}
 import json, os, sys
 ranks, program, *words = sys.argv[2:]
-if words[0] != "messages":
-    os.execve(program, [program, *words], {{**os.environ, "RANKS": ranks}})
+if words[:1] != ["messages"]:
+    os.execvpe(program, [program, *words], {{**os.environ, "RANKS": ranks}})
 with open(words[words.index("--out") + 1], "w") as out:
     for name, seconds, size in (("latency", 2e-6, 16), ("exchange", 1.002e-3, 1e6), ("flow-step", 0.1, 2e6)):
         out.write(json.dumps({{
@@ -590,15 +590,22 @@ class ProgramScaling(perf_program.PerfTest):
         launcher.chmod(0o755)
         process = self.expect(2, "table", "scaling", "--over", "ranks", "--backend", "serial", "--quick",
                               environment={"PATH": f"{self.folder}:{os.environ['PATH']}"})
-        self.assertIn("a run on 1 ranks failed: mpirun finds no slots.", process.stderr)
+        self.assertIn(f"a run on {os.cpu_count()} ranks failed: mpirun finds no slots.", process.stderr)
 
-    @unittest.skipIf(LAUNCHER is None or os.getuid() != 0, "there is no mpirun, or no root")
-    def test_launcher_that_refuses_root_is_explained(self):
+    @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
+    def test_refusals_of_open_mpi_are_explained_before_the_table(self):
         if "Open MPI" not in subprocess.run([LAUNCHER, "--version"], capture_output=True, text=True, check=False).stdout:
             self.skipTest("another mpirun than that of Open MPI")
-        process = self.expect(2, "table", "scaling", "--over", "ranks", "--backend", "serial", "--quick",
-                              environment={"OMPI_ALLOW_RUN_AS_ROOT": "", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": ""})
-        self.assertIn("mpirun refuses to run as root; run as another user, or, in a container, set", process.stderr)
+        own_slots = {**RANK_ENVIRONMENT, "OMPI_MCA_rmaps_base_oversubscribe": "0", "PRTE_MCA_rmaps_default_mapping_policy": ":nooversubscribe"}
+        as_root = {"OMPI_ALLOW_RUN_AS_ROOT": "", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": ""}
+        refusals = [(own_slots, "a run on 4096 ranks failed: mpirun has fewer slots than ranks, by default one per core; take fewer ranks, or")]
+        if os.getuid() == 0:
+            refusals.append((as_root, "mpirun refuses to run as root; run as another user, or, in a container, set"))
+        for environment, sentence in refusals:
+            process = self.expect(2, "table", "scaling", "--over", "ranks", "--most", "4096", "--backend", "serial", "--quick",
+                                  environment=environment)
+            self.assertIn(sentence, process.stderr)
+            self.assertEqual("", process.stdout)
 
     def test_failed_checks_have_no_time(self):
         """The run on one rank fails its check: neither has a time, nor does that on two have an efficiency."""

@@ -228,10 +228,10 @@ void launch_batch(const ExecutionSpace& space, const char* label, const Functor&
   using Batch = PriceBatch<ExecutionSpace>;
   const Batch& batch = functor.batch;
   if (batch.count == 0) return;
-  // Teams per multiprocessor: as many warps as fit into the registers without spilling.
+  // Teams per multiprocessor: as many warps as fit into the registers without spilling. Clang 15 gives up the
+  // kernels of all meshes with the registers of a larger team ("unhandled SGPR spill to memory").
   constexpr unsigned teams = fixed == 0 ? 1 : (fixed < 128 ? 12 : 8) / warps;
-  using Bounds =
-      std::conditional_t<fixed == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<warps * max_lanes, teams>>;
+  using Bounds = Kokkos::LaunchBounds<warps * max_lanes, teams>;
   constexpr int packs = warps > 1 ? 1 : Batch::packs_per_team(fixed), options = Batch::members * packs;
   const int league = (batch.count + options - 1) / options;
   Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space, league,

@@ -36,12 +36,22 @@ TEST(FailedRun, ExplainsThatMpirunRefusesRoot) {
       "OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
 }
 
-TEST(FailedRun, JoinsTheFirstParagraphOfALauncher) {
+TEST(FailedRun, ExplainsTooFewSlotsOfMpirun) {
   EXPECT_EQ(
-      failed(1, "-----\nThere are not enough slots to satisfy the 64\n  slots that were requested:\n\n  a\n"),
+      failed(1,
+             "-----\nThere are not enough slots available in the system to satisfy the 64\nslots that "
+             "were requested by the application:\n\n  true\n"),
       std::pair(ExitCode::usage,
-                std::string("a run on 2 ranks failed: There are not enough slots to satisfy the 64 "
-                            "slots that were requested.")));
+                std::string("a run on 2 ranks failed: mpirun has fewer slots than ranks, by default one "
+                            "per core; take fewer ranks, or let them share cores by "
+                            "OMPI_MCA_rmaps_base_oversubscribe=1, with Open MPI 5 "
+                            "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe")));
+}
+
+TEST(FailedRun, JoinsTheFirstParagraphOfALauncher) {
+  EXPECT_EQ(failed(1, "-----\nA request for 64\n  nodes was refused:\n\n  a\n"),
+            std::pair(ExitCode::usage,
+                      std::string("a run on 2 ranks failed: A request for 64 nodes was refused.")));
 }
 
 TEST(FailedRun, NamesForeignEndsInsteadOfPassingTheirCodesOn) {

@@ -20,9 +20,9 @@ class Drogue(CMakePackage, CudaPackage):
     depends_on("cxx", type="build")
     depends_on("cmake@3.25:", type="build")
     # CMake takes the releases that were tried. Both packages are of one.
-    depends_on("kokkos@4.5:4.7 +serial cxxstd=20")
+    depends_on("kokkos@4.5.01,4.6.01,4.7.00 +serial cxxstd=20")
     depends_on("kokkos+openmp", when="+openmp")
-    depends_on("kokkos-kernels@4.5:4.7")
+    depends_on("kokkos-kernels@4.5.01,4.6.01,4.7.00")
     depends_on("mpi")
     depends_on("hdf5@1.10: +mpi")
     variant("hypre", default=True, description="hypre as a pressure solver of flows")
