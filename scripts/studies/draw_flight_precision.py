@@ -37,7 +37,8 @@ def fly(programs, record):
         for coupling in NAMES:
             for spacing in SPACINGS:
                 sets = (f"grid.spacing={spacing}", f"canopy[0].edge_length={0.7 * spacing:.4g}", f'coupling.corrections="{coupling}"',
-                        "run.end_time=2", "output={fields=[],restart_every=0}", "verify={divergence=1e-9}")
+                        "grid.core=[[-6,6],[-6,6],[-6.4,5.6]]", "canopy[0].perturbation.amplitude=0.01", "run.end_time=2",
+                        "output={fields=[],restart_every=0}", "verify={divergence=1e-9}")
                 folder = run_parachute(options, "c9-flat-full", f"{coupling}-{spacing}", sets, ["--study", "ensemble=4,jobs=1"])
                 with open(folder / "runs.csv", newline="") as file:
                     rows += [{"coupling": coupling, "spacing": spacing} | row for row in csv.DictReader(file)]
