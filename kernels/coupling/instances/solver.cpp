@@ -4,7 +4,6 @@
 
 namespace drogue::coupling {
 
-template class AirDrag<DROGUE_INSTANCE_SPACE>;
 template class CoupledSolver<DROGUE_INSTANCE_SPACE>;
 
 template <class ExecutionSpace>
