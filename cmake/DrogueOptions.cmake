@@ -109,8 +109,8 @@ endfunction()
 # a unity build, which would have to leave them out. Headers are precompiled for one optimisation.
 function(drogue_optimise_sources optimisation)
   if(NOT CMAKE_UNITY_BUILD)
-    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:${optimisation}>"
-      SKIP_PRECOMPILE_HEADERS ON)
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS "$<$<CONFIG:Release>:${optimisation}>")
+    set_source_files_properties(${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
   endif()
 endfunction()
 
@@ -128,6 +128,14 @@ endfunction()
 function(drogue_share_standard target other)
   if(NOT CMAKE_UNITY_BUILD)
     target_precompile_headers(${target} REUSE_FROM ${other})
+  endif()
+endfunction()
+
+# drogue_share_kokkos(<target>): takes Kokkos from the compiled headers of drogue_kernels, with the same options and macros.
+function(drogue_share_kokkos target)
+  if(NOT DROGUE_CUDA)
+    target_compile_definitions(${target} PRIVATE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
+    target_precompile_headers(${target} REUSE_FROM drogue_kernels)
   endif()
 endfunction()
 

@@ -370,7 +370,8 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const device::Instance<E
   reset_monitor();
   if (p.contact.is_enabled())
     _contact = make_contact<ExecutionSpace>(
-        p, {_instance, _forces.fabric.inverse_mass, _forces.fabric.fixed_dofs, _state.monitor});
+        p.mesh, p.contact, p.driver, p.dt,
+        {_instance, _forces.fabric.inverse_mass, _forces.fabric.fixed_dofs, _state.monitor});
   if (p.integrator == Integrator::rk4) _runge_kutta = {_forces, _launcher.driver() == Driver::stages};
   if (p.integrator == Integrator::verlet && _forces.has_dashpots)
     _state.spare_v = points("drogue::fabric::damped_velocities");

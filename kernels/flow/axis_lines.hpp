@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
+#include "kernels/flow/core.hpp"
 #include "kernels/flow/parameters.hpp"
 
 namespace drogue::flow {
@@ -38,15 +38,6 @@ namespace drogue::flow {
   for (int i = 0; is_stretched(p, axis) && i < p.cells[axis]; ++i) result.push_back(cell_width(p, axis, i));
   return result;
 }
-
-/// Cells of a grid that have one width along each axis: a box that sheets and bodies may lie in.
-struct Core {
-  std::array<int, 3> begin = {0, 0, 0}, cells = {0, 0, 0};
-  std::array<double, 3> low{}, high{};  ///< corners, m
-  std::array<double, 3> spacing{};      ///< m
-
-  friend bool operator==(const Core&, const Core&) = default;
-};
 
 /// Along each axis the longest run of cells whose widths are the least one to 1e-9 of it; of a uniform axis
 /// all cells. Does not throw.

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "kernels/device/copy.hpp"
+#include "kernels/flow/axis_lines.hpp"
 #include "kernels/flow/mac_grid.hpp"
+#include "kernels/flow/parameters.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {

@@ -5,7 +5,7 @@
 
 #include "kernels/coupling/face_stencil.hpp"
 #include "kernels/coupling/staggered_grid.hpp"
-#include "kernels/flow/axis_lines.hpp"
+#include "kernels/flow/core.hpp"
 #include "kernels/flow/mac_grid.hpp"
 #include "kernels/flow/views.hpp"
 

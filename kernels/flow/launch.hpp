@@ -2,7 +2,7 @@
 
 #include "kernels/device/block_size.hpp"
 #include "kernels/device/launch.hpp"
-#include "kernels/flow/parameters.hpp"
+#include "kernels/flow/schemes.hpp"
 
 namespace drogue::flow {
 

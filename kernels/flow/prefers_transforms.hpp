@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/flow/parameters.hpp"
+#include "kernels/flow/schemes.hpp"
 
 namespace drogue::flow {
 

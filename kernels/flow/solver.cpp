@@ -9,6 +9,7 @@
 #include "kernels/device/block_size.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
 #include "kernels/flow/diffusive_step.hpp"
+#include "kernels/flow/make_grid.hpp"
 #include "kernels/flow/step_constants.hpp"
 
 namespace drogue::flow {

@@ -13,6 +13,7 @@
 #include "kernels/flow/diffusion/implicit_diffusion.hpp"
 #include "kernels/flow/fields.hpp"
 #include "kernels/flow/halo/halo.hpp"
+#include "kernels/flow/make_grid.hpp"
 #include "kernels/flow/projection/net_inflow.hpp"
 #include "kernels/flow/projection/pressure_equation.hpp"
 #include "kernels/flow/projection/projection.hpp"

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <limits>
 
+#include "kernels/flow/axis_lines.hpp"
 #include "kernels/flow/control.hpp"
 #include "kernels/flow/mac_grid.hpp"
+#include "kernels/flow/parameters.hpp"
 
 namespace drogue::flow {
 

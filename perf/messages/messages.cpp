@@ -10,6 +10,7 @@
 #include "kernels/device/captured_graph.hpp"
 #include "kernels/device/copy.hpp"
 #include "kernels/flow/halo/halo.hpp"
+#include "kernels/flow/make_grid.hpp"
 #include "kernels/linear/poisson/pencil_transpose.hpp"
 
 namespace drogue::perf::messages {

@@ -4,6 +4,7 @@
 
 #include "kernels/flow/advection/momentum.hpp"
 #include "kernels/flow/launch.hpp"
+#include "kernels/flow/make_grid.hpp"
 #include "perf/raw/cuda_pair.hpp"
 #include "perf/raw/momentum.hpp"
 

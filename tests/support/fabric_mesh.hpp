@@ -1,8 +1,9 @@
 #pragma once
 
 #include <random>
+#include <vector>
 
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/material.hpp"
 
 namespace drogue::testing {
 

@@ -1,4 +1,4 @@
-#include "kernels/coupling/sheet/coupled_solver.hpp"
+#include "kernels/coupling/sheet/coupled_fabric.hpp"
 
 namespace drogue::fabric {
 

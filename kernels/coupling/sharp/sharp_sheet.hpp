@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "kernels/coupling/sharp/crossings.hpp"
 #include "kernels/coupling/sheet/sheet.hpp"
@@ -262,11 +263,11 @@ class SharpSheet final : public Sheet<ExecutionSpace> {
   using OwnFaces = FaceViews<Kokkos::View<T***, Kokkos::LayoutLeft, Memory>>;
 
   /// As the constructor of `Sheet`, on one rank.
-  SharpSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
-             const SheetParameters& parameters, double density,
+  SharpSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Mesh& mesh,
+             std::span<const fabric::Vector> inverse_mass, const SheetParameters& parameters, double density,
              const linear::DeviceCommunicator<ExecutionSpace>& communicator = {},
              const std::optional<FaceWindow>& own_faces = {})
-      : Base(space, grid, cloth, parameters, density, communicator, own_faces, cloth.mesh.triangles),
+      : Base(space, grid, mesh, inverse_mass, parameters, density, communicator, own_faces, mesh.triangles),
         _corner_force("drogue::coupling::corner_force", static_cast<std::size_t>(_surface.triangles())),
         _count(faces_of<int>("drogue::coupling::crossings")),
         _before(faces_of<double>("drogue::coupling::velocity_before")),

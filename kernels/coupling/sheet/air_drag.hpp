@@ -11,7 +11,7 @@
 #include "kernels/coupling/interpolate.hpp"
 #include "kernels/coupling/rank_sum.hpp"
 #include "kernels/coupling/sheet/drag_relaxation.hpp"
-#include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/coupling/sheet/sheet_parameters.hpp"
 #include "kernels/coupling/spread.hpp"
 #include "kernels/device/backend_list.hpp"
 #include "kernels/fabric/state.hpp"
@@ -204,15 +204,16 @@ class AirDrag {
   using Cloth = fabric::State<ExecutionSpace>;
   using Faces = FaceViews<flow::FaceView<ExecutionSpace>>;
 
-  /// `own_faces`: those of this rank. Blocks. Throws std::invalid_argument for parameters out of
-  /// range.
-  AirDrag(const ExecutionSpace& space, const StaggeredGrid& grid, const Parameters& p,
+  /// Of lines and bodies of a cloth that exchanges forces as `sheet`, in air with a density in kg/m^3.
+  /// `own_faces`: those of this rank. Blocks. Throws std::invalid_argument for parameters out of range.
+  AirDrag(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Mesh& mesh,
+          const std::vector<LineDrag>& of_lines, const std::vector<VertexDrag>& of_vertices,
+          const SheetParameters& sheet, double density,
           const linear::DeviceCommunicator<ExecutionSpace>& communicator,
           const std::optional<FaceWindow>& own_faces)
-      : _density(p.flow.density), _of_line(p.line_drag) {
-    check_parameters(p);
-    if (p.line_drag.empty() && p.vertex_drag.empty()) return;
-    const fabric::Mesh& mesh = p.fabric.mesh;
+      : _density(density), _of_line(of_lines) {
+    check_parameters(mesh, of_lines, of_vertices, sheet);
+    if (of_lines.empty() && of_vertices.empty()) return;
     const double h = std::ranges::min(grid.spacing);
     std::array<std::vector<int>, 2> ends;
     std::vector<int> first = {0}, of_point;
@@ -223,12 +224,12 @@ class AirDrag {
       across.push_back(coefficient), along.push_back(of_length);
       first.push_back(static_cast<int>(of_point.size()));
     };
-    for (const LineDrag& drag : p.line_drag) {
+    for (const LineDrag& drag : of_lines) {
       const auto line = static_cast<std::size_t>(drag.line);
       const auto [a, b] = mesh.lines[line];
       add(a, b, drag.across, drag.along, static_cast<int>(std::ceil(mesh::rest_length(mesh, line) / h)));
     }
-    for (const VertexDrag& drag : p.vertex_drag) add(drag.vertex, drag.vertex, drag.area, 0.0, 1);
+    for (const VertexDrag& drag : of_vertices) add(drag.vertex, drag.vertex, drag.area, 0.0, 1);
     const auto points = of_point.size(), elements = across.size(), rows = mesh.rest.size();
     list_vertices(space, ends, rows);
     _elements = {.ends = fabric::table_view(space, "drogue::coupling::drag_ends", ends),
@@ -236,8 +237,8 @@ class AirDrag {
                  .of_point = fabric::list_view(space, "drogue::coupling::drag_of_point", of_point),
                  .across = fabric::list_view(space, "drogue::coupling::drag_across", across),
                  .along = fabric::list_view(space, "drogue::coupling::drag_along", along),
-                 .lines = static_cast<int>(p.line_drag.size())};
-    _transfer.emplace(space, grid, p.sheet.delta, static_cast<int>(points), own_faces);
+                 .lines = static_cast<int>(of_lines.size())};
+    _transfer.emplace(space, grid, sheet.delta, static_cast<int>(points), own_faces);
     _rank_sum.emplace(communicator, points, 1);
     _relaxation = {
         .drive = vectors("drive", rows), .rate = rates("rate", rows), .path = vectors("path", rows)};
@@ -283,21 +284,21 @@ class AirDrag {
   void clear_forces(const ExecutionSpace& space, const Faces& force_density) const;
 
  private:
-  static void check_parameters(const Parameters& p) {
+  static void check_parameters(const fabric::Mesh& mesh, const std::vector<LineDrag>& of_lines,
+                               const std::vector<VertexDrag>& of_vertices, const SheetParameters& sheet) {
     const auto require = [](bool holds, const char* rule) {
       if (!holds) throw std::invalid_argument(std::string("air drag: ") + rule);
     };
     const auto is_valid = [](double value) { return value >= 0.0 && value <= 1e100; };
-    const fabric::Mesh& mesh = p.fabric.mesh;
-    require((p.line_drag.empty() && p.vertex_drag.empty()) || p.sheet.method != CouplingMethod::sharp,
+    require((of_lines.empty() && of_vertices.empty()) || sheet.method != CouplingMethod::sharp,
             "sharp sheets have no lines");
-    for (const LineDrag& drag : p.line_drag) {
+    for (const LineDrag& drag : of_lines) {
       require(drag.line >= 0 && static_cast<std::size_t>(drag.line) < mesh.lines.size(),
               "a line must be one of the mesh");
       require(is_valid(drag.across) && is_valid(drag.along),
               "coefficients times diameter must be finite and not negative");
     }
-    for (const VertexDrag& drag : p.vertex_drag) {
+    for (const VertexDrag& drag : of_vertices) {
       require(drag.vertex >= 0 && static_cast<std::size_t>(drag.vertex) < mesh.rest.size(),
               "a vertex must be one of the mesh");
       require(is_valid(drag.area), "the coefficient times area must be finite and not negative");

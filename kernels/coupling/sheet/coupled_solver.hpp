@@ -11,6 +11,7 @@
 
 #include "kernels/coupling/sheet/block_plan.hpp"
 #include "kernels/coupling/sheet/coupled_step.hpp"
+#include "kernels/coupling/sheet/inverse_masses.hpp"
 #include "kernels/coupling/sheet/line_cuts.hpp"
 #include "kernels/coupling/sheet/moving_frame.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
@@ -66,11 +67,12 @@ class CoupledSolver : public Solver {
         _group(group),
         _flow(instance, _parameters.flow, group),
         _box(flow::force_box(_parameters.flow)),
-        _sheet(make_sheet<ExecutionSpace>(_parameters.sheet.method, _space,
-                                          flow::coupling_grid(_flow.grid(), _box), _parameters.fabric,
-                                          _parameters.sheet, _parameters.flow.density, _flow.communicator(),
-                                          flow::face_window(_flow.grid(), _box))),
-        _drag(_space, flow::coupling_grid(_flow.grid(), _box), _parameters, _flow.communicator(),
+        _sheet(make_sheet<ExecutionSpace>(
+            _parameters.sheet.method, _space, flow::coupling_grid(_flow.grid(), _box),
+            _parameters.fabric.mesh, inverse_masses(_parameters.fabric), _parameters.sheet,
+            _parameters.flow.density, _flow.communicator(), flow::face_window(_flow.grid(), _box))),
+        _drag(_space, flow::coupling_grid(_flow.grid(), _box), _parameters.fabric.mesh, _parameters.line_drag,
+              _parameters.vertex_drag, _parameters.sheet, _parameters.flow.density, _flow.communicator(),
               flow::face_window(_flow.grid(), _box)),
         _fabric(instance, _parameters.fabric, _sheet->relaxation(_drag.relaxation())),
         _step(_space, _parameters, _flow, *_sheet, _drag, _fabric),

@@ -8,17 +8,13 @@
 
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
 #include "kernels/coupling/sheet/air_drag.hpp"
+#include "kernels/coupling/sheet/coupled_fabric.hpp"
 #include "kernels/coupling/sheet/immersed_sheet.hpp"
 #include "kernels/coupling/sheet/line_strength.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
-#include "kernels/fabric/fabric_solver.hpp"
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
 #include "kernels/stepping/state_list.hpp"
-
-namespace drogue::fabric {
-DROGUE_EXTERN_INSTANCES(class FabricSolver, coupling::AirRelaxation)
-}  // namespace drogue::fabric
 
 namespace drogue::coupling {
 

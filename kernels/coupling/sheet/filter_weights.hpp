@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/coupling/sheet/sheet_parameters.hpp"
 #include "kernels/device/pack.hpp"
 
 namespace drogue::coupling {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "kernels/coupling/interpolate.hpp"
 #include "kernels/coupling/sheet/edge_inset.hpp"
@@ -224,12 +225,12 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
   using typename Base::Vectors;
 
   /// As the constructor of `Sheet`.
-  ImmersedSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
-                const SheetParameters& parameters, double density,
-                const linear::DeviceCommunicator<ExecutionSpace>& communicator = {},
+  ImmersedSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Mesh& mesh,
+                std::span<const fabric::Vector> inverse_mass, const SheetParameters& parameters,
+                double density, const linear::DeviceCommunicator<ExecutionSpace>& communicator = {},
                 const std::optional<FaceWindow>& own_faces = {})
-      : Base(space, grid, cloth, parameters, density, communicator, own_faces, {}),
-        _inset(space, cloth.mesh, grid, parameters.edge_inset),
+      : Base(space, grid, mesh, inverse_mass, parameters, density, communicator, own_faces, {}),
+        _inset(space, mesh, grid, parameters.edge_inset),
         _present("drogue::coupling::present_positions", _inset.size() > 0 ? Base::rows() : 0),
         _interpolated_force(Base::vectors("interpolated_force")),
         _filter(Base::of_vertices(space, "filter", parameters.filter_of_vertex, {parameters.filter, false})) {
@@ -238,7 +239,7 @@ class ImmersedSheet final : public Sheet<ExecutionSpace> {
       _state.add("acceleration_trend", "m/s^2", _trend, _surface.vertices());
     }
     if (!(parameters.leak_filter > 0.0)) return;
-    _sweeps = smoothing_sweeps(cloth.mesh, grid);
+    _sweeps = smoothing_sweeps(mesh, grid);
     _triangle_area = fabric::ListView<ExecutionSpace, double>("drogue::coupling::triangle_area",
                                                               static_cast<std::size_t>(_surface.triangles()));
     for (VertexValues<ExecutionSpace>* values : {&_defect, &_present_defect, &_smoothed_defect})

@@ -2,7 +2,7 @@
 
 #include <Kokkos_Core.hpp>
 
-#include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/coupling/sheet/sheet_parameters.hpp"
 
 namespace drogue::coupling {
 

@@ -13,9 +13,10 @@
 #include "kernels/coupling/rank_sum.hpp"
 #include "kernels/coupling/sheet/closing_sheets.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
-#include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/coupling/sheet/sheet_parameters.hpp"
 #include "kernels/coupling/spread.hpp"
 #include "kernels/device/backend_list.hpp"
+#include "kernels/fabric/material.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/surface/surface.hpp"
 #include "kernels/flow/face_views.hpp"
@@ -114,17 +115,17 @@ class Sheet {
                                             const Faces& velocity) const;
 
  protected:
-  /// Sheet of the triangles of `cloth`; its other vertices, such as those of suspension lines, exchange no
-  /// force with the air, whose density is in kg/m^3. `own_faces`: those of this rank of the group, by default
-  /// all. `corners`: triangles as of `ClosingSheets`. Blocks. Throws std::invalid_argument for parameters out
-  /// of range.
-  Sheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
-        const SheetParameters& parameters, double density,
+  /// Sheet of the triangles of a cloth; its other vertices, such as those of suspension lines, exchange no
+  /// force with the air, whose density is in kg/m^3. `inverse_mass`: of the vertices, of `inverse_masses`.
+  /// `own_faces`: those of this rank of the group, by default all. `corners`: triangles as of
+  /// `ClosingSheets`. Blocks. Throws std::invalid_argument for parameters out of range.
+  Sheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Mesh& mesh,
+        std::span<const fabric::Vector> inverse_mass, const SheetParameters& parameters, double density,
         const linear::DeviceCommunicator<ExecutionSpace>& communicator,
         const std::optional<FaceWindow>& own_faces, std::span<const std::array<int, 3>> corners)
       : _parameters((check_parameters(parameters, density), parameters)),
         _density(density),
-        _surface(space, cloth.mesh),
+        _surface(space, mesh),
         _transfer(space, grid, parameters.delta, _surface.vertices(), own_faces),
         _rank_sum(communicator, rows(), 2),
         _air{.area = Scalars("drogue::coupling::area", rows()),
@@ -132,7 +133,7 @@ class Sheet {
              .inverse_air_mass = vectors("inverse_air_mass"),
              .before = vectors("velocity_before"),
              .acceleration = vectors("acceleration"),
-             .inverse_cloth_mass = inverse_masses(space, cloth),
+             .inverse_cloth_mass = cloth_masses(space, mesh, inverse_mass),
              .velocity = vectors("local_velocity"),
              .impulse = Scalars("drogue::coupling::impulse", rows()),
              .no_slip_impulse =
@@ -229,17 +230,13 @@ class Sheet {
     return p.law_of_vertex.empty() ? p.law.no_slip : std::ranges::any_of(p.law_of_vertex, holds);
   }
 
-  [[nodiscard]] Vectors inverse_masses(const ExecutionSpace& space, const fabric::Parameters& cloth) const {
+  [[nodiscard]] Vectors cloth_masses(const ExecutionSpace& space, const fabric::Mesh& mesh,
+                                     std::span<const fabric::Vector> inverse_mass) const {
     const Vectors result = vectors("inverse_mass");
     const auto mirror = Kokkos::create_mirror_view(result);
     for (std::size_t i = 0; i < rows(); ++i)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const bool is_pinned = !cloth.pinned.empty() && (cloth.pinned[i] >> axis & 1U) != 0U;
-        mirror(i, axis) = is_pinned ? 0.0 : 1.0 / cloth.mass[i];
-      }
-    for (const fabric::Motion& motion : cloth.motions)
-      for (const int i : motion.vertices) mirror(i, motion.axis) = 0.0;
-    for (const auto& corners : cloth.mesh.triangles)
+      for (std::size_t axis = 0; axis < 3; ++axis) mirror(i, axis) = inverse_mass[i][axis];
+    for (const auto& corners : mesh.triangles)
       for (const int i : corners)
         for (std::size_t axis = 0; axis < 3; ++axis)
           if (_parameters.method == CouplingMethod::sharp && mirror(static_cast<std::size_t>(i), axis) > 0.0)

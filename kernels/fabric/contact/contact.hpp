@@ -4,7 +4,9 @@
 #include <span>
 
 #include "kernels/device/instance.hpp"
-#include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/contact/contact_parameters.hpp"
+#include "kernels/fabric/integrator.hpp"
+#include "kernels/fabric/material.hpp"
 #include "kernels/fabric/results.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/fabric/views.hpp"
@@ -59,10 +61,11 @@ struct ContactInputs {
   StepMonitor<ExecutionSpace> monitor;
 };
 
-/// Contact handler for the bodies and the self-contact of `parameters`. Blocks. Throws std::runtime_error if
-/// memory runs out.
+/// Contact handler for bodies and the self-contact of a mesh, with steps of dt, s. Blocks. Throws
+/// std::runtime_error if memory runs out.
 template <class ExecutionSpace>
 [[nodiscard]] std::unique_ptr<ContactHandler<ExecutionSpace>> make_contact(
-    const Parameters& parameters, const ContactInputs<ExecutionSpace>& inputs);
+    const Mesh& mesh, const Contact& contact, Driver driver, double dt,
+    const ContactInputs<ExecutionSpace>& inputs);
 
 }  // namespace drogue::fabric

@@ -26,7 +26,8 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
  public:
   using Points = PointsView<ExecutionSpace>;
 
-  ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& inputs);
+  ContactImpl(const Mesh& mesh, const Contact& contact, Driver driver, double dt,
+              const ContactInputs<ExecutionSpace>& inputs);
   ContactImpl(const ContactImpl&) = delete;  // captured graphs refer to this object
   ContactImpl& operator=(const ContactImpl&) = delete;
 
@@ -125,38 +126,39 @@ void ContactImpl<ExecutionSpace>::allocate(Unmanaged& to, const char* label, Siz
 }
 
 template <class ExecutionSpace>
-ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& inputs)
+ContactImpl<ExecutionSpace>::ContactImpl(const Mesh& mesh, const Contact& contact, Driver driver, double dt,
+                                         const ContactInputs<ExecutionSpace>& inputs)
     : _instance(inputs.instance),
       _inverse_mass(inputs.inverse_mass),
       _fixed_dofs(inputs.fixed_dofs),
-      _dt(p.dt) {
-  const CollisionEdges edges = collision_edges(p.mesh);
-  const auto n = p.mesh.rest.size(), faces = p.mesh.triangles.size(), sides = edges.ends.size();
+      _dt(dt) {
+  const CollisionEdges edges = collision_edges(mesh);
+  const auto n = mesh.rest.size(), faces = mesh.triangles.size(), sides = edges.ends.size();
   auto& t = _views;
   t.vertices = static_cast<int>(n), t.triangles = static_cast<int>(faces), t.edges = static_cast<int>(sides);
   t.first_line = edges.first_line;
-  t.thickness = p.contact.thickness, t.self_friction = p.contact.friction, t.self = p.contact.self;
-  t.widest_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
-  t.by_interval = p.contact.interval > 1;
+  t.thickness = contact.thickness, t.self_friction = contact.friction, t.self = contact.self;
+  t.widest_skin = std::max(contact.thickness, 0.5 * edges.mean_length);
+  t.by_interval = contact.interval > 1;
   t.inverse_mass = _inverse_mass, t.fixed_dofs = _fixed_dofs, t.monitor = inputs.monitor;
-  allocate(t.bodies, "bodies", p.contact.bodies.size());
+  allocate(t.bodies, "bodies", contact.bodies.size());
   allocate(t.triangle, "contact_triangles", faces);
   allocate(t.edge, "collision_edges", sides);
-  const std::vector<int> long_edges = long_lines(p.mesh, edges);
+  const std::vector<int> long_edges = long_lines(mesh, edges);
   allocate(t.long_edge, "long_edges", long_edges.size());
   allocate(t.is_long, "edge_is_long", sides);
   allocate(t.is_cut, "edge_is_cut", sides);
-  _edge_of_line = edges_of_lines(p.mesh, edges);
+  _edge_of_line = edges_of_lines(mesh, edges);
   allocate(t.owned, "owned_features", faces);
   const auto bodies = Kokkos::create_mirror_view(t.bodies);
   const auto triangle = Kokkos::create_mirror_view(t.triangle);
   const auto owned = Kokkos::create_mirror_view(t.owned);
-  const std::vector<int> owned_bits = owned_features(p.mesh);
+  const std::vector<int> owned_bits = owned_features(mesh);
   for (std::size_t k = 0; k < faces; ++k) owned(k) = owned_bits[k];
   const auto edge = Kokkos::create_mirror_view(t.edge);
-  for (std::size_t k = 0; k < p.contact.bodies.size(); ++k) bodies(k) = obstacle(p.contact.bodies[k]);
+  for (std::size_t k = 0; k < contact.bodies.size(); ++k) bodies(k) = obstacle(contact.bodies[k]);
   for (std::size_t k = 0; k < faces; ++k)
-    for (std::size_t corner = 0; corner < 3; ++corner) triangle(k, corner) = p.mesh.triangles[k][corner];
+    for (std::size_t corner = 0; corner < 3; ++corner) triangle(k, corner) = mesh.triangles[k][corner];
   for (std::size_t k = 0; k < sides; ++k)
     for (std::size_t end = 0; end < 2; ++end) edge(k, end) = edges.ends[k][end];
   const auto long_edge = Kokkos::create_mirror_view(t.long_edge);
@@ -193,12 +195,12 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   allocate(t.progress, "contact_progress", 1);
   _work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::contact_work", n);
   t.work = _work;
-  if (!p.mesh.line_stiffness.empty()) set_line_stiffness(p.mesh.line_stiffness);
+  if (!mesh.line_stiffness.empty()) set_line_stiffness(mesh.line_stiffness);
   reset();
   if constexpr (Grid::available) {
     const int teams = Grid::most_teams(_instance);
-    if (t.by_interval && teams > 0 && (p.driver == Driver::automatic || p.driver == Driver::persistent))
-      _grid.emplace(_instance, teams, p.contact.block > 0 ? p.contact.block : Resolution::largest_team, 0, 0);
+    if (t.by_interval && teams > 0 && (driver == Driver::automatic || driver == Driver::persistent))
+      _grid.emplace(_instance, teams, contact.block > 0 ? contact.block : Resolution::largest_team, 0, 0);
   }
 }
 
@@ -323,9 +325,10 @@ FailureReason ContactImpl<ExecutionSpace>::reason(std::int64_t step) const {
 }
 
 template <class ExecutionSpace>
-std::unique_ptr<ContactHandler<ExecutionSpace>> make_contact(const Parameters& parameters,
+std::unique_ptr<ContactHandler<ExecutionSpace>> make_contact(const Mesh& mesh, const Contact& contact,
+                                                             Driver driver, double dt,
                                                              const ContactInputs<ExecutionSpace>& inputs) {
-  return std::make_unique<ContactImpl<ExecutionSpace>>(parameters, inputs);
+  return std::make_unique<ContactImpl<ExecutionSpace>>(mesh, contact, driver, dt, inputs);
 }
 
 }  // namespace drogue::fabric

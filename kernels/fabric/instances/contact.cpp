@@ -3,6 +3,6 @@
 namespace drogue::fabric {
 
 template std::unique_ptr<ContactHandler<DROGUE_INSTANCE_SPACE>> make_contact(
-    const Parameters&, const ContactInputs<DROGUE_INSTANCE_SPACE>&);
+    const Mesh&, const Contact&, Driver, double, const ContactInputs<DROGUE_INSTANCE_SPACE>&);
 
 }  // namespace drogue::fabric

@@ -2,7 +2,7 @@
 
 #include "kernels/device/memory.hpp"
 #include "kernels/device/pack.hpp"
-#include "kernels/flow/parameters.hpp"
+#include "kernels/flow/schemes.hpp"
 #include "kernels/reconstruction/weno_weights.hpp"
 
 namespace drogue::flow {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/flow/schemes.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {

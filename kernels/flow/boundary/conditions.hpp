@@ -9,6 +9,7 @@
 #include "kernels/device/expression.hpp"
 #include "kernels/device/launch.hpp"
 #include "kernels/device/memory.hpp"
+#include "kernels/flow/parameters.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {

@@ -8,7 +8,7 @@
 
 #include "kernels/device/expression.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
-#include "kernels/flow/mac_grid.hpp"
+#include "kernels/flow/make_grid.hpp"
 #include "kernels/stepping/motion_steps.hpp"
 
 namespace drogue::flow {

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "kernels/flow/axis_lines.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
 #include "kernels/flow/launch.hpp"
 #include "kernels/flow/prefers_transforms.hpp"

@@ -7,6 +7,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/device/launch.hpp"
+#include "kernels/flow/axis_lines.hpp"
 #include "kernels/flow/observables/gradient.hpp"
 #include "kernels/flow/parameters.hpp"
 #include "kernels/flow/state.hpp"

@@ -4,6 +4,7 @@
 
 #include "kernels/flow/launch.hpp"
 #include "kernels/flow/observables/gradient.hpp"
+#include "kernels/flow/parameters.hpp"
 #include "kernels/flow/views.hpp"
 #include "kernels/stepping/step_control.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "kernels/flow/axis_lines.hpp"
 #include "kernels/flow/face_views.hpp"
+#include "kernels/flow/make_grid.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/flow_faces.hpp"
 

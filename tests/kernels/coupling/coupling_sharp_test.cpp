@@ -5,6 +5,7 @@
 #include <random>
 
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
+#include "kernels/coupling/sheet/inverse_masses.hpp"
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/points_transfer.hpp"
 #include "kernels/reference/coupling/sharp_sheet.hpp"
@@ -75,7 +76,7 @@ TEST(SharpSheet, ForcesOfCrumpledLayersMatchTheReference) {
   SheetParameters parameters;
   parameters.method = CouplingMethod::sharp;
   parameters.law = {sheet.alpha, sheet.beta, false};
-  const SharpSheet<Space> sharp(space, grid, cloth, parameters, density);
+  const SharpSheet<Space> sharp(space, grid, cloth.mesh, inverse_masses(cloth), parameters, density);
   using Vectors = SharpSheet<Space>::Vectors;
   const Vectors x("x", rows), v("v", rows);
   fabric::copy_to_points(space, sheet.positions, x);

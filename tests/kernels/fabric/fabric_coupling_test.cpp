@@ -80,27 +80,26 @@ Points on_device_points(const Space& space, const std::vector<Vector>& from) {
   return to;
 }
 
-/// Vertex force equal to a timed load: strength(x, y, z, t) times direction, N.
-struct Push {
+/// Vertex force equal to a timed load, strength(x, y, z, t) times direction, N, or without directions of a
+/// damped spring to the rest position. One type for both: each compiles a solver.
+struct PushOrMount {
   Points rest, direction;
   device::ExpressionProgram strength;
+  double stiffness = 0.0, damping = 0.0;
 
   KOKKOS_FUNCTION Vector3<double> operator()(const VertexStage& at) const {
     const Vector3<double> place = load_points<double>(rest, at.vertex);
-    return device::evaluate(strength, place.x, place.y, place.z, at.time) *
-           load_points<double>(direction, at.vertex);
+    if (direction.extent(0) > 0)
+      return device::evaluate(strength, place.x, place.y, place.z, at.time) *
+             load_points<double>(direction, at.vertex);
+    return stiffness * (place - at.position) - damping * at.velocity;
   }
 };
+using ForcedSolver = FabricSolver<Space, PushOrMount>;
 
-/// Vertex force of a damped spring to the rest position.
-struct Mount {
-  Points rest;
-  double stiffness, damping;
-
-  KOKKOS_FUNCTION Vector3<double> operator()(const VertexStage& at) const {
-    return stiffness * (load_points<double>(rest, at.vertex) - at.position) - damping * at.velocity;
-  }
-};
+PushOrMount mount(const Space& space, const std::vector<Vector>& rest, double stiffness, double damping) {
+  return {on_device_points(space, rest), {}, {}, stiffness, damping};
+}
 
 /// Kernel launches of 1000 steps after 256 steps to warm up. `end`: the initial state, overwritten with the
 /// final one. Also expects no fence, allocation or copy.
@@ -143,8 +142,8 @@ void expect_force_like_load(Integrator integrator, Driver driver, Model model, d
   const Motions start{shaken(p.mesh.rest, 0.05, 1),
                       shaken(std::vector<Vector>(p.mass.size(), Vector{}), 0.1, 2)};
 
-  FabricSolver<Space, Push> forced(
-      instance, p, {on_device_points(space, p.mesh.rest), on_device_points(space, direction), strength});
+  ForcedSolver forced(instance, p,
+                      {on_device_points(space, p.mesh.rest), on_device_points(space, direction), strength});
   Motions by_force = start;
   const std::int64_t of_forced = launches_of(forced, by_force);
   EXPECT_LE(of_forced, most_launches(integrator, driver, false));
@@ -239,8 +238,7 @@ TEST(FabricCoupling, ClothMovesThroughALineThatIsCut) {
 Motions mounted_motions(Integrator integrator, Driver driver, const std::vector<std::int64_t>& cuts) {
   const device::Instance<Space> instance(1);
   const Parameters p = mounted_sheet(integrator, driver);
-  FabricSolver<Space, Mount> solver(instance, p,
-                                    {on_device_points(instance.space(), p.mesh.rest), 20.0, 0.05});
+  ForcedSolver solver(instance, p, mount(instance.space(), p.mesh.rest, 20.0, 0.05));
   Motions now{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
   solver.upload(now.x, now.v);
   for (const std::int64_t steps : cuts) solver.enqueue_steps(steps);
@@ -319,8 +317,7 @@ TEST(FabricCoupling, MassInAVertexForceSpringOscillates) {
     p.mass = {2.0, 2.0};
     p.integrator = integrator;
     p.dt = 1e-3;
-    FabricSolver<Space, Mount> solver(instance, p,
-                                      {on_device_points(instance.space(), p.mesh.rest), 50.0, 0.0});
+    ForcedSolver solver(instance, p, mount(instance.space(), p.mesh.rest, 50.0, 0.0));
     Motions now{{{0.1, 0, 0}, {1, 0.2, 0}}, std::vector<Vector>(2)};
     solver.upload(now.x, now.v);
     solver.enqueue_steps(1000);
@@ -421,10 +418,10 @@ TEST(FabricCoupling, MovesPayloadsFreelyAndPinsAtTheWrittenVelocity) {
 
 /// Solver with a VertexForce whose state another kernel changes before every 7 steps.
 struct CoupledSheet {
-  FabricSolver<Space, Mount> solver;
+  ForcedSolver solver;
 
   CoupledSheet(const device::Instance<Space>& instance, const Parameters& p)
-      : solver(instance, p, {on_device_points(instance.space(), p.mesh.rest), 20.0, 0.05}) {
+      : solver(instance, p, mount(instance.space(), p.mesh.rest, 20.0, 0.05)) {
     solver.upload(shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size()));
   }
 
@@ -481,12 +478,12 @@ void expect_failure_of_a_replay(Integrator integrator, Driver driver) {
   const device::Instance<Space> instance(1);
   const Parameters p = mounted_sheet(integrator, driver);
   // Zero, and NaN after 20.6 steps.
-  const Push burst{on_device_points(instance.space(), p.mesh.rest),
-                   on_device_points(instance.space(), std::vector<Vector>(p.mass.size())),
-                   postfix({20.6 * p.dt, "t", "-", "sqrt"})};
-  FabricSolver<Space, Push> solver(instance, p, burst), direct(instance, p, burst);
+  const PushOrMount burst{on_device_points(instance.space(), p.mesh.rest),
+                          on_device_points(instance.space(), std::vector<Vector>(p.mass.size())),
+                          postfix({20.6 * p.dt, "t", "-", "sqrt"})};
+  ForcedSolver solver(instance, p, burst), direct(instance, p, burst);
   const Motions start{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size())};
-  for (FabricSolver<Space, Push>* each : {&solver, &direct}) each->upload(start.x, start.v);
+  for (ForcedSolver* each : {&solver, &direct}) each->upload(start.x, start.v);
   const device::CapturedGraph<Space> graph(instance, [&](const Space&) { solver.enqueue_steps(7); });
   graph.launch();
   graph.launch();

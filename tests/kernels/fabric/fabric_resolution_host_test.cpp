@@ -30,9 +30,10 @@ class MovedSheets {
         x(i, axis) = start.x[i][axis], v(i, axis) = start.v[i][axis];
     }
     stepping::reset_monitor(ResolutionSpace(), _monitor, 0);
-    Parameters p = start.p;
-    p.contact.interval = 10;
-    contact = std::make_unique<ContactImpl<ResolutionSpace>>(p, inputs);
+    Contact every_ten_steps = start.p.contact;
+    every_ten_steps.interval = 10;
+    contact = std::make_unique<ContactImpl<ResolutionSpace>>(start.p.mesh, every_ten_steps, start.p.driver,
+                                                             start.p.dt, inputs);
     contact->begin_interval(x, duration);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) x(i, axis) += duration * v(i, axis);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "kernels/flow/make_grid.hpp"
 #include "kernels/flow/step_constants.hpp"
 
 // Amplification of waves by the time schemes at the admissible dt: von Neumann's analysis of advection and

@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "kernels/flow/make_grid.hpp"
 #include "kernels/flow/turbulence/eddy_viscosity.hpp"
 #include "tests/support/flow_case.hpp"
 #include "tests/support/profiled.hpp"
