@@ -110,15 +110,14 @@ void note_long_lines(const Place& at, FlowScene& scene, const Canopy& canopy) {
 /// Notes a perturbation that strains the cloth so far that it springs apart: docs/parachute-notebook.md,
 /// inflation.
 void note_strained_start(const Place& at, FlowScene& scene, const Canopy& canopy) {
-  constexpr double most_strain = 0.05;
+  constexpr double most = 0.05;  // of an edge
   const double amplitude = canopy.perturbation.amplitude, edge = canopy.edge_length;
-  if (amplitude <= most_strain * edge) return;
-  scene.note(at.path("perturbation.amplitude"), " = ", rough_text(amplitude), " m strains edges of ",
-             rough_text(edge), " m by ", rough_text(100.0 * amplitude / edge),
-             " %: the cloth springs apart as it starts, which changes the opening, and may pull harder than "
-             "that does; amplitudes of at most ",
-             rough_text(100.0 * most_strain), " % of an edge, here ", rough_text(most_strain * edge),
-             " m, do not");
+  if (amplitude <= 1.005 * most * edge) return;  // three digits of the limit are within it
+  scene.note(at.path("perturbation.amplitude"), " = ", rough_text(amplitude), " m is ",
+             rough_text(100.0 * amplitude / edge),
+             " % of edge_length: cloth strained so far springs apart as it "
+             "starts, which changes the opening, and may pull harder than that does; at most ",
+             rough_text(100.0 * most), " %, here ", rough_text(most * edge), " m, do not");
 }
 
 bool blows_along(const FlowScene& scene, std::size_t axis) {

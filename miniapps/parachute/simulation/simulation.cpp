@@ -160,13 +160,7 @@ framework::StopReason Simulation::advance(const framework::AdvanceLimits& limits
     deliver();
     row = std::async(std::launch::async, [this, state = row_state()] { return row_of(state); });
   };
-  framework::StopReason reason{};
-  try {
-    reason = take_steps(limits, begin_row, poll);
-  } catch (...) {
-    deliver();
-    throw;
-  }
+  const framework::StopReason reason = take_steps(limits, begin_row, poll);
   deliver();
   return reason;
 }

@@ -299,8 +299,8 @@ void describe_flights(const FlowScene& scene, const PeakPulls& peaks, const run:
       result.warnings.push_back(part_name(group) + ": the largest line force is that of the start, " +
                                 scene::rough_text(time) +
                                 " s, before the air has passed a twentieth of the canopy, and not of the "
-                                "opening: cloth that starts strained pulls so, as by a large "
-                                "perturbation.amplitude");
+                                "opening: cloth and lines that start strained pull so, as by a "
+                                "perturbation.amplitude of more than some percent of edge_length");
   }
 }
 

@@ -182,10 +182,13 @@ TEST(CanopyNotes, LinesLongerThanPublishedDragIsFor) {
 TEST(CanopyNotes, PerturbationsThatStrainTheCloth) {
   expect_note(
       {"canopy[0].perturbation={amplitude=0.02,seed=1}"},
-      "canopy[0].perturbation.amplitude = 0.02 m strains edges of 0.2 m by 10 %: the cloth springs apart "
-      "as it starts, which changes the opening, and may pull harder than that does; amplitudes of at "
-      "most 5 % of an edge, here 0.01 m, do not");
+      "canopy[0].perturbation.amplitude = 0.02 m is 10 % of edge_length: cloth strained so far springs "
+      "apart as it starts, which changes the opening, and may pull harder than that does; at most 5 %, "
+      "here 0.01 m, do not");
   EXPECT_TRUE(notes({"canopy[0].perturbation={amplitude=0.01,seed=1}"}).empty());
+  EXPECT_TRUE(
+      notes({"canopy[0].edge_length=0.1999", "canopy[0].perturbation={amplitude=0.01,seed=1}"}).empty())
+      << "the limit rounded to three digits";
 }
 
 TEST(CanopyNotes, SpeedsNearThatOfSoundInAirAndWaterAlone) {
