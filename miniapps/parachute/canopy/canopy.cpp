@@ -374,6 +374,8 @@ double Canopy::nominal_area() const {
   return flat + pi * (0.5 * diameter + skirt_radius()) * skirt.length;
 }
 
+double Canopy::nominal_diameter() const { return std::sqrt(4.0 / pi * nominal_area()); }
+
 double Canopy::starting_skirt_radius() const {
   return shape == CanopyShape::partly_closed ? closure * skirt_radius() : skirt_radius();
 }

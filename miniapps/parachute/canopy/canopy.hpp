@@ -151,6 +151,8 @@ struct Canopy {
   [[nodiscard]] double skirt_height() const;
   /// Nominal area: that of the cloth and the vent, m^2. Does not throw.
   [[nodiscard]] double nominal_area() const;
+  /// Diameter of a disk of the nominal area, m. Does not throw.
+  [[nodiscard]] double nominal_diameter() const;
   /// Radius of the edge to which the lines are attached, at the start, m. Does not throw.
   [[nodiscard]] double starting_skirt_radius() const;
   /// Number of vertices, those of vent lines, a riser and an own payload included. Does not throw.

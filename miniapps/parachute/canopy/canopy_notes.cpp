@@ -18,7 +18,7 @@ constexpr double least_cells = 12.0;
 
 /// Diameter of an open canopy, m: two thirds of the nominal one, as of flat circular canopies (0.64 to 0.70,
 /// Knacke, Parachute Recovery Systems Design Manual, 1992).
-double inflated_diameter(const Canopy& canopy) { return 0.67 * std::sqrt(4.0 / pi * canopy.nominal_area()); }
+double inflated_diameter(const Canopy& canopy) { return 0.67 * canopy.nominal_diameter(); }
 
 /// Cells across an open canopy.
 double cells_across(const flow::Parameters& p, const Canopy& canopy) {
@@ -115,8 +115,8 @@ void note_strained_start(const Place& at, FlowScene& scene, const Canopy& canopy
   if (amplitude <= 1.005 * most * edge) return;  // three digits of the limit are within it
   scene.note(at.path("perturbation.amplitude"), " = ", rough_text(amplitude), " m is ",
              rough_text(100.0 * amplitude / edge),
-             " % of edge_length: cloth strained so far springs apart as it "
-             "starts, which changes the opening, and may pull harder than that does; at most ",
+             " % of edge_length: cloth strained so far springs apart as it starts, "
+             "which changes the opening, and may pull harder than that does; at most ",
              rough_text(100.0 * most), " %, here ", rough_text(most * edge), " m, do not");
 }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <utility>
 
 #include "common/run/history_statistics.hpp"
@@ -273,9 +272,8 @@ void describe_lean(const FlowScene& scene, const run::History& history, std::siz
 /// True of a time, s, at which the air has passed less than a twentieth of a canopy.
 bool is_of_the_start(const FlowScene& scene, const run::History& history, std::size_t i, double time) {
   if (history.empty() || !scene.lack_of_airspeed(i).empty()) return false;
-  const double speed = std::ranges::max(history.at("canopy_" + std::to_string(i) + "_airspeed")),
-               diameter = std::sqrt(4.0 / std::numbers::pi * scene.canopies[i].nominal_area());
-  return speed * time < 0.05 * diameter;
+  const double speed = std::ranges::max(history.at("canopy_" + std::to_string(i) + "_airspeed"));
+  return speed * time < 0.05 * scene.canopies[i].nominal_diameter();
 }
 
 }  // namespace
