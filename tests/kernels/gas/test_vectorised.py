@@ -2,6 +2,8 @@
 
 import os
 import pathlib
+import subprocess
+import tempfile
 import unittest
 
 import disassembly
@@ -50,6 +52,23 @@ class Step(unittest.TestCase):
         counts = disassembly.arithmetic(text, (FUNCTOR, CHUNK))
         self.assertTrue(counts, f"no arithmetic in {FUNCTOR}")
         self.assertEqual([], complaints(counts, disassembly.widest_register(words)), counts)
+
+
+@unittest.skipIf(reason_to_skip(), reason_to_skip())
+class Root(unittest.TestCase):
+    def test_root_is_one_instruction_on_processors_that_split_registers(self):
+        # For Zen 1 GCC vectorises loops by 128 bits, here and wherever -march=native means Zen 1.
+        _, words = disassembly.compilation(BUILD, "/step_serial.cpp")
+        # A compiled header, whose options begin with this one, holds for its own processor alone.
+        words = words[:words.index("-Winvalid-pch" if "-Winvalid-pch" in words else "-o")]
+        with tempfile.TemporaryDirectory() as folder:
+            source, compiled = pathlib.Path(folder, "root.cpp"), pathlib.Path(folder, "root.o")
+            source.write_text('#include "kernels/device/pack.hpp"\n'
+                              "using Four = drogue::device::Pack<double, 4>;\n"
+                              "Four four_roots(Four x) { return square_root(x); }\n", encoding="utf-8")
+            subprocess.run([*words, "-march=znver1", "-mtune=znver1", "-c", source, "-o", compiled], check=True)
+            text = disassembly.disassembled(disassembly.cache(BUILD)["CMAKE_OBJDUMP"], compiled)
+        self.assertEqual({("sqrt", "p", "ymm"): 1}, disassembly.arithmetic(text, ("four_roots",)))
 
 
 class ScalarCodeDetection(unittest.TestCase):
