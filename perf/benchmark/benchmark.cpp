@@ -245,6 +245,15 @@ void print_row(const Request& request, const Row& row, const Record& record, con
   std::fflush(stdout);
 }
 
+/// A row without a result, such as that of a problem that does not fit into memory.
+void print_failed_row(const Request& request, const Row& row, const Failure& failure) {
+  std::printf(columns, row.problem.program.c_str(), row.problem.name.c_str(), row.problem.extent.c_str(),
+              std::string(device::name(request.backend)).c_str(),
+              printed("%d x %d", row.ranks, threads_of(request, row.ranks)).c_str(), "-", "-", "-", "-",
+              failure.what());
+  std::fflush(stdout);
+}
+
 nlohmann::json or_null(const std::optional<double>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json();
 }
@@ -324,7 +333,15 @@ void run(const Request& request, const std::vector<Row>& rows, Table& table) {
   std::fflush(stdout);
   std::string commands;
   std::optional<double> of_one;
-  for (const Row& row : rows) commands += "  " + add_row(request, row, of_one, table) + "\n";
+  std::optional<Failure> failure;  // the first one
+  for (const Row& row : rows) try {
+      commands += "  " + add_row(request, row, of_one, table) + "\n";
+    } catch (const Failure& of_row) {
+      if (of_row.code() == ExitCode::interrupted) throw;
+      print_failed_row(request, row, of_row);
+      if (!failure) failure = of_row;
+    }
+  if (table.records.empty()) throw *failure;
   const nlohmann::json& from = table.records.back()["provenance"];
   std::printf(
       "drogue %s, commit %s; Kokkos %s; %s; %s; %s\ncommands, in a folder with the batch of options:\n%s",
@@ -332,6 +349,7 @@ void run(const Request& request, const std::vector<Row>& rows, Table& table) {
       from["kokkos"].get<std::string>().c_str(), from["compiler"].get<std::string>().c_str(),
       table.records.back()["facts"]["device"].get<std::string>().c_str(),
       from["date"].get<std::string>().c_str(), commands.c_str());
+  if (failure) throw *failure;
 }
 
 }  // namespace drogue::perf::benchmark

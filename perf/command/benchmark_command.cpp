@@ -84,6 +84,8 @@ ExitCode run_benchmark(const BenchmarkOptions& options) {
                              .folder = options.keep};
   const std::vector<benchmark::Row> rows = rows_of(options, request);
   request.launcher = launcher_of(options);
+  if (std::filesystem::is_regular_file(options.out))
+    throw Failure(ExitCode::usage, "the file '" + options.out + "' of --out exists; name a new one");
   run::require_writable(options.out);
   std::optional<run::TemporaryFolder> temporary;
   if (options.keep.empty())
@@ -129,7 +131,7 @@ Command benchmark_command(CLI::App& program) {
   app->add_option("--launcher", options->launcher,
                   "Words that start the ranks, as 'srun -n {ranks}'; default: mpirun -n {ranks}");
   app->add_option("--keep", options->keep, "Folder for the files of the runs; without it they are removed");
-  app->add_option("--out", options->out, "File for the records, one JSON line a row");
+  app->add_option("--out", options->out, "New file for the records, one JSON line a row");
   return {app, [options](const std::vector<std::string>& /*kokkos*/) { return run_benchmark(*options); }};
 }
 

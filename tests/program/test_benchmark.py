@@ -93,6 +93,7 @@ class Benchmark(perf_program.PerfTest):
             (2, ["--backend", "serial", "--threads", "2"], "the backend serial has one thread"),
             (2, ["--keep", "kept"], "the folder 'kept' of --keep holds files; name a new one"),
             (6, ["--out", "none/rows.jsonl"], "none/rows.jsonl"),
+            (2, ["--out", "kept/notes.txt"], "the file 'kept/notes.txt' of --out exists; name a new one"),
         ):
             with self.subTest(words):
                 process = self.expect(code, "benchmark", *words)
@@ -122,6 +123,7 @@ class Planned(perf_program.PerfTest):
     def benchmark(self, code, plan, *words, backend="serial", **environment):
         """Standard output and error, and records, with a plan; asserts the exit code. OMP_* are those of `environment` alone."""
         (self.bin / "plan.json").write_text(json.dumps(plan))
+        (self.folder / "rows.jsonl").unlink(missing_ok=True)
         inherited = {name: value for name, value in os.environ.items() if not name.startswith("OMP_")}
         done = subprocess.run([self.bin / "drogue-perf", "benchmark", "--backend", backend, "--out", "rows.jsonl", *words], cwd=self.folder,
                               capture_output=True, text=True, check=False,
@@ -180,11 +182,14 @@ class Planned(perf_program.PerfTest):
         self.assertEqual([10.0], record["samples"])
         self.assertIn(" 10.000  one run ", text)
 
-    def test_program_that_refuses_ends_it_with_the_rows_until_then(self):
-        plan = {"drogue-options": {"code": 3, "sentence": "batch.csv:2: no such column"}}
-        _, sentence, records = self.benchmark(3, plan, "--filter", "drum|puts|c9")
-        self.assertIn("puts on 1 rank failed: drogue-options: batch.csv:2: no such column", sentence)
-        self.assertEqual(["drum"], [record["facts"]["problem"] for record in records])
+    def test_other_problems_run_beside_one_without_a_result(self):
+        plan = {"drogue-options": {"code": 6, "sentence": "out of memory: use fewer cells"}}
+        text, sentence, records = self.benchmark(6, plan, "--filter", "drum|puts|c9")
+        failure = "puts on 1 rank failed: drogue-options: out of memory: use fewer cells"
+        self.assertIn(failure, sentence)
+        self.assertRegex(text, rf"drogue-options +puts .* - +{failure}\n")
+        self.assertEqual(["drum", "c9-flat"], [record["facts"]["problem"] for record in records])
+        self.assertIn("commands, in a folder", text)
 
     def test_program_that_is_missing_is_named(self):
         (self.bin / "drogue-springs").unlink()

@@ -45,7 +45,8 @@ TEST(FailedRun, ExplainsTooFewSlotsOfMpirun) {
                 std::string("a run on 2 ranks failed: mpirun has fewer slots than ranks, by default one "
                             "per core; take fewer ranks, or let them share cores by "
                             "OMPI_MCA_rmaps_base_oversubscribe=1, with Open MPI 5 "
-                            "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe")));
+                            "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe; --ranks of benchmark and "
+                            "--most of table set the number")));
 }
 
 TEST(FailedRun, JoinsTheFirstParagraphOfALauncher) {
