@@ -93,8 +93,9 @@ std::string place_text(const std::array<double, 3>& place) {
   return text.str();
 }
 
-std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& lattice, double time) {
-  const std::size_t size = lattice.size();
+std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& lattice, double time,
+                             std::size_t stride) {
+  const std::size_t size = (lattice.size() + stride - 1) / stride;
   if (function.constant()) return std::vector<double>(size, *function.constant());
   std::vector<double> values(size);
   constexpr std::size_t entries_per_thread = 50'000;
@@ -102,7 +103,7 @@ std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& l
                    [&](std::size_t /*part*/, std::size_t begin, std::size_t end) {
                      SpaceTimeFunction own = function;  // its evaluation changes it
                      for (std::size_t entry = begin; entry < end; ++entry)
-                       values[entry] = own(lattice.place(entry), time);
+                       values[entry] = own(lattice.place(stride * entry), time);
                    });
   return values;
 }

@@ -96,8 +96,9 @@ struct Lattice {
 /// "(x, y, z)" of a place, m. Throws only std::bad_alloc.
 [[nodiscard]] std::string place_text(const std::array<double, 3>& place);
 
-/// Values of a function at all points of a lattice, computed by one thread per core. Throws std::bad_alloc.
+/// Values of a function at every `stride`-th point of a lattice, computed by one thread per core. Throws
+/// std::bad_alloc.
 [[nodiscard]] std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& lattice,
-                                           double time);
+                                           double time, std::size_t stride = 1);
 
 }  // namespace drogue::parachute_app

@@ -184,12 +184,7 @@ void check_initial(const Place& root, const FlowScene& scene, framework::Initial
     const SpaceTimeFunction function(text);
     const std::size_t stride =
         function.constant() ? lattice.size() : framework::check_stride(check, lattice.size());
-    std::vector<double> values;
-    if (stride == 1)
-      values = evaluate(function, lattice, 0.0);
-    else
-      for (std::size_t entry = 0; entry < lattice.size(); entry += stride)
-        values.push_back(function(lattice.place(entry), 0.0));
+    const std::vector<double> values = evaluate(function, lattice, 0.0, stride);
     const auto refuse = [&](const auto& is_bad, const char* reason) {
       const auto bad = std::ranges::find_if(values, is_bad);
       if (bad == values.end()) return;
@@ -435,7 +430,7 @@ void complete_and_check(const Place& root, FlowScene& scene, framework::InitialC
   }
   check_gravity(root, scene);
   complete_fields(root, scene);
-  check_verify(root, scene);
+  check_verify(root, scene, check);
   if (!scene.has_fluid()) return;
   p.watches_extremes = scene.verify.needs_extremes();
   // The other ranks leave a check at all points of the grid to rank 0, with which they fail.

@@ -10,8 +10,8 @@ namespace drogue::parachute_app {
 /// keys, the velocities of the sides at time 0 and the initial velocity at every face.
 void complete_and_check(const scene::Place& root, FlowScene& scene, framework::InitialCheck check);
 
-/// Checks [verify] against the rest of the scene.
-void check_verify(const scene::Place& root, const FlowScene& scene);
+/// Checks [verify] against the rest of the scene, and the exact solution in the cells of `check`.
+void check_verify(const scene::Place& root, const FlowScene& scene, framework::InitialCheck check);
 
 /// Sets cells, domain and faces of a grid with a core or faces, and checks its size.
 void complete_and_check_grid(const scene::Place& root, FlowScene& scene);

@@ -106,10 +106,11 @@ void check_profiles(const Place& verify, const FlowScene& scene) {
 }
 
 /// The solution is evaluated at the end of the run.
-void check_exact(const Place& exact, const FlowScene& scene) {
+void check_exact(const Place& exact, const FlowScene& scene, framework::InitialCheck cells) {
   const auto check = [&](const std::string& key, const std::string& text, std::size_t normal) {
-    const std::vector<double> values =
-        evaluate(SpaceTimeFunction(text), lattice_of(scene.parameters, normal), scene.end_time);
+    const Lattice lattice = lattice_of(scene.parameters, normal);
+    const std::vector<double> values = evaluate(SpaceTimeFunction(text), lattice, scene.end_time,
+                                                framework::check_stride(cells, lattice.size()));
     exact.refuse_if(!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }), key,
                     " = ", scene::shortened(text),
                     " is not finite on the grid at run.end_time = ", scene.end_time, " s");
@@ -121,10 +122,10 @@ void check_exact(const Place& exact, const FlowScene& scene) {
 
 }  // namespace
 
-void check_verify(const Place& root, const FlowScene& scene) {
+void check_verify(const Place& root, const FlowScene& scene, framework::InitialCheck check) {
   const Verify& wanted = scene.verify;
   const Place verify = root.at("verify");
-  if (wanted.exact) check_exact(verify.at("exact"), scene);
+  if (wanted.exact) check_exact(verify.at("exact"), scene, check);
   if (wanted.momentum) check_momentum(verify, scene);
   verify.refuse_if(wanted.dissipation_peak && wanted.dissipation_peak->value == 0.0, "dissipation_peak.value",
                    " must not be 0: the tolerance is relative");
