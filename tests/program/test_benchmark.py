@@ -187,7 +187,7 @@ class Planned(perf_program.PerfTest):
         text, sentence, records = self.benchmark(6, plan, "--filter", "drum|puts|c9")
         failure = "puts on 1 rank failed: drogue-options: out of memory: use fewer cells"
         self.assertIn(failure, sentence)
-        self.assertRegex(text, rf"drogue-options +puts .* - +{failure}\n")
+        self.assertRegex(text, rf"drogue-options +puts .*{failure}\n")
         self.assertEqual(["drum", "c9-flat"], [record["facts"]["problem"] for record in records])
         self.assertIn("commands, in a folder", text)
 
