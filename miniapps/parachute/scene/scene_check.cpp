@@ -182,8 +182,7 @@ void check_initial(const Place& root, const FlowScene& scene, framework::Initial
     const std::string& text = scene.initial_velocity()[axis];
     const Lattice lattice = lattice_of(scene.parameters, axis);
     const SpaceTimeFunction function(text);
-    const std::size_t stride =
-        function.constant() ? lattice.size() : framework::check_stride(check, lattice.size());
+    const std::size_t stride = function.constant() ? lattice.size() : stride_of_check(check, lattice.size());
     const std::vector<double> values = evaluate(function, lattice, 0.0, stride);
     const auto refuse = [&](const auto& is_bad, const char* reason) {
       const auto bad = std::ranges::find_if(values, is_bad);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+
 #include "common/scene/read.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
@@ -9,6 +12,13 @@ namespace drogue::parachute_app {
 /// Fills in the parameters of the solver and the defaults that depend on other keys; checks combinations of
 /// keys, the velocities of the sides at time 0 and the initial velocity at every face.
 void complete_and_check(const scene::Place& root, FlowScene& scene, framework::InitialCheck check);
+
+/// Distance of the points of a grid in which functions are checked as a scene is read: of more than four
+/// million not all are. The solver fails at the start where the others are not finite. Does not throw.
+constexpr std::size_t stride_of_check(framework::InitialCheck check, std::size_t points) {
+  constexpr std::size_t most = 1U << 22U;
+  return std::max(framework::check_stride(check, points), 1 + (points - 1) / most);
+}
 
 /// Checks [verify] against the rest of the scene, and the exact solution in the cells of `check`.
 void check_verify(const scene::Place& root, const FlowScene& scene, framework::InitialCheck check);

@@ -109,8 +109,8 @@ void check_profiles(const Place& verify, const FlowScene& scene) {
 void check_exact(const Place& exact, const FlowScene& scene, framework::InitialCheck cells) {
   const auto check = [&](const std::string& key, const std::string& text, std::size_t normal) {
     const Lattice lattice = lattice_of(scene.parameters, normal);
-    const std::vector<double> values = evaluate(SpaceTimeFunction(text), lattice, scene.end_time,
-                                                framework::check_stride(cells, lattice.size()));
+    const std::vector<double> values =
+        evaluate(SpaceTimeFunction(text), lattice, scene.end_time, stride_of_check(cells, lattice.size()));
     exact.refuse_if(!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }), key,
                     " = ", scene::shortened(text),
                     " is not finite on the grid at run.end_time = ", scene.end_time, " s");
