@@ -1,15 +1,23 @@
 # Refuses a Kokkos that is known to be miscompiled, that does not fit the build, or whose release was not tried.
 
+# drogue_refuse_kokkos(<sentence> <command>): stops. The command is a remedy too, unless Kokkos is named or of the system.
+function(drogue_refuse_kokkos sentence command)
+  if(NOT DROGUE_SYSTEM AND NOT Kokkos_NAMED)
+    string(APPEND sentence ", or run ${command}")
+  endif()
+  message(FATAL_ERROR "${sentence}.")
+endfunction()
+
 if(DROGUE_CUDA AND NOT Kokkos_ENABLE_CUDA)
-  message(FATAL_ERROR "DROGUE_CUDA=ON, but the Kokkos in ${Kokkos_DIR} has no CUDA: run scripts/setup.sh where nvcc is "
-                      "installed, or point Kokkos_ROOT at a CUDA build.")
+  drogue_refuse_kokkos("DROGUE_CUDA=ON, but the Kokkos in ${Kokkos_DIR} has no CUDA: point Kokkos_ROOT at a CUDA build"
+    "scripts/setup.sh where nvcc is installed")
 endif()
 if(Kokkos_ENABLE_CUDA AND NOT DROGUE_CUDA)
   message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} is a CUDA build: configure with -DDROGUE_CUDA=ON (preset cuda).")
 endif()
 if(DROGUE_HIP AND NOT Kokkos_ENABLE_HIP)
-  message(FATAL_ERROR "DROGUE_HIP=ON, but the Kokkos in ${Kokkos_DIR} has no HIP: run scripts/setup.sh --hip, or point "
-                      "Kokkos_ROOT at a HIP build.")
+  drogue_refuse_kokkos("DROGUE_HIP=ON, but the Kokkos in ${Kokkos_DIR} has no HIP: point Kokkos_ROOT at a HIP build"
+    "scripts/setup.sh --hip")
 endif()
 if(Kokkos_ENABLE_HIP AND NOT DROGUE_HIP)
   message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} is a HIP build: configure with -DDROGUE_HIP=ON (preset hip).")
@@ -43,8 +51,9 @@ if(DROGUE_CUDA)
     list(APPEND _accepted 100)
   endif()
   if(NOT DROGUE_CUDA_ARCH_RESOLVED IN_LIST _accepted)
-    message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} was built for architecture ${Kokkos_CUDA_ARCHITECTURES}, not "
-                        "${DROGUE_CUDA_ARCH_RESOLVED}: run DROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH_RESOLVED} scripts/setup.sh.")
+    drogue_refuse_kokkos("The Kokkos in ${Kokkos_DIR} was built for architecture ${Kokkos_CUDA_ARCHITECTURES}, not \
+${DROGUE_CUDA_ARCH_RESOLVED}: configure with -DDROGUE_CUDA_ARCH=${Kokkos_CUDA_ARCHITECTURES}, or point Kokkos_ROOT at one for \
+${DROGUE_CUDA_ARCH_RESOLVED}" "DROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH_RESOLVED} scripts/setup.sh")
   endif()
   # Sources that use Kokkos are compiled in the CUDA language, not by a wrapper that poses as the C++ compiler.
   if(NOT Kokkos_ENABLE_COMPILE_AS_CMAKE_LANGUAGE)
