@@ -1,4 +1,4 @@
-"""CMake refuses what cannot be built."""
+"""CMake and scripts/build.sh say what a build lacks, and refuse what cannot be built. A fake stands in for cmake."""
 
 import os
 import subprocess
@@ -7,6 +7,21 @@ from pathlib import Path
 from folder_test import FolderTest
 
 SOURCE = Path(os.environ.get("DROGUE_SOURCE", Path(__file__).resolve().parents[2]))
+LOG = """-- Detecting C compile features
+CMake Warning at cmake/X.cmake:1 (message):
+  The Kokkos in /k was built for no processor.
+Call Stack (most recent call first):
+
+CMake Warning:
+  Manually-specified variables were not used by the project:
+
+    OTHER
+
+-- Kokkos has no OpenMP: --backend openmp will not be compiled in
+-- HDF5 1.10.8 is serial: runs on several ranks cannot write one file together
+-- Kokkos 4.7.0 in /k (SERIAL)
+-- Configuring done
+"""
 
 
 class Build(FolderTest):
@@ -14,6 +29,18 @@ class Build(FolderTest):
         """What CMake says on standard error in one line."""
         result = subprocess.run(["cmake", *arguments], cwd=self.folder, env=os.environ | environment, capture_output=True, text=True)
         return " ".join(result.stderr.split())
+
+    def test_script_prints_warnings_and_libraries(self):
+        (self.folder / "log").write_text(LOG, encoding="utf-8")
+        fake = self.folder / "cmake"
+        fake.write_text(f'#!/bin/sh\n[ "$1" = --build ] || cat {self.folder}/log\n', encoding="utf-8")
+        fake.chmod(0o755)
+        said = subprocess.run([SOURCE / "scripts/build.sh", "host"], capture_output=True, text=True, check=True, env=os.environ | {
+            "PATH": f"{self.folder}:{os.environ['PATH']}", "DROGUE_DEPS": str(self.folder / "deps")}).stderr
+        for line in LOG.splitlines()[1:-1]:
+            self.assertIn(line.replace("-- ", "== ", 1), said)
+        self.assertNotIn("Detecting", said)
+        self.assertNotIn("Configuring", said)
 
     def test_compiler_without_hip(self):
         said = self.cmake("-S", SOURCE, "-B", "build", "-G", "Ninja", "-DDROGUE_HIP=ON", CXX="g++")
