@@ -40,10 +40,11 @@ endif()
 
 if(DROGUE_CUDA)
   # The mdspan-based View of Kokkos 4.7.0, compiled by nvcc 13.0 as C++20, computes wild addresses in a plain deep_copy. The old View
-  # implementation of the same release is right, and the default of later patches.
+  # implementation of the same release is right.
   if(Kokkos_VERSION VERSION_GREATER_EQUAL "4.7.0" AND Kokkos_VERSION VERSION_LESS "5" AND NOT Kokkos_ENABLE_IMPL_VIEW_LEGACY)
-    message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} with nvcc and C++20 is miscompiled (its mdspan View computes wrong addresses in a "
-                        "deep_copy): use Kokkos 4.5.1, or rebuild it with -DKokkos_ENABLE_IMPL_VIEW_LEGACY=ON.")
+    message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} in ${Kokkos_DIR} has the mdspan View, which nvcc miscompiles as C++20 in 4.7.0 "
+                        "(wrong addresses in a deep_copy; later patches were not tried): use Kokkos 4.5.1, or rebuild it with "
+                        "-DKokkos_ENABLE_IMPL_VIEW_LEGACY=ON.")
   endif()
   # Kokkos 4.5 has no name for Blackwell: scripts/setup.sh builds it as Hopper with machine code for both.
   set(_accepted "${Kokkos_CUDA_ARCHITECTURES}")
