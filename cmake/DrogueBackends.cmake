@@ -1,7 +1,7 @@
 # The list of backends, which programs, tests and benchmarks share, and the sources that are compiled once for each of them.
 
 option(DROGUE_SERIAL "The Serial backend" ON)
-option(DROGUE_OPENMP "The OpenMP backend, where Kokkos has it" ON)
+set(DROGUE_OPENMP AUTO CACHE STRING "The OpenMP backend: AUTO (where Kokkos has it), ON or OFF")
 
 set(DROGUE_BACKENDS)
 set(DROGUE_DEVICE_BACKENDS)
@@ -34,8 +34,8 @@ macro(drogue_backend name option execution_space wanted)
 endmacro()
 
 set(_openmp ${DROGUE_OPENMP})
-if(NOT Kokkos_ENABLE_OPENMP)
-  set(_openmp OFF)
+if(_openmp STREQUAL "AUTO")
+  string(COMPARE EQUAL "${Kokkos_ENABLE_OPENMP}" ON _openmp)
 endif()
 drogue_backend(serial SERIAL Kokkos::Serial "${DROGUE_SERIAL}")
 drogue_backend(openmp OPENMP Kokkos::OpenMP "${_openmp}")
@@ -43,7 +43,7 @@ drogue_backend(hip HIP Kokkos::HIP "${DROGUE_HIP}" DEVICE)
 drogue_backend(cuda CUDA Kokkos::Cuda "${DROGUE_CUDA}" DEVICE)
 # The entries of the sources, in the same words.
 set(_header "${PROJECT_SOURCE_DIR}/kernels/device/backend_list.hpp")
-set_property(DIRECTORY "${PROJECT_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${_header}")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${_header}")
 file(STRINGS "${_header}" _lines REGEX "(string_view name|bool needs_device|using ExecutionSpace) = ")
 list(TRANSFORM _lines REPLACE ".* = " "")
 string(REGEX REPLACE "[;\"]+" " " _lines "${_lines}")

@@ -1,15 +1,23 @@
 # Refuses a Kokkos that is known to be miscompiled, that does not fit the build, or whose release was not tried.
 
+# drogue_refuse_kokkos(<sentence> <command>): stops. The command is a remedy too, unless Kokkos is named or of the system.
+function(drogue_refuse_kokkos sentence command)
+  if(NOT DROGUE_SYSTEM AND NOT Kokkos_NAMED)
+    string(APPEND sentence ", or run ${command}")
+  endif()
+  message(FATAL_ERROR "${sentence}.")
+endfunction()
+
 if(DROGUE_CUDA AND NOT Kokkos_ENABLE_CUDA)
-  message(FATAL_ERROR "DROGUE_CUDA=ON, but the Kokkos in ${Kokkos_DIR} has no CUDA: run scripts/setup.sh where nvcc is "
-                      "installed, or point Kokkos_ROOT at a CUDA build.")
+  drogue_refuse_kokkos("DROGUE_CUDA=ON, but the Kokkos in ${Kokkos_DIR} has no CUDA: point Kokkos_ROOT at a CUDA build"
+    "scripts/setup.sh where nvcc is installed")
 endif()
 if(Kokkos_ENABLE_CUDA AND NOT DROGUE_CUDA)
   message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} is a CUDA build: configure with -DDROGUE_CUDA=ON (preset cuda).")
 endif()
 if(DROGUE_HIP AND NOT Kokkos_ENABLE_HIP)
-  message(FATAL_ERROR "DROGUE_HIP=ON, but the Kokkos in ${Kokkos_DIR} has no HIP: run scripts/setup.sh --hip, or point "
-                      "Kokkos_ROOT at a HIP build.")
+  drogue_refuse_kokkos("DROGUE_HIP=ON, but the Kokkos in ${Kokkos_DIR} has no HIP: point Kokkos_ROOT at a HIP build"
+    "scripts/setup.sh --hip")
 endif()
 if(Kokkos_ENABLE_HIP AND NOT DROGUE_HIP)
   message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} is a HIP build: configure with -DDROGUE_HIP=ON (preset hip).")
@@ -32,10 +40,11 @@ endif()
 
 if(DROGUE_CUDA)
   # The mdspan-based View of Kokkos 4.7.0, compiled by nvcc 13.0 as C++20, computes wild addresses in a plain deep_copy. The old View
-  # implementation of the same release is right, and the default of later patches.
+  # implementation of the same release is right.
   if(Kokkos_VERSION VERSION_GREATER_EQUAL "4.7.0" AND Kokkos_VERSION VERSION_LESS "5" AND NOT Kokkos_ENABLE_IMPL_VIEW_LEGACY)
-    message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} with nvcc and C++20 is miscompiled (its mdspan View computes wrong addresses in a "
-                        "deep_copy): use Kokkos 4.5.1, or rebuild it with -DKokkos_ENABLE_IMPL_VIEW_LEGACY=ON.")
+    message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} in ${Kokkos_DIR} has the mdspan View, which nvcc miscompiles as C++20 in 4.7.0 "
+                        "(wrong addresses in a deep_copy; later patches were not tried): use Kokkos 4.5.1, or rebuild it with "
+                        "-DKokkos_ENABLE_IMPL_VIEW_LEGACY=ON.")
   endif()
   # Kokkos 4.5 has no name for Blackwell: scripts/setup.sh builds it as Hopper with machine code for both.
   set(_accepted "${Kokkos_CUDA_ARCHITECTURES}")
@@ -43,8 +52,9 @@ if(DROGUE_CUDA)
     list(APPEND _accepted 100)
   endif()
   if(NOT DROGUE_CUDA_ARCH_RESOLVED IN_LIST _accepted)
-    message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} was built for architecture ${Kokkos_CUDA_ARCHITECTURES}, not "
-                        "${DROGUE_CUDA_ARCH_RESOLVED}: run DROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH_RESOLVED} scripts/setup.sh.")
+    drogue_refuse_kokkos("The Kokkos in ${Kokkos_DIR} was built for architecture ${Kokkos_CUDA_ARCHITECTURES}, not \
+${DROGUE_CUDA_ARCH_RESOLVED}: configure with -DDROGUE_CUDA_ARCH=${Kokkos_CUDA_ARCHITECTURES}, or point Kokkos_ROOT at one for \
+${DROGUE_CUDA_ARCH_RESOLVED}" "DROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH_RESOLVED} scripts/setup.sh")
   endif()
   # Sources that use Kokkos are compiled in the CUDA language, not by a wrapper that poses as the C++ compiler.
   if(NOT Kokkos_ENABLE_COMPILE_AS_CMAKE_LANGUAGE)

@@ -104,5 +104,5 @@ else()
   message(STATUS "HDF5 ${HDF5_VERSION} is serial: runs on several ranks cannot write one file together")
 endif()
 
-message(STATUS "Kokkos ${Kokkos_VERSION} (${Kokkos_DEVICES}), Kokkos Kernels ${KokkosKernels_VERSION}, MPI ${MPI_C_VERSION}, "
+message(STATUS "Kokkos ${Kokkos_VERSION} in ${Kokkos_DIR} (${Kokkos_DEVICES}), Kokkos Kernels ${KokkosKernels_VERSION}, MPI ${MPI_C_VERSION}, "
                "HDF5 ${HDF5_VERSION} ${DROGUE_HDF5_KIND}, FFTW ${FFTW_VERSION}, hypre ${HYPRE_VERSION}, NCCL ${NCCL_VERSION}")

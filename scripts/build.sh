@@ -31,12 +31,14 @@ case "$preset" in
     ;;
   hip)
     hipcc="$(find_hipcc)"
-    [ -n "$hipcc" ] || fail "preset $preset needs hipcc: run scripts/setup.sh --hip, or build preset host."
+    [ -n "$hipcc" ] || fail "preset $preset needs hipcc: run scripts/setup.sh --hip, load a module of ROCm, or build preset host."
     options=("-DCMAKE_CXX_COMPILER=$hipcc" ${options[@]+"${options[@]}"})
     ;;
 esac
 # The log is short when all is well; on failure the part that matters is shown.
 run_logged "configure-$preset" cmake --preset "$preset" ${options[@]+"${options[@]}"}
+# Warnings, which libraries were taken, and what the build lacks for them.
+sed -n '/^CMake Warning/,/^-- /{/^-- /!p}; s/^-- \(Kokkos\|HDF5\) /== \1 /p' "$deps/log/configure-$preset.log" >&2
 say "building preset $preset in build/$preset"
 log="$deps/log/build-$preset.log"
 if ! cmake --build "build/$preset" --parallel "$jobs" ${targets[@]+"${targets[@]}"} >"$log" 2>&1; then

@@ -55,6 +55,7 @@ cuda_architecture() {
 
 if [ "$system" = yes ]; then
   check_tools
+  [ "$hip" = no ] || [ -n "$(find_hipcc)" ] || fail "there is no hipcc: load a module of ROCm, or name its folder by ROCM_PATH."
   exit 0
 fi
 

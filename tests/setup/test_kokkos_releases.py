@@ -83,7 +83,20 @@ class KokkosReleases(FolderTest):
 
     def test_miscompiled_view(self):
         for settings in (CUDA, CUDA | {"DROGUE_UNTRIED_KOKKOS": "ON"}):
-            self.assertIn("Kokkos 4.7.0 with nvcc and C++20 is miscompiled", self.check("4.7.0", settings))
+            self.assertIn("has the mdspan View, which nvcc miscompiles as C++20", self.check("4.7.0", settings))
+
+    def test_set_up_is_a_remedy_for_its_own_kokkos_alone(self):
+        prefix = self.prefix("4.6.1")
+        for settings, remedy, command in (
+            (CUDA | {"Kokkos_CUDA_ARCHITECTURES": "80"}, "configure with -DDROGUE_CUDA_ARCH=80, or point Kokkos_ROOT at one for 90",
+             "DROGUE_CUDA_ARCH=90 scripts/setup.sh"),
+            ({"DROGUE_CUDA": "ON"}, "point Kokkos_ROOT at a CUDA build", "scripts/setup.sh where nvcc is installed"),
+            ({"DROGUE_HIP": "ON"}, "point Kokkos_ROOT at a HIP build", "scripts/setup.sh --hip"),
+        ):
+            arguments = [f"-D{name}={value}" for name, value in settings.items()]
+            self.assertIn(f": {remedy}, or run {command}.", self.cmake(f"-DSHIPPED={prefix}", *arguments)[0])
+            for named in ([f"-DKokkos_ROOT={prefix}"], [f"-DSHIPPED={prefix}", "-DDROGUE_SYSTEM=ON"]):
+                self.assertIn(f": {remedy}. ", self.cmake(*named, *arguments)[0] + " ")
 
     def test_named_installation_comes_before_the_shipped_one(self):
         shipped, own = self.prefix("4.5.1"), self.prefix("4.6.1")
@@ -112,6 +125,8 @@ class KokkosReleases(FolderTest):
             said = self.cmake(f"-DSHIPPED={shipped}", f"-D{setting}")[0]
             self.assertIn(f"{setting} cannot be used: there is no KokkosConfig.cmake; every kernel needs Kokkos", said)
             self.assertIn("or leave it empty for that of scripts/setup.sh.", said)
+            said = self.cmake(f"-DSHIPPED={shipped}", f"-D{setting}", "-DDROGUE_SYSTEM=ON")[0]
+            self.assertIn("Point Kokkos_ROOT at the prefix of such a release (docs/building.md#kokkos-of-a-module).", said)
         self.assertIn(f"Kokkos_ROOT={nowhere} cannot be used", self.cmake(f"-DSHIPPED={shipped}", Kokkos_ROOT=str(nowhere))[0])
         for setting in (f"Kokkos_ROOT={old}", f"Kokkos_DIR={old}/{config}"):
             self.assertIn(f"{setting} cannot be used: Kokkos 4.4.1 in {old}/{config} is too old;",
@@ -124,7 +139,7 @@ class KokkosReleases(FolderTest):
         system = ["-DDROGUE_SYSTEM=ON", "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=OFF", "-DCMAKE_FIND_USE_SYSTEM_ENVIRONMENT_PATH=OFF"]
         said = self.cmake(*system, f"-DSHIPPED={old}")[0]
         self.assertIn(f"Kokkos 4.4.1 in {old}/lib/cmake/Kokkos is too old; every kernel needs Kokkos, of which 4.5.1, 4.6.1, 4.7.0 "
-                      "were tried. Point Kokkos_ROOT at an installation of that (docs/building.md#kokkos-of-a-module).", said)
+                      "were tried. Point Kokkos_ROOT at the prefix of such a release (docs/building.md#kokkos-of-a-module).", said)
         said = self.cmake(*system)[0]
         self.assertIn("Kokkos was not found; every kernel needs", said)
         self.assertNotIn("setup.sh", said)

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -53,7 +54,7 @@ class Setup(FolderTest):
         self.assertIn("DROGUE_HIP_ARCH=gfx9 is not one of gfx906,", self.refused("--hip", DROGUE_HIP_ARCH="gfx9"))
         page = (SOURCE / "docs/building.md").read_text(encoding="utf-8")
         row = re.search(r"(?m)^\| `DROGUE_HIP_ARCH` \| (.+) \|$", page)[1]
-        self.assertIn(f"not one of {', '.join(re.findall(r'gfx[0-9a-z]+', row))}.", self.refused("--hip", DROGUE_HIP_ARCH="none"))
+        self.assertIn(f"not one of {', '.join(re.findall(r'gfx[0-9a-z]+', row))}, and", self.refused("--hip", DROGUE_HIP_ARCH="none"))
         self.fake("hipcc", '[[ "$*" != *=gfx942* ]]')
         message = self.refused("--hip", DROGUE_HIP_ARCH="gfx942")
         self.assertIn("does not compile for DROGUE_HIP_ARCH=gfx942: put hipcc of a newer ROCm first in PATH", message)
@@ -79,6 +80,8 @@ class Setup(FolderTest):
 
     def test_compiler_missing_with_system(self):
         self.assertIn("no C++ compiler", self.refused("--system", CXX="no-such-compiler"))
+        if not shutil.which("hipcc"):
+            self.assertIn("there is no hipcc: load a module of ROCm", self.refused("--system", "--hip", ROCM_PATH=self.folder))
 
     def test_cmake_too_old(self):
         self.fake("cmake", "echo cmake version 3.22.1")

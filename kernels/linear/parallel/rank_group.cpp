@@ -40,7 +40,14 @@ int length(std::size_t size) { return static_cast<int>(size); }
 }  // namespace
 
 bool mpi_takes_device_memory() {
-#if defined(MPIX_CUDA_AWARE_SUPPORT)
+#if defined(DROGUE_HAVE_HIP) && defined(MPIX_ROCM_AWARE_SUPPORT)
+  return MPIX_Query_rocm_support() == 1;
+#elif defined(DROGUE_HAVE_HIP) && defined(MPIX_GPU_SUPPORT_HIP)
+  int supports = 0;
+  return MPIX_GPU_query_support(MPIX_GPU_SUPPORT_HIP, &supports) == MPI_SUCCESS && supports != 0;
+#elif defined(DROGUE_HAVE_HIP)
+  return false;
+#elif defined(MPIX_CUDA_AWARE_SUPPORT)
   return MPIX_Query_cuda_support() == 1;
 #elif defined(MPIX_GPU_SUPPORT_CUDA)
   int supports = 0;

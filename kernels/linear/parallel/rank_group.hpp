@@ -8,7 +8,8 @@
 
 namespace drogue::linear {
 
-/// True if MPI takes memory of CUDA devices, by its own account. Needs an initialised MPI. Does not throw.
+/// True if MPI takes memory of devices of this build (CUDA or HIP), by its own account. Needs an initialised
+/// MPI. Does not throw.
 [[nodiscard]] bool mpi_takes_device_memory();
 
 /// Message to and from another rank: numbers of any unit, in host memory unless stated otherwise. `send` or

@@ -52,6 +52,8 @@ class Drogue(CMakePackage, CudaPackage):
         arguments = [
             self.define("DROGUE_SYSTEM", True), self.define("BUILD_TESTING", self.run_tests),
             self.define_from_variant("DROGUE_EXACT", "exact"),
+            self.define_from_variant("DROGUE_OPENMP", "openmp"),
+            self.define("CMAKE_DISABLE_FIND_PACKAGE_HYPRE", self.spec.satisfies("~hypre")),
             self.define_from_variant("DROGUE_CUDA", "cuda"),
         ]
         if self.spec.satisfies("+cuda"):
