@@ -184,6 +184,13 @@ class Failures(parachute_program.FlowTest):
                 "flow.body_force=[0,-1,0]", "output={fields=['pressure'],times=[0]}", "verify={}"]).stderr
             self.assertRegex(said, r"did not converge (for the pressure at step 0|at the initial projection), t = 0 s; its relative residual is \S+: ")
 
+    def test_velocity_at_the_start_that_is_no_number_fails_in_large_grids_too(self):
+        """Every second of these points is checked as the scene is read; the solver finds the others."""
+        for face, code, sentence in ((1000, 3, "initial.velocity[0] = "), (1001, 4, "the velocity is not finite in cell (")):
+            sets = ["grid.cells=[2100,2000,1]", "grid.domain=[[0,2100],[0,2000],[0,1]]", "verify={}", "output={}",
+                    f"initial.velocity=['sqrt((x-{face})^2+(y-1000.5)^2-0.01)',0,0]"]
+            self.assertIn(sentence, self.expect(code, "taylor-green-2d", *QUIET, "--overwrite", sets=sets).stderr)
+
     def test_net_inflow_between_the_checked_times_is_a_failure(self):
         sets = ['fluid.velocity=["abs(t-0.0325)<0.0025 ? 1 : 0", 0, 0]', 'grid.boundary.x=["inflow", "wall"]',
                 "run.end_time=0.1", "run.max_dt=0.001", "output={}"]

@@ -10,7 +10,7 @@
 namespace drogue::parachute_app {
 
 /// Fills in the parameters of the solver and the defaults that depend on other keys; checks combinations of
-/// keys, the velocities of the sides at time 0 and the initial velocity at every face.
+/// keys, the velocities of the sides at time 0 and the initial velocity in the points of `stride_of_check`.
 void complete_and_check(const scene::Place& root, FlowScene& scene, framework::InitialCheck check);
 
 /// Distance of the points of a grid in which functions are checked as a scene is read: of more than four
