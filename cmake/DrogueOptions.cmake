@@ -24,13 +24,13 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 add_link_options(LINKER:--as-needed)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
 
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
-  message(FATAL_ERROR "g++ ${CMAKE_CXX_COMPILER_VERSION} is too old for C++20 as used here: install g++-12 or newer "
-                      "and pass -DCMAKE_CXX_COMPILER=g++-12.")
-endif()
 if(DROGUE_HIP AND NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   message(FATAL_ERROR "DROGUE_HIP=ON, but the C++ compiler ${CMAKE_CXX_COMPILER} (${CMAKE_CXX_COMPILER_ID}) compiles no HIP: "
                       "configure with -DCMAKE_CXX_COMPILER=hipcc, or unset CXX and remove the build folder.")
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
+  message(FATAL_ERROR "g++ ${CMAKE_CXX_COMPILER_VERSION} is too old for C++20 as used here: install g++-12 or newer "
+                      "and pass -DCMAKE_CXX_COMPILER=g++-12.")
 endif()
 
 # Gives `target` a host-compiler option in both languages: nvcc hands it on with -Xcompiler.

@@ -4,8 +4,9 @@
 
 namespace drogue::framework {
 
-/// Cells in which the initial state of a scene is checked. Grids of a study differ in their number of cells
-/// from that of its scene, which is checked in all of them: some cells suffice there, however many there are.
+/// Cells in which the initial state of a scene is checked; of large grids a program may take fewer. Grids of
+/// a study differ in their number of cells from that of its scene, which is checked in all of them: some
+/// cells suffice there, however many there are.
 enum class InitialCheck { all_cells, some_cells };
 
 /// Distance of the checked ones among `cells`: less than 65536 of some.

@@ -336,9 +336,11 @@ void run(const Request& request, const std::vector<Row>& rows, Table& table) {
   std::optional<Failure> failure;  // the first one
   for (const Row& row : rows) try {
       commands += "  " + add_row(request, row, of_one, table) + "\n";
-    } catch (const Failure& of_row) {
+    } catch (...) {
+      const Failure of_row = current_failure();
       if (of_row.code() == ExitCode::interrupted) throw;
       print_failed_row(request, row, of_row);
+      commands += "  " + shown(command_of(request, row), row.problem.program) + "\n";
       if (!failure) failure = of_row;
     }
   if (table.records.empty()) throw *failure;

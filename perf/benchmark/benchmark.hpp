@@ -34,8 +34,8 @@ struct Row {
 /// Runs the rows by the programs, which stand beside this one, checks their answers, prints a line for each
 /// and then the commands, and adds the records to `table`. Call it without an initialised runtime. Throws
 /// Failure(io_error) before all runs if a program is missing; after all runs, as the first program that left
-/// no result, whose row says why; Failure(interrupted) after a signal. A wrong result throws nothing: its row
-/// failed.
+/// no result, whose row has the reason; Failure(interrupted) after a signal. A wrong result throws nothing:
+/// its row failed.
 void run(const Request& request, const std::vector<Row>& rows, Table& table);
 
 }  // namespace drogue::perf::benchmark

@@ -96,7 +96,7 @@ ExitCode run_benchmark(const BenchmarkOptions& options) {
   Table table;
   try {
     benchmark::run(request, rows, table);
-  } catch (const Failure&) {
+  } catch (...) {
     if (!table.records.empty()) write_records(options.out, table.records);
     throw;
   }

@@ -80,7 +80,7 @@ hip_arch="${DROGUE_HIP_ARCH:-gfx90a}"
 check_hip_architecture() {
   case "$hip_arch" in
     gfx906 | gfx908 | gfx90a | gfx942) ;;
-    *) fail "DROGUE_HIP_ARCH=$hip_arch is not one of gfx906, gfx908, gfx90a, gfx942, and GPUs with waves of 32 lanes do not suit: choose another GPU, or build preset host." ;;
+    *) fail "DROGUE_HIP_ARCH=$hip_arch is not one of gfx906, gfx908, gfx90a, gfx942, and GPUs with waves of 32 lanes do not suit: name one of these, or build preset host." ;;
   esac
 }
 

@@ -189,7 +189,7 @@ class Planned(perf_program.PerfTest):
         self.assertIn(failure, sentence)
         self.assertRegex(text, rf"drogue-options +puts .*{failure}\n")
         self.assertEqual(["drum", "c9-flat"], [record["facts"]["problem"] for record in records])
-        self.assertIn("commands, in a folder", text)
+        self.assertRegex(text, r"\n  env .*drogue-options price puts-16384.csv ")
 
     def test_program_that_is_missing_is_named(self):
         (self.bin / "drogue-springs").unlink()

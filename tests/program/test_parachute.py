@@ -187,7 +187,7 @@ class Failures(parachute_program.FlowTest):
     def test_velocity_at_the_start_that_is_no_number_fails_in_large_grids_too(self):
         """Every second of these points is checked as the scene is read; the solver finds the others."""
         for face, code, sentence in ((1000, 3, "initial.velocity[0] = "), (1001, 4, "the velocity is not finite in cell (")):
-            sets = ["grid.cells=[2100,2000,1]", "grid.domain=[[0,2100],[0,2000],[0,1]]", "verify={}", "output={}",
+            sets = ["grid.cells=[2101,2000,1]", "grid.domain=[[0,2101],[0,2000],[0,1]]", "verify={}", "output={}",
                     f"initial.velocity=['sqrt((x-{face})^2+(y-1000.5)^2-0.01)',0,0]"]
             self.assertIn(sentence, self.expect(code, "taylor-green-2d", *QUIET, "--overwrite", sets=sets).stderr)
 

@@ -106,5 +106,7 @@ class Spack(unittest.TestCase):
 
     def test_options_exist(self):
         for arguments, _ in [*calls("define"), *calls("define_from_variant")]:
-            if not arguments[0].startswith(("BUILD_TESTING", "CMAKE_")):
+            if package := re.fullmatch("CMAKE_DISABLE_FIND_PACKAGE_(.+)", arguments[0]):
+                self.assertIn(f"find_package({package[1]}", CMAKE)
+            elif not arguments[0].startswith(("BUILD_TESTING", "CMAKE_")):
                 self.assertRegex(CMAKE, rf"\b{arguments[0]}\b")

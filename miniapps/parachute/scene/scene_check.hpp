@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 #include "common/scene/read.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
 
 /// Checks of a parachute scene, which throw `Failure` (invalid_scene) at the key in error.
@@ -13,11 +15,16 @@ namespace drogue::parachute_app {
 /// keys, the velocities of the sides at time 0 and the initial velocity in the points of `stride_of_check`.
 void complete_and_check(const scene::Place& root, FlowScene& scene, framework::InitialCheck check);
 
-/// Distance of the points of a grid in which functions are checked as a scene is read: of more than four
-/// million not all are. The solver fails at the start where the others are not finite. Does not throw.
-constexpr std::size_t stride_of_check(framework::InitialCheck check, std::size_t points) {
+/// Distance of the points of a lattice in which functions are checked as a scene is read, those along x in
+/// turn: of lattices of more than 4 194 304 points every n-th. A velocity that is not finite in another point
+/// fails at the start of the run, an exact solution in the check at its end. Does not throw.
+inline std::size_t stride_of_check(framework::InitialCheck check, const Lattice& lattice) {
   constexpr std::size_t most = 1U << 22U;
-  return std::max(framework::check_stride(check, points), 1 + (points - 1) / most);
+  const std::size_t points = lattice.size();
+  std::size_t stride = std::max(framework::check_stride(check, points), 1 + (points - 1) / most);
+  while (std::gcd(stride, static_cast<std::size_t>(lattice.n[0])) > 1)
+    ++stride;  // meets all planes normal to x
+  return stride;
 }
 
 /// Checks [verify] against the rest of the scene, and the exact solution in the cells of `check`.

@@ -110,7 +110,7 @@ void check_exact(const Place& exact, const FlowScene& scene, framework::InitialC
   const auto check = [&](const std::string& key, const std::string& text, std::size_t normal) {
     const Lattice lattice = lattice_of(scene.parameters, normal);
     const std::vector<double> values =
-        evaluate(SpaceTimeFunction(text), lattice, scene.end_time, stride_of_check(cells, lattice.size()));
+        evaluate(SpaceTimeFunction(text), lattice, scene.end_time, stride_of_check(cells, lattice));
     exact.refuse_if(!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }), key,
                     " = ", scene::shortened(text),
                     " is not finite on the grid at run.end_time = ", scene.end_time, " s");

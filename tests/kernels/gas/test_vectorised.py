@@ -18,8 +18,8 @@ FACE_DIVISIONS = 7  # `face_arithmetic` in perf/models/gas_step.hpp
 
 def reason_to_skip():
     """Reason why this build cannot be checked, or None."""
-    if disassembly.cache(BUILD).get("DROGUE_CUDA") == "ON":
-        return "in a CUDA build host backends have one lane"
+    if "ON" in (disassembly.cache(BUILD).get(f"DROGUE_{device}") for device in ("CUDA", "HIP")):
+        return "in a build for a GPU host backends have one lane"
     return disassembly.reason_to_skip(BUILD)
 
 

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <stdexcept>
+
+#include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -44,16 +47,31 @@ TEST(Lattice, PointsStandForTheVolumesBetweenThem) {
   EXPECT_EQ(lattice_of(channel(), 0).volume(0), 1.0);
 }
 
-TEST(Evaluate, ThreadsFillEveryPoint) {
+TEST(Evaluate, ThreadsFillEveryPointOfAStride) {
   flow::Parameters p;
   p.cells = {97, 61, 41};
   const Lattice lattice = lattice_of(p);
-  const std::vector<double> values = evaluate(SpaceTimeFunction("x + 10*y*z + t"), lattice, 3.0);
-  ASSERT_EQ(values.size(), lattice.size());
-  for (std::size_t entry = 0; entry < values.size(); ++entry) {
-    const auto [x, y, z] = lattice.place(entry);
-    ASSERT_DOUBLE_EQ(values[entry], x + 10.0 * y * z + 3.0) << entry;
+  for (const std::size_t stride : {std::size_t{1}, std::size_t{3}}) {
+    const std::vector<double> values = evaluate(SpaceTimeFunction("x + 10*y*z + t"), lattice, 3.0, stride);
+    ASSERT_EQ(values.size(), (lattice.size() + stride - 1) / stride);
+    for (std::size_t entry = 0; entry < values.size(); ++entry) {
+      const auto [x, y, z] = lattice.place(stride * entry);
+      ASSERT_DOUBLE_EQ(values[entry], x + 10.0 * y * z + 3.0) << entry;
+    }
   }
+}
+
+TEST(StrideOfCheck, MeetsAllPointsOfSmallLatticesAndAllPlanesOfLargeOnes) {
+  flow::Parameters p;
+  p.cells = {64, 64, 64};
+  EXPECT_EQ(stride_of_check(framework::InitialCheck::all_cells, lattice_of(p)), 1U);
+  p.cells = {512, 512, 512};
+  const Lattice large = lattice_of(p);
+  const std::size_t stride = stride_of_check(framework::InitialCheck::all_cells, large);
+  EXPECT_LE(large.size() / stride, 4'194'304U);
+  std::set<std::size_t> planes;
+  for (std::size_t k = 0; k < 512; ++k) planes.insert(k * stride % 512);
+  EXPECT_EQ(planes.size(), 512U);
 }
 
 TEST(SpaceTimeFunction, RecognisesConstants) {
