@@ -225,32 +225,31 @@ std::string figures_text(const Problem& problem, const Figures& figures) {
   return figures.efficiency ? text + printed(", %.1f %%", 100.0 * *figures.efficiency) : text;
 }
 
+/// Prints the columns of a row: what runs, and these.
+void print_columns(const Request& request, const Row& row, const std::string& memory, const std::string& time,
+                   const std::string& interval, const std::string& figures, const std::string& answer) {
+  const Problem& problem = row.problem;
+  std::printf(columns, problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
+              std::string(device::name(request.backend)).c_str(),
+              printed("%d x %d", row.ranks, threads_of(request, row.ranks)).c_str(), memory.c_str(),
+              time.c_str(), interval.c_str(), figures.c_str(), answer.c_str());
+}
+
 void print_row(const Request& request, const Row& row, const Record& record, const Answers& answers,
                const Figures& figures) {
   const Problem& problem = row.problem;
-  const int threads = threads_of(request, row.ranks);
   const std::string answer = printed("%s %.3g, expected %.3g to %.3g: %s", problem.quantity.c_str(),
                                      answers.found, problem.low, problem.high, verdict(record));
-  std::printf(
-      columns, problem.program.c_str(), problem.name.c_str(), problem.extent.c_str(),
-      std::string(device::name(request.backend)).c_str(), printed("%d x %d", row.ranks, threads).c_str(),
-      printed("%.0f", 1e-6 * static_cast<double>(answers.bytes)).c_str(), median_text(record, 1.0, 3).c_str(),
-      record.passed() && record.samples.size() == 1 ? "one run" : interval_text(record, 1.0, 3).c_str(),
-      figures_text(problem, figures).c_str(), answer.c_str());
-  const int others = answers.cores.running - 1, online = answers.cores.online;
+  print_columns(request, row, printed("%.0f", 1e-6 * static_cast<double>(answers.bytes)),
+                median_text(record, 1.0, 3),
+                record.passed() && record.samples.size() == 1 ? "one run" : interval_text(record, 1.0, 3),
+                figures_text(problem, figures), answer);
+  const int others = answers.cores.running - 1, online = answers.cores.online,
+            threads = threads_of(request, row.ranks);
   if (others > 0 && others + row.ranks * threads > online)
     std::printf("  too slow: threads of other programs ran when it began, %d on %d cores\n", others, online);
   if (const std::string reason = answers.result.value("message", ""); !reason.empty())
     std::printf("  %s\n", reason.c_str());
-  std::fflush(stdout);
-}
-
-/// A row without a result, such as that of a problem that does not fit into memory.
-void print_failed_row(const Request& request, const Row& row, const Failure& failure) {
-  std::printf(columns, row.problem.program.c_str(), row.problem.name.c_str(), row.problem.extent.c_str(),
-              std::string(device::name(request.backend)).c_str(),
-              printed("%d x %d", row.ranks, threads_of(request, row.ranks)).c_str(), "-", "-", "-", "-",
-              failure.what());
   std::fflush(stdout);
 }
 
@@ -259,11 +258,10 @@ nlohmann::json or_null(const std::optional<double>& value) {
 }
 
 /// Runs a row, prints its line and adds its record. `of_one` is the figure of merit of the row of one rank in
-/// weak scaling. Returns its command.
-std::string add_row(const Request& request, const Row& row, std::optional<double>& of_one, Table& table) {
+/// weak scaling; `text`, the command in words.
+void add_row(const Request& request, const Row& row, const std::vector<std::string>& command,
+             const std::string& text, std::optional<double>& of_one, Table& table) {
   const Problem& problem = row.problem;
-  const std::vector<std::string> command = command_of(request, row);
-  const std::string text = shown(command, problem.program);
   const Answers answers = run_row(request, row, command);
   const std::string backend(device::name(request.backend)),
       size = size_names[static_cast<std::size_t>(request.size)];
@@ -301,7 +299,6 @@ std::string add_row(const Request& request, const Row& row, std::optional<double
              {"environment", openmp_variables()},
              {"command", text}});
   print_row(request, row, record, answers, figures);
-  return text;
 }
 
 }  // namespace
@@ -334,15 +331,20 @@ void run(const Request& request, const std::vector<Row>& rows, Table& table) {
   std::string commands;
   std::optional<double> of_one;
   std::optional<Failure> failure;  // the first one
-  for (const Row& row : rows) try {
-      commands += "  " + add_row(request, row, of_one, table) + "\n";
+  for (const Row& row : rows) {
+    const std::vector<std::string> command = command_of(request, row);
+    const std::string text = shown(command, row.problem.program);
+    commands += "  " + text + "\n";
+    try {
+      add_row(request, row, command, text, of_one, table);
     } catch (...) {
       const Failure of_row = current_failure();
       if (of_row.code() == ExitCode::interrupted) throw;
-      print_failed_row(request, row, of_row);
-      commands += "  " + shown(command_of(request, row), row.problem.program) + "\n";
+      print_columns(request, row, "-", "-", "-", "-", of_row.what());
+      std::fflush(stdout);
       if (!failure) failure = of_row;
     }
+  }
   if (table.records.empty()) throw *failure;
   const nlohmann::json& from = table.records.back()["provenance"];
   std::printf(

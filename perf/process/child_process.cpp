@@ -126,8 +126,7 @@ Failure failed_run(const std::string& units, int status, const std::filesystem::
                 "mpirun has fewer slots than ranks, by default one per core; take fewer ranks, or let them "
                 "share cores by OMPI_MCA_rmaps_base_oversubscribe=1, with Open MPI 5 "
                 "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe; --ranks of benchmark and --most of "
-                "table set "
-                "the number"};
+                "table set the number"};
   // A launcher that starts nothing ends with 1, which no program of this suite does.
   if (status == 1 && !reason.sentence.empty()) return {ExitCode::usage, failed + reason.sentence};
   const std::string end = describe_end(status);

@@ -47,8 +47,8 @@ class Build(FolderTest):
         self.assertRegex(said, r"C\+\+ compiler \S+g\+\+ \(GNU\) compiles no HIP: configure with -DCMAKE_CXX_COMPILER=hipcc, or unset")
 
     def test_openmp_is_refused_only_if_it_is_asked_for(self):
-        (self.folder / "script.cmake").write_text(f"cmake_policy(VERSION 3.25)\nset(PROJECT_SOURCE_DIR {SOURCE})\n"
-                                                  f"include({SOURCE}/cmake/DrogueBackends.cmake)\n", encoding="utf-8")
+        (self.folder / "script.cmake").write_text(f"cmake_policy(VERSION 3.25)\nset(PROJECT_SOURCE_DIR \"{SOURCE}\")\n"
+                                                  f"include(\"{SOURCE}/cmake/DrogueBackends.cmake\")\n", encoding="utf-8")
         for options in ([], ["-DDROGUE_OPENMP=OFF"], ["-DDROGUE_OPENMP=ON", "-DKokkos_ENABLE_OPENMP=ON"]):
             self.assertEqual("", self.cmake("-DKokkos_ENABLE_SERIAL=ON", *options, "-P", "script.cmake"))
         said = self.cmake("-DKokkos_ENABLE_SERIAL=ON", "-DDROGUE_OPENMP=ON", "-P", "script.cmake")

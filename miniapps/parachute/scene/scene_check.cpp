@@ -182,9 +182,9 @@ void check_initial(const Place& root, const FlowScene& scene, framework::Initial
     const std::string& text = scene.initial_velocity()[axis];
     const Lattice lattice = lattice_of(scene.parameters, axis);
     const SpaceTimeFunction function(text);
-    std::size_t stride = stride_of_check(check, lattice);
+    // No other check finds a velocity along a closed axis.
+    std::size_t stride = is_closed(scene.parameters, axis) ? 1 : stride_of_check(check, lattice);
     if (function.constant()) stride = lattice.size();
-    if (is_closed(scene.parameters, axis)) stride = 1;  // no other check finds a velocity there
     const std::vector<double> values = evaluate(function, lattice, 0.0, stride);
     const auto refuse = [&](const auto& is_bad, const char* reason) {
       const auto bad = std::ranges::find_if(values, is_bad);
