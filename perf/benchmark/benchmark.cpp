@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "common/program/failure.hpp"
+#include "common/program/program.hpp"
 #include "common/program/signals.hpp"
 #include "common/program/stopwatch.hpp"
 #include "common/run/files/atomic_file.hpp"
