@@ -1,12 +1,15 @@
 #include "kernels/device/host_cores.hpp"
 
-#include <sched.h>
 #include <unistd.h>
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <thread>
+#include <vector>
 
 namespace drogue::device {
 namespace {
@@ -18,11 +21,25 @@ constexpr std::chrono::milliseconds between_readings(1);
 /// there, if threads sleep while they wait.
 constexpr int dearer = 8;
 
-int allowed_cores(int online) {
+/// Cores of the calling thread; none on machines with more of them than the set can hold.
+std::optional<cpu_set_t> cores_of_thread() {
   cpu_set_t set;
-  // Fails on machines with more cores than the set can hold.
-  if (sched_getaffinity(0, sizeof set, &set) != 0) return online;
-  return std::max(1, CPU_COUNT(&set));
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return {};
+  return set;
+}
+
+/// Those of the process: of all places of OpenMP, where it binds threads.
+std::optional<cpu_set_t> cores_of_process() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+#if defined(_OPENMP)
+  for (int place = 0; place < omp_get_num_places(); ++place) {
+    std::vector<int> cores(static_cast<std::size_t>(omp_get_place_num_procs(place)));
+    omp_get_place_proc_ids(place, cores.data());
+    for (const int core : cores) CPU_SET(static_cast<std::size_t>(core), &set);
+  }
+#endif
+  return CPU_COUNT(&set) > 0 ? set : cores_of_thread();
 }
 
 /// Threads that run or wait for a core, as proc(5) counts them; 1 if it does not.
@@ -37,10 +54,19 @@ int running_threads() {
 
 }  // namespace
 
+UnboundThread::UnboundThread() : _bound(cores_of_thread()) {
+  if (const auto cores = cores_of_process()) sched_setaffinity(0, sizeof *cores, &*cores);
+}
+
+UnboundThread::~UnboundThread() {
+  if (_bound) sched_setaffinity(0, sizeof *_bound, &*_bound);
+}
+
 HostCores host_cores() {
   HostCores cores;
   cores.online = std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
-  cores.allowed = allowed_cores(cores.online);
+  const auto allowed = cores_of_process();
+  cores.allowed = allowed ? std::max(1, CPU_COUNT(&*allowed)) : cores.online;
   // One reading would take a thread that runs for an instant for a load.
   cores.running = running_threads();
   for (int i = 1; i < readings && cores.running > 1; ++i) {

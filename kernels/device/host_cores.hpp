@@ -1,6 +1,9 @@
 #pragma once
 
+#include <sched.h>
+
 #include <cstdint>
+#include <optional>
 
 namespace drogue::device {
 
@@ -9,6 +12,20 @@ struct HostCores {
   int allowed = 1;  ///< that this process may use
   int online = 1;   ///< of the machine
   int running = 1;  ///< threads of all processes that run or wait for a core, including the calling one
+};
+
+/// While it lives, the calling thread and the processes that it starts may use all cores of this process:
+/// OpenMP binds the first thread to one place before `main` if OMP_PROC_BIND or OMP_PLACES says so. Nothing
+/// throws.
+class UnboundThread {
+ public:
+  UnboundThread();
+  ~UnboundThread();
+  UnboundThread(const UnboundThread&) = delete;
+  UnboundThread& operator=(const UnboundThread&) = delete;
+
+ private:
+  std::optional<cpu_set_t> _bound;  ///< what to return to
 };
 
 /// Cores of this host. `running` is the least of a few readings within some milliseconds; 1 where the system

@@ -236,6 +236,7 @@ int jobs_of(const MiniAppOptions& options, const Ensemble& ensemble) {
 }
 
 void run_ensemble(const MiniAppOptions& options, const std::filesystem::path& file, Ensemble ensemble) {
+  const device::UnboundThread unbound;
   EnsembleStudy(options, file, ensemble).run();
 }
 

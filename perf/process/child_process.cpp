@@ -14,6 +14,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/run/files/temporary_folder.hpp"
+#include "kernels/device/host_cores.hpp"
 
 namespace drogue::perf {
 
@@ -59,6 +60,7 @@ int run_child(const std::vector<std::string>& words, const std::filesystem::path
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   pid_t child = 0;
+  const device::UnboundThread unbound;
   const int error = posix_spawnp(&child, arguments[0], actions.get(), nullptr, arguments.data(), environ);
   if (error != 0)
     throw Failure(ExitCode::io_error, "'" + words[0] + "' cannot be started: " + std::strerror(error));
@@ -108,9 +110,9 @@ std::string describe_end(int status) {
 
 }  // namespace
 
-Failure failed_run(const std::string& units, int status, const std::filesystem::path& log) {
+Failure failed_run(const std::string& what, int status, const std::filesystem::path& log) {
   const Reason reason = reason_in(log);
-  const std::string failed = "a run on " + units + " failed: ";
+  const std::string failed = what + " failed: ";
   // 130 is that of a signal from the keyboard, whoever prints a sentence.
   const bool interrupted = status == static_cast<int>(ExitCode::interrupted) && !reason.sentence.empty();
   if (interrupted || (has_sentence(status) && reason.of_program))
@@ -145,7 +147,7 @@ void require_launcher(int ranks) {
   std::vector<std::string> words = launcher_words(ranks, 1);
   words.emplace_back("true");
   if (const int status = run_child(words, folder.path(), log, true); status != 0)
-    throw failed_run(std::to_string(ranks) + " ranks", status, log);
+    throw failed_run("a run on " + std::to_string(ranks) + " ranks", status, log);
 }
 
 std::vector<std::string> launcher_words(int ranks, int threads) {

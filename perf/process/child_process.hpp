@@ -15,11 +15,11 @@ namespace drogue::perf {
 int run_child(const std::vector<std::string>& words, const std::filesystem::path& folder,
               const std::filesystem::path& log, bool log_output = false);
 
-/// Failure of a run of a program of this suite on some `units`, such as "2 ranks", that ended with `status`
+/// Failure of `what`, such as "a run on 2 ranks", a run of a program of this suite that ended with `status`
 /// and wrote `log`. Its code is that of the program; usage if mpirun refused to start it; io_error for a
 /// signal, a foreign code, or an end without a result. Its sentence holds that of the program or of mpirun;
 /// the ways out if mpirun refused root, or counted fewer slots than ranks. Throws only std::bad_alloc.
-Failure failed_run(const std::string& units, int status, const std::filesystem::path& log);
+Failure failed_run(const std::string& what, int status, const std::filesystem::path& log);
 
 /// Throws Failure(no_backend) if no folder of PATH holds mpirun, and as `failed_run` if it does not start
 /// `true` on that many ranks.

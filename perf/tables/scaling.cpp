@@ -35,7 +35,7 @@ int run_on(const std::string& units, const std::vector<std::string>& words,
   const int status = run_child(words, folder, log, log_output);
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
   if (status != 0 && status != static_cast<int>(ExitCode::verification_failed))
-    throw failed_run(units, status, log);
+    throw failed_run("a run on " + units, status, log);
   return status;
 }
 
@@ -146,7 +146,8 @@ void run_point(const ScalingRequest& request, device::Backend backend, const std
                             folder, log, true);
   std::ifstream file(out / "result.json");
   point.result = nlohmann::json::parse(file, nullptr, false);
-  if (point.result.is_discarded() || point.result.value("ranks", 0) < 1) throw failed_run(units, status, log);
+  if (point.result.is_discarded() || point.result.value("ranks", 0) < 1)
+    throw failed_run("a run on " + units, status, log);
   point.samples.push_back(point.result["timing"]["compute_s"].get<double>() /
                           point.result["steps"].get<double>());
   for (const nlohmann::json& check : point.result["checks"])

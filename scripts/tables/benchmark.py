@@ -30,7 +30,8 @@ def place(records):
     facts, most = records[0].facts, max(record.facts["ranks"] for record in records)
     if facts["backend"] == "cuda":
         return f"{'One' if most == 1 else most} {records[0].device(True)}, CUDA {records[0].provenance['driver']}"
-    return f"{most * facts['threads']} threads of an {records[0].device(False)}"
+    threads, name = most * facts["threads"], records[0].device(False)
+    return f"{'One thread' if threads == 1 else f'{threads} threads'} of {'an' if name[0] in 'AEIOU' else 'a'} {name}"
 
 
 def section(file):

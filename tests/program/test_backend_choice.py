@@ -53,6 +53,10 @@ class Choice(gas_program.GasTest):
     def test_one_thread_takes_serial(self):
         self.assertEqual("serial", self.backend_of(gas_program.PROGRAM, "sod", *GAS, "mesh.cells=1024", OMP_NUM_THREADS="1"))
 
+    def test_threads_that_are_bound_have_a_core_each(self):
+        bound = {"OMP_PROC_BIND": "spread", "OMP_PLACES": "cores"}
+        self.assertEqual(self.several(), self.backend_of(gas_program.PROGRAM, "sod", *GAS, "mesh.cells=1024", **bound))
+
     def test_springs_take_threads_from_512_vertices(self):
         short = ["time.end_time=0.001", "output.times=[0.0]"]
         for vertices, expected in ((217, "serial"), (817, self.several())):

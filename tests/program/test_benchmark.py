@@ -20,6 +20,7 @@ words, here, ranks = sys.argv[1:], pathlib.Path(sys.argv[0]), int(os.environ.get
 plan = json.loads((here.parent / "plan.json").read_text()).get(here.name, {{}})
 with (here.parent / "calls.jsonl").open("a") as calls:
     calls.write(json.dumps([here.name, *words]) + "\\n")
+(here.parent / "cores.json").write_text(json.dumps(sorted(os.sched_getaffinity(0))))
 time.sleep(plan.get("sleep", 0))
 if plan.get("sentence"):
     sys.exit(print(here.name + ": " + plan["sentence"], file=sys.stderr) or plan["code"])
@@ -187,9 +188,14 @@ class Planned(perf_program.PerfTest):
         text, sentence, records = self.benchmark(6, plan, "--filter", "drum|puts|c9")
         failure = "puts on 1 rank failed: drogue-options: out of memory: use fewer cells"
         self.assertIn(failure, sentence)
-        self.assertRegex(text, rf"drogue-options +puts .*{failure}\n")
+        self.assertRegex(text, rf"drogue-options +puts +.*  {failure}\n")
         self.assertEqual(["drum", "c9-flat"], [record["facts"]["problem"] for record in records])
         self.assertRegex(text, r"\n  env .*drogue-options price puts-16384.csv ")
+
+    def test_programs_have_all_cores_though_threads_are_bound(self):
+        """OpenMP binds the first thread of drogue-perf too, before `main`."""
+        self.benchmark(0, {"drogue-gas": {"check": ["l1_density", 9.1e-5]}}, "--filter", "sod", OMP_PROC_BIND="spread", OMP_PLACES="cores")
+        self.assertEqual(sorted(os.sched_getaffinity(0)), json.loads((self.bin / "cores.json").read_text()))
 
     def test_program_that_is_missing_is_named(self):
         (self.bin / "drogue-springs").unlink()

@@ -13,7 +13,7 @@ namespace {
 std::pair<ExitCode, std::string> failed(int status, const std::string& log) {
   const run::TemporaryFolder folder("drogue-test");
   std::ofstream(folder.path() / "log") << log;
-  const Failure failure = failed_run("2 ranks", status, folder.path() / "log");
+  const Failure failure = failed_run("a run on 2 ranks", status, folder.path() / "log");
   return {failure.code(), failure.what()};
 }
 
