@@ -9,6 +9,8 @@ from .results import number
 _UNITS = {"cell_steps_per_s": (1e-6, "M cell-steps/s"), "vertex_steps_per_s": (1e-6, "M vertex-steps/s"),
           "options_per_s": (1.0, "options/s"), "simulated_s_per_s": (1.0, "s of flight/s")}
 
+SIZES = ["small", "medium", "large"]
+
 
 def merit(facts):
     """Figure of merit with its unit, and the efficiency of weak scaling."""
@@ -48,14 +50,14 @@ def section(file):
 
 
 def summary(evidence):
-    """Paragraph of the README: figures of merit of all files, but those of weak scaling."""
-    lines = []
-    for file in sorted(evidence.glob("benchmark-*.jsonl")):
-        records = passed(file)
-        if not records[0].case.endswith("/weak"):
-            merits = ", ".join(f"{merit(record.facts)} (`{record.facts['problem']}`)" for record in records)
-            lines.append(f"{place(records)}, size {records[0].facts['size']} ([record](docs/evidence/{file.name})): {merits}.")
-    return lines
+    """Paragraph of the README: figures of merit of the largest size on each backend, without weak scaling."""
+    largest = {}
+    for file in sorted(evidence.glob("benchmark-*.jsonl"), key=lambda file: SIZES.index(passed(file)[0].facts["size"])):
+        if not (records := passed(file))[0].case.endswith("/weak"):
+            largest[records[0].facts["backend"]] = file, records
+    return [f"{place(records)}, size {records[0].facts['size']} ([record](docs/evidence/{file.name})): "
+            + ", ".join(f"{merit(record.facts)} (`{record.facts['problem']}`)" for record in records) + "."
+            for _, (file, records) in sorted(largest.items())]
 
 
 def renewed(text, evidence=EVIDENCE):

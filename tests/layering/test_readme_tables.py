@@ -152,8 +152,15 @@ class Benchmark(unittest.TestCase):
         self.assertIn("| process, MB |", text)
         self.assertIn("| arrays, MB |", text)
         self.assertTrue(text.startswith("A\n") and text.endswith("B\n") and "old" not in text)
-        summary, = benchmark.summary(self.evidence)
-        self.assertIn("2 threads of an core, size small ([record](docs/evidence/benchmark-here.jsonl)): 2048 options/s (`puts`).", summary)
+
+    def test_summary_shows_the_largest_size_on_each_backend(self):
+        self.write("here", "puts/openmp/medium/ranks/1", size="medium")
+        self.write("small", "puts/openmp/small/ranks/1")
+        self.write("weak", "taylor-green/openmp/large/ranks/4/weak", size="large", ranks=4, efficiency=0.93)
+        self.write("core", "puts/serial/small/ranks/1", backend="serial", threads=1)
+        self.assertEqual(["2 threads of a core, size medium ([record](docs/evidence/benchmark-here.jsonl)): 2048 options/s (`puts`).",
+                          "One thread of a core, size small ([record](docs/evidence/benchmark-core.jsonl)): 2048 options/s (`puts`)."],
+                         benchmark.summary(self.evidence))
 
     def test_refuses_wrong_answers_and_no_records(self):
         with self.assertRaisesRegex(SystemExit, "docs/evidence a file benchmark"):
