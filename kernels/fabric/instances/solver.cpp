@@ -1,10 +1,11 @@
 #include "kernels/device/own_instance.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
 #include "kernels/fabric/host_threads.hpp"
+#include "kernels/fabric/make_forces.hpp"
 
 namespace drogue::fabric {
 
-template struct FabricForces<DROGUE_INSTANCE_SPACE>;
+template FabricForces<DROGUE_INSTANCE_SPACE>::FabricForces(const DROGUE_INSTANCE_SPACE&, const Parameters&);
 template class FabricSolver<DROGUE_INSTANCE_SPACE>;
 
 template <class ExecutionSpace>
