@@ -335,9 +335,8 @@ class Orders(parachute_program.FlowTest):
                 self.assertGreater(math.log2((coarse - middle) / (middle - fine)), least)
 
     def test_study_lists_second_order_in_space(self):
-        run = self.start("taylor-green-2d", "--backend", "serial", "--quiet", "--study",
-                         "meshes=16:64,advections=central:weno-z,times=ab2,diffusions=explicit:crank-nicolson", sets=["run.end_time=0.5", "output={}"],
-                         environment={"PYTHONHOME": os.devnull})
+        run = self.study("taylor-green-2d", "meshes=16:64,advections=central:weno-z,times=ab2,diffusions=explicit:crank-nicolson",
+                         "--backend", "serial", "--quiet", sets=["run.end_time=0.5", "output={}"])
         self.assertEqual(0, run.returncode, run.stderr)
         rows = self.table("out/taylor-green-2d-study/study.csv")
         self.assertEqual([(advection, "ab2", diffusion, cells) for advection in ("central", "weno-z")
@@ -357,8 +356,7 @@ class Orders(parachute_program.FlowTest):
         self.assertGreaterEqual(len(scenes), 6)
         for scene in scenes:
             with self.subTest(scene):
-                run = self.start(scene, "--backend", "serial", "--quiet", "--study", "meshes=4:16",
-                                 sets=["run.end_time=0.02", "output={}"], environment={"PYTHONHOME": os.devnull})
+                run = self.study(scene, "meshes=4:16", "--backend", "serial", "--quiet", sets=["run.end_time=0.02", "output={}"])
                 self.assertEqual(0, run.returncode, run.stderr)
                 self.assertEqual([("ok", n) for n in ("4", "8", "16")],
                                  [(row["status"], row["cells"]) for row in self.table(f"out/{scene}-study/study.csv")])
