@@ -483,7 +483,7 @@ class Bodies(parachute_program.FlowTest):
         # The force accelerates all of the fluid: mass times 0.05 10^2 sin(10 t), whose mean over the half periods
         # from 0.8 pi to 0.9 pi is 2 / pi of the amplitude.
         mean = 1.2 * 1.6 * 0.8 * 0.6 * 0.05 * 100 * 2 / math.pi
-        sets = ["run.end_time=2.8274333882308138", "run.max_dt=0.001", "output={history_every=1}", "verify={"
+        sets = ["run.end_time=2.8274333882308138", "run.max_dt=0.002", "output={history_every=1}", "verify={"
                 "history=[" + statistic("body_0_force_x", "mean", f"{mean:.9g}", 5e-3, from_=2.5132741228718345) + "," +
                 statistic("body_0_force_x", "frequency", 0.15915494309189535, 5e-3, from_=0.2, reference=10) + "]}"]
         self.expect(0, self.write(moving), *QUIET, sets=sets)
