@@ -14,7 +14,7 @@ from plot.evidence import perf_record  # noqa: E402
 
 # Stands for a program of the suite: plan.json beside it has the exit code, and what differs in its result. A number of prices by
 # their errors makes prices of the known puts.
-PROGRAM = """#!{python}
+PROGRAM = """#!{python} -IS
 import json, os, pathlib, sys, time
 words, here, ranks = sys.argv[1:], pathlib.Path(sys.argv[0]), int(os.environ.get("RANKS", "1"))
 plan = json.loads((here.parent / "plan.json").read_text()).get(here.name, {{}})
@@ -43,7 +43,7 @@ result.write_text(json.dumps({{
                         "vertex_steps_per_s": 4e6, "options_per_s": 50.0, "simulated_s_per_s": 0.25}}}}))
 sys.exit(plan.get("code", 0))
 """
-LAUNCHER = """#!{python}
+LAUNCHER = """#!{python} -IS
 import os, sys
 words = sys.argv[3:] if sys.argv[3] != "--bind-to" else sys.argv[5:]
 os.execvpe(words[0], words, {{**os.environ, "RANKS": sys.argv[2]}})

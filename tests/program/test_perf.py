@@ -495,7 +495,7 @@ class Scaling(perf_program.PerfTest):
 
 # Stands for mpirun: starts a program once, and writes records for drogue-perf messages. A round takes 2 us, 1 MB 1 ms more, and the
 # messages of a step 0.1 s.
-LAUNCHER_FOR_ONE = """#!{python}
+LAUNCHER_FOR_ONE = """#!{python} -IS
 import json, os, sys
 ranks, program, *words = sys.argv[2:]
 if words[:1] != ["messages"]:
@@ -508,7 +508,7 @@ with open(words[words.index("--out") + 1], "w") as out:
 """
 
 # Writes the result of a run of 20 steps in 10 s, which fails its check on one rank.
-SCENE_RUN = """#!{python}
+SCENE_RUN = """#!{python} -IS
 import json, os, pathlib, sys
 out, ranks = pathlib.Path(sys.argv[sys.argv.index("--out") + 1]), int(os.environ["RANKS"])
 out.mkdir()

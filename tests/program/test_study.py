@@ -1,7 +1,6 @@
 # ctest-label: no-sanitizer
 """Option --study: tables of errors and times over meshes and schemes."""
 
-import os
 import signal
 import subprocess
 import time
@@ -13,9 +12,7 @@ import springs_program
 
 class StudyTest(gas_program.GasTest):
     def study(self, code, scene, lists, *words, sets=()):
-        """Runs a study without a Python interpreter for its pictures, which is no failure."""
-        run = self.start(scene, "--backend", "serial", "--study", lists, *words, sets=sets,
-                         environment={"PYTHONHOME": os.devnull})
+        run = super().study(scene, lists, "--backend", "serial", *words, sets=sets)
         self.assertEqual(code, run.returncode, run.stderr)
         return run
 

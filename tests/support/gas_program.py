@@ -7,6 +7,7 @@ import os
 import pathlib
 import pty
 import re
+import shutil
 import subprocess
 import time
 import unittest
@@ -86,6 +87,10 @@ class GasTest(FolderTest):
         self.assertEqual(code, process.returncode, f"{process.args}\n{process.stderr}")
         self.assertEqual(0 if code == 0 else 1, len(process.stderr.splitlines()), process.stderr)
         return process
+
+    def study(self, scene, lists, *words, sets=()):
+        """A study by a copy of the program, beside which no drogue-plot lies: a picture that is not made is no failure."""
+        return run(scene, "--study", lists, *words, sets=sets, cwd=self.folder, program=shutil.copy(self.program, self.folder))
 
     def assert_lists(self, scenes):
         """Asserts that the program lists these scenes, each with a sentence, and those of GPUs with a mark."""

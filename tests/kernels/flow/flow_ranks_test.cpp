@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernels/flow/halo/decomposition.hpp"
@@ -91,17 +92,20 @@ void set_sides(Parameters& p, std::size_t axis, BoundaryKind low, BoundaryKind h
   }
 }
 
-/// Component c is 0.2 + t y + (c + 1) z / 10.
+/// 0.2 + t y + z / 10 along x, which changes along both axes that ranks divide, 0.2 + t y and 0.2 + t z. A
+/// solver samples each of them in its plane at all times before it starts, which takes longer than its steps.
 void set_expressions(Boundary& boundary) {
   for (int c = 0; c < 3; ++c) {
     device::ExpressionBuilder builder;
     builder.push("t");
-    builder.push("y");
+    builder.push(c == 2 ? "z" : "y");
     builder.push("*");
-    builder.push("constant", 0.1 * (c + 1));
-    builder.push("z");
-    builder.push("*");
-    builder.push("+");
+    if (c == 0) {
+      builder.push("constant", 0.1);
+      builder.push("z");
+      builder.push("*");
+      builder.push("+");
+    }
     builder.push("constant", 0.2);
     builder.push("+");
     boundary.velocity_expressions.push_back(builder.program());
@@ -368,21 +372,25 @@ TEST_F(FlowRanks, ChooseTheDtOfOneRank) {
         if (p.boundary[side].kind == BoundaryKind::wall && p.boundary[side].velocity_expressions.empty())
           set_expressions(p.boundary[side]);
       const StaggeredField rest = FlowDomain(p).zero_field();
+      SharedSolver one(p, {});
+      one.start(rest);
+      std::vector<std::pair<Stop, double>> expected;
+      do {
+        const Stop stop = one->advance(0.5, static_cast<int>(expected.size()) + 1, {});
+        expected.emplace_back(stop, one->progress().last_dt);
+      } while (expected.back().first == Stop::pause && expected.size() < 6);
       for (const int ranks : {2, 3, 4}) {
         if (ranks == 3 && p.cells != cases()[0].parameters.cells) continue;  // too few cells
         if (!can_share(p, ranks)) continue;
         const linear::RankGroup group = first_ranks(ranks);
         if (!belongs_to_first(ranks)) continue;
-        SharedSolver one(p, {}), shared(p, group);
-        one.start(rest);
+        SharedSolver shared(p, group);
         shared.start(rest);
-        for (int step = 1; step <= 6; ++step) {
-          const Stop expected = one->advance(0.5, step, {}), found = shared->advance(0.5, step, {});
-          ASSERT_EQ(expected, found) << each.name << " on " << ranks;
-          const double dt = one->progress().last_dt;
+        int step = 0;
+        for (const auto& [stop, dt] : expected) {
+          ASSERT_EQ(stop, shared->advance(0.5, ++step, {})) << each.name << " on " << ranks;
           EXPECT_NEAR(dt, shared->progress().last_dt, 1e-11 * dt)
               << each.name << " on " << ranks << ", step " << step;
-          if (expected != Stop::pause) break;
         }
       }
     }

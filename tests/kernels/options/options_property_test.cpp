@@ -157,7 +157,7 @@ bool agree(const Price& a, const Price& b) {
 // access to host memory.
 // ctest-label: exact no-sanitizer
 TEST(OptionsProperty, PricesDoNotDependOnTheSizeOfTheBatch) {
-  auto contracts = random_contracts(2400, 9);
+  auto contracts = random_contracts(device::needs_device(backend) ? 2400 : 760, 9);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     Contract& c = contracts[k];
     if (k % 4 != 0) {
@@ -238,6 +238,7 @@ TEST(OptionsProperty, ConvergesAtSecondOrder) {
 
 // Both grids treat the same part of the jumps implicitly. Otherwise the error in time contains h dt^2, which
 // the extrapolation does not remove and the difference of the grids does not show.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, ErrorInTimeOfShortJumpsDoesNotDependOnTheMesh) {
   constexpr int steps = 64;
   for (const double beta : {-8.0, -0.5, 2.6}) {
