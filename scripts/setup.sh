@@ -56,6 +56,7 @@ cuda_architecture() {
 if [ "$system" = yes ]; then
   check_tools
   [ "$hip" = no ] || [ -n "$(find_hipcc)" ] || fail "there is no hipcc: load a module of ROCm, or name its folder by ROCM_PATH."
+  say "the tools are there: libraries come from find_package"
   exit 0
 fi
 

@@ -23,10 +23,15 @@ nlohmann::json provenance(const device::DeviceFacts& device) {
 
 nlohmann::json provenance_of(const nlohmann::json& result) {
   const nlohmann::json& from = result["provenance"];
-  return provenance({.kokkos_version = device::kokkos_version(),
-                     .gpu = from.value("gpu", ""),
-                     .driver = from.value("driver", ""),
-                     .threads = result["threads"].get<int>()});
+  nlohmann::json facts = provenance({.kokkos_version = from.value("kokkos", device::kokkos_version()),
+                                     .gpu = from.value("gpu", ""),
+                                     .driver = from.value("driver", ""),
+                                     .threads = result["threads"].get<int>()});
+  for (const char* of_build : {"version", "git"})
+    if (result.contains(of_build)) facts[of_build] = result[of_build];
+  for (const char* of_build : {"compiler", "flags"})
+    if (from.contains(of_build)) facts[of_build] = from[of_build];
+  return facts;
 }
 
 nlohmann::json to_json(const Record& record, const nlohmann::json& provenance, const nlohmann::json& facts) {

@@ -1,5 +1,6 @@
 """Reference results of docs/benchmark.md, from the records benchmark-*.jsonl."""
 
+import re
 import statistics
 import sys
 
@@ -33,17 +34,20 @@ def place(records):
     if facts["backend"] == "cuda":
         return f"{'One' if most == 1 else most} {records[0].device(True)}, CUDA {records[0].provenance['driver']}"
     threads, name = most * facts["threads"], records[0].device(False)
-    return f"{'One thread' if threads == 1 else f'{threads} threads'} of {'an' if name[0] in 'AEIOU' else 'a'} {name}"
+    compiled = re.search(r"-march=\S+", records[0].provenance.get("flags", ""))
+    return (f"{'One thread' if threads == 1 else f'{threads} threads'} of {'an' if name[0] in 'AEIOU' else 'a'} {name}"
+            + (f", compiled with `{compiled[0]}`" if compiled else ""))
 
 
 def section(file):
     """Paragraph and table of a file."""
     records = passed(file)
     facts, here = records[0].facts, records[0].provenance
-    options = f"--size {facts['size']} --backend {facts['backend']}"
+    variables = "".join(f"{name}={value} " for name, value in facts.get("environment", {}).items())
+    options = f"--size {facts['size']} --backend {facts['backend']}" + (f" --threads {facts['threads']}" if facts["backend"] == "openmp" else "")
     if (most := max(record.facts["ranks"] for record in records)) > 1:
         options += f"{' --weak' if records[0].case.endswith('/weak') else ''} --ranks {most}"
-    origin = f"{place(records)}, {records[0].run_id[0][:10]}, commit {here['git']} ([record](evidence/{file.name})): `drogue-perf benchmark {options}`."
+    origin = f"{place(records)}, {records[0].run_id[0][:10]}, commit {here['git']} ([record](evidence/{file.name})): `{variables}drogue-perf benchmark {options}`."
     memory = "process, MB" if facts["backend"] in ("serial", "openmp") else "arrays, MB"
     heading = ["problem", "size", "ranks x threads", memory, "time, s", "figure of merit", "error (expected)"]
     return ["", origin, "", *table(heading, map(row, records), (0, 1, 5, 6))]

@@ -142,11 +142,11 @@ class Benchmark(unittest.TestCase):
         (self.evidence / f"benchmark-{name}.jsonl").write_text(json.dumps(line) + "\n", encoding="utf-8")
 
     def test_table_and_summary_show_figures_with_errors(self):
-        self.write("here", "puts/openmp/small/ranks/1")
+        self.write("here", "puts/openmp/small/ranks/1", environment={"OMP_PLACES": "cores"})
         self.write("weak", "taylor-green/cuda/large/ranks/4/weak", backend="cuda", ranks=4, merit="cell_steps_per_s", figure_of_merit=3e9, efficiency=0.93)
         text = benchmark.renewed(self.PAGE, self.evidence)
         self.assertIn("| `puts` | 4096 options | 1 x 2 | 23 | 2 | 2048 options/s | 1.9e-6 (1e-6 .. 2e-6) |", text)
-        self.assertIn("`drogue-perf benchmark --size small --backend openmp`", text)
+        self.assertIn("`OMP_PLACES=cores drogue-perf benchmark --size small --backend openmp --threads 2`", text)
         self.assertIn("--weak --ranks 4`", text)
         self.assertIn("| 3000 M cell-steps/s, 93 % |", text)
         self.assertIn("| process, MB |", text)

@@ -37,7 +37,7 @@ else:
 check = plan.get("check", ["none", 0.0])
 result.write_text(json.dumps({{
     "ranks": plan.get("ranks", ranks), "threads": int(os.environ["OMP_NUM_THREADS"]), "device": "a device",
-    "provenance": {{}}, "timing": {{"compute_s": plan.get("seconds", 10.0)}}, "peak_bytes": {{"host": 2000000, "device": 0}},
+    "git": "its-own", "provenance": {{"flags": "-Oits-own"}}, "timing": {{"compute_s": plan.get("seconds", 10.0)}}, "peak_bytes": {{"host": 2000000, "device": 0}},
     "checks": [{{"name": check[0], "value": check[1], "tolerance": 1.0, "passed": True}}],
     "figure_of_merit": {{"cell_steps_per_s": plan.get("share", 1.0) ** (ranks - 1) * 3e6 * ranks,
                         "vertex_steps_per_s": 4e6, "options_per_s": 50.0, "simulated_s_per_s": 0.25}}}}))
@@ -191,6 +191,11 @@ class Planned(perf_program.PerfTest):
         self.assertRegex(text, rf"drogue-options +puts +.*  {failure}\n")
         self.assertEqual(["drum", "c9-flat"], [record["facts"]["problem"] for record in records])
         self.assertRegex(text, r"\n  env .*drogue-options price puts-16384.csv ")
+
+    def test_records_state_the_build_of_the_program_and_too_many_threads(self):
+        text, _, (record,) = self.benchmark(0, {"drogue-gas": {"check": ["l1_density", 9.1e-5]}}, "--filter", "sod", "--threads", "500", backend="openmp")
+        self.assertEqual(("its-own", "-Oits-own"), (record["provenance"]["git"], record["provenance"]["flags"]))
+        self.assertRegex(text, r"\n  too slow: 500 threads on \d+ cores\n")
 
     def test_programs_have_all_cores_though_threads_are_bound(self):
         """OpenMP binds the first thread of drogue-perf too, before `main`."""
