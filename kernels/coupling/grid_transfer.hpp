@@ -8,7 +8,6 @@
 
 #include "kernels/coupling/face_stencil.hpp"
 #include "kernels/coupling/fixed_point.hpp"
-#include "kernels/device/copy.hpp"
 #include "kernels/device/launch.hpp"
 
 namespace drogue::coupling {
@@ -211,7 +210,7 @@ template <class ExecutionSpace>
 [[nodiscard]] TransferCounts transfer_counts(const ExecutionSpace& space,
                                              const GridTransfer<ExecutionSpace>& transfer) {
   TransferCounts counts;
-  device::copy_out(space, &counts, transfer.counts, 1);
+  Kokkos::deep_copy(space, counts, transfer.counts);
   space.fence("drogue::coupling::transfer_counts");
   return counts;
 }

@@ -6,20 +6,18 @@
 #include <vector>
 
 #include "kernels/device/backend_list.hpp"
-#include "kernels/fabric/elastic/adjacency.hpp"
 #include "kernels/fabric/elastic/frequency.hpp"
 #include "kernels/fabric/elastic/lanczos.hpp"
 #include "kernels/fabric/elastic/stress_evaluator.hpp"
 #include "kernels/fabric/loads/dirichlet.hpp"
-#include "kernels/fabric/points_transfer.hpp"
+#include "kernels/fabric/loads/make_loads.hpp"
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/stepping/step_state.hpp"
 #include "kernels/fabric/totals.hpp"
 #include "kernels/fabric/vertex_force.hpp"
 #include "kernels/mesh/edges.hpp"
 
 namespace drogue::fabric {
-
-struct Parameters;
 
 /// Elastic forces and loads, N, at given positions.
 template <class ExecutionSpace, ConstitutiveModel model>
@@ -66,10 +64,10 @@ struct FabricForces {
                                                  .checks_divergence = checks_divergence});
   }
 
-  /// Takes over E A of the lines of `mesh`, N. Blocks.
+  /// Takes over E A of the lines of `parameters`, N. Blocks.
   void update_line_stiffness() {
     // The slots stay, so that graphs of the launcher remain valid.
-    const SpringAdjacency springs = spring_adjacency(mesh, material);
+    const SpringAdjacency springs = spring_adjacency(parameters.mesh, parameters.material);
     device::copy(space, fabric.springs.value,
                  table_view(space, "drogue::fabric::slot_values", springs.value));
     space.fence("drogue::fabric::update_line_stiffness");
@@ -86,8 +84,6 @@ struct FabricForces {
 
   ExecutionSpace space;
   const Parameters& parameters;
-  const Mesh& mesh;  ///< of `parameters`, as the material
-  const Material& material;
   int vertices, padded;                ///< `padded`: in whole slices
   double decay;                        ///< 1/s, upper bound of the rates of damping
   FabricViews<ExecutionSpace> fabric;  ///< `load`: N, as evaluated last, or dead loads alone
@@ -100,7 +96,7 @@ struct FabricForces {
   /// Positions at rest, m, shared with forces or loads if they have them.
   [[nodiscard]] Points rest_positions() const {
     if (fabric.rest.extent(0) > 0) return fabric.rest;
-    return external.rest.extent(0) > 0 ? external.rest : make_rest_positions(space, mesh);
+    return external.rest.extent(0) > 0 ? external.rest : make_rest_positions(space, parameters.mesh);
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  const StageTime& time,
@@ -127,10 +123,44 @@ struct StepInputs {
 };
 
 template <class ExecutionSpace>
+FabricForces<ExecutionSpace>::FabricForces(const ExecutionSpace& on, const Parameters& p)
+    : space(on),
+      parameters(p),
+      vertices(static_cast<int>(p.mesh.rest.size())),
+      padded(padded_vertices(vertices)),
+      decay(p.integrator == Integrator::rk4 ? p.damping : 0.0),
+      fabric(make_fabric_views(space, p)),
+      dead(make_dead_loads(space, p)),
+      has_dashpots(p.relative_damping > 0.0),
+      has_load_kernel(needs_load_kernel(p)),
+      _totals(vertices) {
+  fabric.load = dead.total;
+  const double bending = p.material.bending_stiffness;
+  if (bending > 0.0) external.bending = sliced_ell_views(space, bending_adjacency(p.mesh, bending));
+  if (has_dashpots) {
+    const DashpotAdjacency dashpots = dashpot_adjacency(p.mesh, p.mass, p.relative_damping);
+    external.dashpots = sliced_ell_views(space, dashpots);
+    decay += fastest_dashpot_decay(dashpots, p.mass);
+  }
+  if (has_load_kernel) {
+    external.rest = rest_positions();
+    fabric.load = make_points<ExecutionSpace>("drogue::fabric::load", p.mass.size());
+    make_timed_loads(space, p, external);
+  }
+  if (!p.follower_pressures.empty()) {
+    external.surface = make_surface(space, p, fabric);
+    make_pressures(space, p, external);
+  }
+  if (external.has_pressure() || bending > 0.0)
+    _load_stiffness = decltype(_load_stiffness)("drogue::fabric::load_stiffness", p.mass.size());
+  if (!p.motions.empty()) dirichlet = make_dirichlet(space, p.motions, rest_positions());
+}
+
+template <class ExecutionSpace>
 void FabricForces<ExecutionSpace>::forces(const State& state, const Points& x,
                                           PointsReader<ExecutionSpace>& reader, std::span<Vector> to) const {
   evaluate_loads(x, state.v, state.at(0.0), false);
-  dispatch_model(material, [&]<ConstitutiveModel model>() {
+  dispatch_model(parameters.material, [&]<ConstitutiveModel model>() {
     launch_packs(space, "drogue::fabric::force", padded,
                  ForceFunctor<ExecutionSpace, model>{fabric, x, state.spare_x});
   });
@@ -143,7 +173,7 @@ double FabricForces<ExecutionSpace>::fastest_frequency(const State& state) const
     launch_each(space, "drogue::fabric::load_stiffness", vertices,
                 LoadStiffnessFunctor<ExecutionSpace>{external_functor(state.x, state.v, state.at(0.0), false),
                                                      _load_stiffness});
-  return frequency_bound(space, material, fabric, state.x, _load_stiffness, vertices);
+  return frequency_bound(space, parameters.material, fabric, state.x, _load_stiffness, vertices);
 }
 
 template <class ExecutionSpace>
@@ -158,7 +188,7 @@ double FabricForces<ExecutionSpace>::frequency_at_least(const State& state) cons
   for (std::size_t k = 0; k < root.size(); ++k)
     root[k] = (fixed_dofs(k / 3) >> k % 3 & 1U) != 0U ? 0.0 : std::sqrt(inverse_mass(k / 3));
   // Short enough for linear forces, long enough for forces above round-off.
-  const double displacement = 1e-5 * shortest_edge(mesh);
+  const double displacement = 1e-5 * shortest_edge(parameters.mesh);
   PointsReader<ExecutionSpace> reader;
   std::vector<Vector> now(n);
   reader.read(space, state.x, now);
@@ -173,27 +203,27 @@ double FabricForces<ExecutionSpace>::frequency_at_least(const State& state) cons
 template <class ExecutionSpace>
 void FabricForces<ExecutionSpace>::stress(const State& state, StressMeasure measure,
                                           std::span<Stress> of_triangles) {
-  _stress.triangles(space, mesh, material, fabric.moduli, state.x, measure, of_triangles);
+  _stress.triangles(space, parameters, fabric.moduli, state.x, measure, of_triangles);
 }
 
 template <class ExecutionSpace>
 void FabricForces<ExecutionSpace>::vertex_stress(const State& state, StressMeasure measure,
                                                  std::span<Stress> of_vertices) {
-  _stress.vertices(space, mesh, material, fabric.moduli, state.x, measure, of_vertices);
+  _stress.vertices(space, parameters, fabric.moduli, state.x, measure, of_vertices);
 }
 
 template <class ExecutionSpace>
 Totals FabricForces<ExecutionSpace>::totals(const State& state) const {
   FabricViews<ExecutionSpace> with_dead_loads = fabric;
   with_dead_loads.load = dead.total;
-  Totals totals = _totals.evaluate(space, material, with_dead_loads, state.x, state.v, dead.rest_forces,
-                                   external.bending);
+  Totals totals = _totals.evaluate(space, parameters.material, with_dead_loads, state.x, state.v,
+                                   dead.rest_forces, external.bending);
   totals.elastic += dead.rest_energy;
   return totals;
 }
 
-// One translation unit per backend compiles them, without the parameters of a solver; the constructor is in
-// make_forces.hpp. Solvers with a VertexForce of their own compile steps alone.
+// One translation unit per backend compiles them: solvers with a VertexForce of their own compile steps
+// alone.
 DROGUE_EXTERN_INSTANCES(struct FabricForces)
 
 }  // namespace drogue::fabric

@@ -118,7 +118,7 @@ class PeakPulls {
     if (_lines.empty()) return;
     std::vector<double> values;
     for (const int line : _lines) values.push_back(of_lines[static_cast<std::size_t>(line)]);
-    write(space, values, _views.stiffness);
+    write(space, std::span<const double>(values), _views.stiffness);
   }
 
   /// Enqueues the comparison of the forces at positions, m, with the peaks. Allocates nothing. Throws only if
@@ -140,23 +140,27 @@ class PeakPulls {
   [[nodiscard]] std::vector<PeakPull> peaks(const ExecutionSpace& space) const {
     std::vector<PeakPull> result(_pulls);
     if (_pulls == 0) return result;
-    device::copy_out(space, result.data(), _views.peak, _pulls);
+    const auto mirror = Kokkos::create_mirror_view(_views.peak);
+    device::copy(space, mirror, _views.peak);
     space.fence("drogue::fabric::peaks");
+    for (std::size_t k = 0; k < _pulls; ++k) result[k] = mirror(k);
     return result;
   }
 
   /// Sets the peaks to zero. Blocks. Throws only after a failed kernel.
   void reset(const ExecutionSpace& space) const {
     const std::vector<PeakPull> none(_pulls);
-    write(space, none, _views.peak);
+    write(space, std::span<const PeakPull>(none), _views.peak);
   }
 
  private:
   template <class T>
-  static void write(const ExecutionSpace& space, const std::vector<T>& from,
+  static void write(const ExecutionSpace& space, std::span<const T> from,
                     const ListView<ExecutionSpace, T>& to) {
     if (from.empty()) return;
-    device::copy_in(space, to, from.data(), from.size());
+    const auto mirror = Kokkos::create_mirror_view(to);
+    for (std::size_t k = 0; k < from.size(); ++k) mirror(k) = from[k];
+    device::copy(space, to, mirror);
     space.fence("drogue::fabric::peak_pulls");
   }
 

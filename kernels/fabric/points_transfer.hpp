@@ -9,17 +9,6 @@
 
 namespace drogue::fabric {
 
-/// Number of vertices padded to whole slices.
-[[nodiscard]] constexpr int padded_vertices(int vertices) { return (vertices + slice - 1) / slice * slice; }
-
-/// Vectors of all vertices in any unit, zero, with the padding of the last slice. Throws std::runtime_error
-/// if memory runs out.
-template <class ExecutionSpace>
-[[nodiscard]] PointsView<ExecutionSpace> make_points(const std::string& label, std::size_t vertices) {
-  return PointsView<ExecutionSpace>(label,
-                                    static_cast<std::size_t>(padded_vertices(static_cast<int>(vertices))));
-}
-
 /// Copies vectors to the rows of a View and fills further rows, which pad the last slice, with zeros. Blocks.
 template <class ExecutionSpace>
 void copy_to_points(const ExecutionSpace& space, std::span<const Vector> from,
@@ -29,14 +18,6 @@ void copy_to_points(const ExecutionSpace& space, std::span<const Vector> from,
     for (std::size_t axis = 0; axis < 3; ++axis) mirror(i, axis) = i < from.size() ? from[i][axis] : 0.0;
   device::copy(space, to, mirror);
   space.fence("drogue::fabric::copy_to_points");
-}
-
-/// Positions at rest, m. Blocks. Throws std::runtime_error if memory runs out.
-template <class ExecutionSpace>
-[[nodiscard]] PointsView<ExecutionSpace> make_rest_positions(const ExecutionSpace& space, const Mesh& mesh) {
-  const auto rest = make_points<ExecutionSpace>("drogue::fabric::rest_positions", mesh.rest.size());
-  copy_to_points<ExecutionSpace>(space, mesh.rest, rest);
-  return rest;
 }
 
 /// Copies the first rows of Views to host memory through a mirror that is allocated once.

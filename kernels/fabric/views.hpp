@@ -20,8 +20,10 @@ using TableView = Kokkos::View<T* [columns], Kokkos::LayoutLeft, typename Execut
 template <class ExecutionSpace, class T>
 [[nodiscard]] ListView<ExecutionSpace, T> list_view(const ExecutionSpace& space, const std::string& label,
                                                     const std::vector<T>& from) {
-  ListView<ExecutionSpace, T> to(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, label), from.size());
-  device::copy_in(space, to, from.data(), from.size());
+  ListView<ExecutionSpace, T> to(label, from.size());
+  const auto mirror = Kokkos::create_mirror_view(to);
+  for (std::size_t i = 0; i < from.size(); ++i) mirror(i) = from[i];
+  device::copy(space, to, mirror);
   space.fence("drogue::fabric::list_view");
   return to;
 }

@@ -55,7 +55,7 @@ class GasSolver : public Solver {
   static constexpr bool on_host = device::is_host<ExecutionSpace>;
 
   [[nodiscard]] Control read_control() const;
-  void write_control(Control control);
+  void write_control(const Control& control);
   void initialise_control(Control& control);
   /// True if all stages of a step run in one kernel.
   [[nodiscard]] bool is_fused() const {
@@ -195,16 +195,18 @@ Tiling GasSolver<ExecutionSpace>::tiling() const {
 
 template <class ExecutionSpace>
 Control GasSolver<ExecutionSpace>::read_control() const {
-  Control control{};
-  device::copy_out(_instance.space(), &control, _setup.control, 1);
+  auto mirror = Kokkos::create_mirror_view(_setup.control);
+  Kokkos::deep_copy(_instance.space(), mirror, _setup.control);
   _instance.space().fence("drogue::gas::solver: read control");
-  return control;
+  return mirror();
 }
 
 template <class ExecutionSpace>
-void GasSolver<ExecutionSpace>::write_control(Control control) {
-  control.trial.launches = _loop.launches();
-  device::copy_in(_instance.space(), _setup.control, &control, 1);
+void GasSolver<ExecutionSpace>::write_control(const Control& control) {
+  auto mirror = Kokkos::create_mirror_view(_setup.control);
+  mirror() = control;
+  mirror().trial.launches = _loop.launches();
+  Kokkos::deep_copy(_instance.space(), _setup.control, mirror);
   _instance.space().fence("drogue::gas::solver: write control");
 }
 

@@ -51,9 +51,8 @@ template <class ExecutionSpace>
 template <class ExecutionSpace>
 void reset_monitor(const ExecutionSpace& space, const StepMonitor<ExecutionSpace>& monitor,
                    std::int64_t step) {
-  const std::int64_t steps[2] = {step, step};
-  device::copy_in(space, monitor.steps, steps, 2);
-  device::copy_in(space, monitor.first_failure, &no_failure, 1);
+  Kokkos::deep_copy(space, monitor.steps, step);
+  Kokkos::deep_copy(space, monitor.first_failure, no_failure);
   space.fence("drogue::stepping::reset_monitor");
   monitor.status().step = step;
   monitor.status().failed = 0;
@@ -145,9 +144,9 @@ class Checkpoint {
     space.fence("drogue::stepping::roll_back_after_failure");
     if (monitor.status().failed == 0) return std::nullopt;
     std::uint64_t first = no_failure;
-    device::copy_out(space, &first, monitor.first_failure, 1);
+    Kokkos::deep_copy(space, first, monitor.first_failure);
     FirstFailure failure{};
-    device::copy_out(space, &failure.checkpoint_step, _saved_step, 1);
+    Kokkos::deep_copy(space, failure.checkpoint_step, _saved_step);
     space.fence("drogue::stepping::roll_back_after_failure: copied");
     failure.step = failure_order(first);
     failure.index = failure_index(first);

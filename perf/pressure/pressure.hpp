@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kernels/device/backend.hpp"
-#include "kernels/flow/schemes.hpp"
+#include "kernels/flow/parameters.hpp"
 #include "kernels/linear/poisson/problem.hpp"
 
 namespace drogue::perf::pressure {

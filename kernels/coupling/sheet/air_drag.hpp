@@ -210,7 +210,44 @@ class AirDrag {
           const std::vector<LineDrag>& of_lines, const std::vector<VertexDrag>& of_vertices,
           const SheetParameters& sheet, double density,
           const linear::DeviceCommunicator<ExecutionSpace>& communicator,
-          const std::optional<FaceWindow>& own_faces);
+          const std::optional<FaceWindow>& own_faces)
+      : _density(density), _of_line(of_lines) {
+    check_parameters(mesh, of_lines, of_vertices, sheet);
+    if (of_lines.empty() && of_vertices.empty()) return;
+    const double h = std::ranges::min(grid.spacing);
+    std::array<std::vector<int>, 2> ends;
+    std::vector<int> first = {0}, of_point;
+    std::vector<double> across, along;
+    const auto add = [&](int a, int b, double coefficient, double of_length, int points) {
+      of_point.insert(of_point.end(), static_cast<std::size_t>(points), static_cast<int>(across.size()));
+      ends[0].push_back(a), ends[1].push_back(b);
+      across.push_back(coefficient), along.push_back(of_length);
+      first.push_back(static_cast<int>(of_point.size()));
+    };
+    for (const LineDrag& drag : of_lines) {
+      const auto line = static_cast<std::size_t>(drag.line);
+      const auto [a, b] = mesh.lines[line];
+      add(a, b, drag.across, drag.along, static_cast<int>(std::ceil(mesh::rest_length(mesh, line) / h)));
+    }
+    for (const VertexDrag& drag : of_vertices) add(drag.vertex, drag.vertex, drag.area, 0.0, 1);
+    const auto points = of_point.size(), elements = across.size(), rows = mesh.rest.size();
+    list_vertices(space, ends, rows);
+    _elements = {.ends = fabric::table_view(space, "drogue::coupling::drag_ends", ends),
+                 .first = fabric::list_view(space, "drogue::coupling::drag_first", first),
+                 .of_point = fabric::list_view(space, "drogue::coupling::drag_of_point", of_point),
+                 .across = fabric::list_view(space, "drogue::coupling::drag_across", across),
+                 .along = fabric::list_view(space, "drogue::coupling::drag_along", along),
+                 .lines = static_cast<int>(of_lines.size())};
+    _transfer.emplace(space, grid, sheet.delta, static_cast<int>(points), own_faces);
+    _rank_sum.emplace(communicator, points, 1);
+    _relaxation = {
+        .drive = vectors("drive", rows), .rate = rates("rate", rows), .path = vectors("path", rows)};
+    _before = vectors("before", rows);
+    _air = vectors("air", points), _force = vectors("force", points), _on_air = vectors("on_air", points);
+    _rate = rates("point_rate", points);
+    _end_force = vectors("end_force", 2 * elements), _end_rate = rates("end_rate", 2 * elements);
+    _sum = vectors("sum", elements);
+  }
 
   [[nodiscard]] bool empty() const { return !_transfer.has_value(); }
   /// For `AirRelaxation`. Does not throw.
@@ -308,50 +345,6 @@ class AirDrag {
   Vectors _end_force, _sum;  ///< of the ends of elements, and of these
   Rates _end_rate;
 };
-
-template <class ExecutionSpace>
-AirDrag<ExecutionSpace>::AirDrag(const ExecutionSpace& space, const StaggeredGrid& grid,
-                                 const fabric::Mesh& mesh, const std::vector<LineDrag>& of_lines,
-                                 const std::vector<VertexDrag>& of_vertices, const SheetParameters& sheet,
-                                 double density,
-                                 const linear::DeviceCommunicator<ExecutionSpace>& communicator,
-                                 const std::optional<FaceWindow>& own_faces)
-    : _density(density), _of_line(of_lines) {
-  check_parameters(mesh, of_lines, of_vertices, sheet);
-  if (of_lines.empty() && of_vertices.empty()) return;
-  const double h = std::ranges::min(grid.spacing);
-  std::array<std::vector<int>, 2> ends;
-  std::vector<int> first = {0}, of_point;
-  std::vector<double> across, along;
-  const auto add = [&](int a, int b, double coefficient, double of_length, int points) {
-    of_point.insert(of_point.end(), static_cast<std::size_t>(points), static_cast<int>(across.size()));
-    ends[0].push_back(a), ends[1].push_back(b);
-    across.push_back(coefficient), along.push_back(of_length);
-    first.push_back(static_cast<int>(of_point.size()));
-  };
-  for (const LineDrag& drag : of_lines) {
-    const auto line = static_cast<std::size_t>(drag.line);
-    const auto [a, b] = mesh.lines[line];
-    add(a, b, drag.across, drag.along, static_cast<int>(std::ceil(mesh::rest_length(mesh, line) / h)));
-  }
-  for (const VertexDrag& drag : of_vertices) add(drag.vertex, drag.vertex, drag.area, 0.0, 1);
-  const auto points = of_point.size(), elements = across.size(), rows = mesh.rest.size();
-  list_vertices(space, ends, rows);
-  _elements = {.ends = fabric::table_view(space, "drogue::coupling::drag_ends", ends),
-               .first = fabric::list_view(space, "drogue::coupling::drag_first", first),
-               .of_point = fabric::list_view(space, "drogue::coupling::drag_of_point", of_point),
-               .across = fabric::list_view(space, "drogue::coupling::drag_across", across),
-               .along = fabric::list_view(space, "drogue::coupling::drag_along", along),
-               .lines = static_cast<int>(of_lines.size())};
-  _transfer.emplace(space, grid, sheet.delta, static_cast<int>(points), own_faces);
-  _rank_sum.emplace(communicator, points, 1);
-  _relaxation = {.drive = vectors("drive", rows), .rate = rates("rate", rows), .path = vectors("path", rows)};
-  _before = vectors("before", rows);
-  _air = vectors("air", points), _force = vectors("force", points), _on_air = vectors("on_air", points);
-  _rate = rates("point_rate", points);
-  _end_force = vectors("end_force", 2 * elements), _end_rate = rates("end_rate", 2 * elements);
-  _sum = vectors("sum", elements);
-}
 
 template <class ExecutionSpace>
 void AirDrag<ExecutionSpace>::set_line_stiffness(const ExecutionSpace& space,

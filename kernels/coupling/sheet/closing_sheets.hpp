@@ -10,7 +10,6 @@
 
 #include "kernels/coupling/sheet/porous_law.hpp"
 #include "kernels/device/launch.hpp"
-#include "kernels/fabric/views.hpp"
 #include "kernels/spatial/points.hpp"
 
 namespace drogue::coupling {
@@ -40,11 +39,6 @@ struct ClosingMean {
   double weight = 0.0, sum = 0.0;
 };
 
-/// Vertices, or triangles, of a closing sheet.
-struct ClosingChunk {
-  int sheet, begin, end;
-};
-
 /// Adds the velocities of each chunk of vertices, or of triangles, in ascending order. `Velocity` has
 /// `operator()(const ClosingSheet&, int which, ClosingMean&)`.
 template <class ExecutionSpace, class Velocity>
@@ -53,13 +47,13 @@ struct AddClosingChunksFunctor {
 
   Velocity velocity;
   Kokkos::View<ClosingSheet*, Memory> sheets;
-  Kokkos::View<ClosingChunk*, Memory> chunks;
+  Kokkos::View<int* [3], Memory> chunks;  ///< sheet, begin, end
   Kokkos::View<ClosingMean*, Memory> means;
 
   KOKKOS_FUNCTION void operator()(const int chunk) const {
     ClosingMean mean;
-    const ClosingSheet sheet = sheets(chunks(chunk).sheet);
-    for (int i = chunks(chunk).begin; i < chunks(chunk).end; ++i) velocity(sheet, i, mean);
+    const ClosingSheet sheet = sheets(chunks(chunk, 0));
+    for (int i = chunks(chunk, 1); i < chunks(chunk, 2); ++i) velocity(sheet, i, mean);
     means(chunk) = mean;
   }
 };
@@ -73,7 +67,7 @@ struct ForetellImpulsesFunctor {
   using Memory = typename ExecutionSpace::memory_space;
 
   ClosingSheetViews<ExecutionSpace> views;
-  Kokkos::View<ClosingChunk*, Memory> chunks;
+  Kokkos::View<int* [3], Memory> chunks;
   Kokkos::View<ClosingMean*, Memory> means;
   Kokkos::View<double*, Memory> relative;  ///< mean velocity of each sheet, m/s
   double dt;
@@ -111,7 +105,7 @@ struct ForetellImpulsesFunctor {
     int chunk = 0;
     for (int k = 0; k < count; ++k) {
       ClosingMean mean;
-      for (; chunk < static_cast<int>(chunks.extent(0)) && chunks(chunk).sheet == k; ++chunk)
+      for (; chunk < static_cast<int>(chunks.extent(0)) && chunks(chunk, 0) == k; ++chunk)
         mean.weight += means(chunk).weight, mean.sum += means(chunk).sum;
       relative(k) = mean.weight > 0.0 ? mean.sum / mean.weight : 0.0;
     }
@@ -148,21 +142,26 @@ class ClosingSheets {
   /// the vertices. Blocks. Throws std::invalid_argument for sheets out of range.
   ClosingSheets(const ExecutionSpace& space, const std::vector<ClosingSheet>& sheets,
                 const Kokkos::View<PorousLaw*, Memory>& law, std::span<const std::array<int, 3>> corners)
-      : _views{.sheets = fabric::list_view(space, "drogue::coupling::closing_sheets", sheets),
+      : _views{.sheets =
+                   Kokkos::View<ClosingSheet*, Memory>("drogue::coupling::closing_sheets", sheets.size()),
                .law = law,
-               .sheet_of = {},
+               .sheet_of = Kokkos::View<int*, Memory>("drogue::coupling::closing_sheet_of",
+                                                      sheets.empty() ? 0 : law.extent(0)),
                .impulse = Kokkos::View<double*, Memory>("drogue::coupling::closing_impulse", sheets.size()),
                .column = Kokkos::View<double[3], Memory>("drogue::coupling::closing_column")},
         _relative("drogue::coupling::closing_velocity", sheets.size()) {
     if (sheets.empty()) return;
-    std::vector<int> sheet_of(law.extent(0), -1);
-    std::vector<ClosingChunk> chunks;
+    const auto host_sheets = Kokkos::create_mirror_view(_views.sheets);
+    const auto sheet_of = Kokkos::create_mirror_view(_views.sheet_of);
+    Kokkos::deep_copy(sheet_of, -1);
+    std::vector<std::array<int, 3>> chunks;
     for (std::size_t k = 0; k < sheets.size(); ++k) {
       const ClosingSheet& sheet = sheets[k];
       if (sheet.axis < 0 || sheet.axis > 2 || sheet.begin < 0 || sheet.begin >= sheet.end ||
           sheet.end > static_cast<int>(law.extent(0)) || !(sheet.inverse_mass >= 0.0))
         throw std::invalid_argument("immersed sheet: a closing sheet is out of range");
-      std::fill(sheet_of.begin() + sheet.begin, sheet_of.begin() + sheet.end, static_cast<int>(k));
+      host_sheets(k) = sheet;
+      for (int i = sheet.begin; i < sheet.end; ++i) sheet_of(i) = static_cast<int>(k);
       int first = sheet.begin, last = sheet.end;
       if (!corners.empty()) {
         const auto is_of_sheet = [&](const auto& of) { return of[0] >= sheet.begin && of[0] < sheet.end; };
@@ -174,9 +173,15 @@ class ClosingSheets {
       for (int i = first; i < last; i += chunk)
         chunks.push_back({static_cast<int>(k), i, std::min(i + chunk, last)});
     }
-    _views.sheet_of = fabric::list_view(space, "drogue::coupling::closing_sheet_of", sheet_of);
-    _chunks = fabric::list_view(space, "drogue::coupling::closing_chunks", chunks);
+    _chunks = Kokkos::View<int* [3], Memory>("drogue::coupling::closing_chunks", chunks.size());
     _means = Kokkos::View<ClosingMean*, Memory>("drogue::coupling::closing_means", chunks.size());
+    const auto host_chunks = Kokkos::create_mirror_view(_chunks);
+    for (std::size_t i = 0; i < chunks.size(); ++i)
+      for (std::size_t j = 0; j < 3; ++j) host_chunks(i, j) = chunks[i][j];
+    Kokkos::deep_copy(space, _views.sheets, host_sheets);
+    Kokkos::deep_copy(space, _views.sheet_of, sheet_of);
+    Kokkos::deep_copy(space, _chunks, host_chunks);
+    space.fence("drogue::coupling::closing_sheets");
   }
 
   [[nodiscard]] bool empty() const { return _views.sheets.extent(0) == 0; }
@@ -198,7 +203,7 @@ class ClosingSheets {
  private:
   Views _views;
   Kokkos::View<double*, Memory> _relative;
-  Kokkos::View<ClosingChunk*, Memory> _chunks;
+  Kokkos::View<int* [3], Memory> _chunks;
   Kokkos::View<ClosingMean*, Memory> _means;
 };
 

@@ -2,15 +2,16 @@
 
 #include <Kokkos_Core.hpp>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "kernels/coupling/sharp/sharp_sheet.hpp"
 #include "kernels/coupling/sheet/air_drag.hpp"
 #include "kernels/coupling/sheet/coupled_fabric.hpp"
+#include "kernels/coupling/sheet/immersed_sheet.hpp"
 #include "kernels/coupling/sheet/line_strength.hpp"
-#include "kernels/coupling/sheet/sheet.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
-#include "kernels/device/copy.hpp"
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
 #include "kernels/stepping/state_list.hpp"
@@ -65,6 +66,13 @@ struct CheckClothFunctor {
     control().trial.stop = flow::Stop::failed;
   }
 };
+
+/// Sheet of the method of the parameters. Throws as the constructor of `Sheet`.
+template <class ExecutionSpace, class... Arguments>
+std::unique_ptr<Sheet<ExecutionSpace>> make_sheet(CouplingMethod method, const Arguments&... arguments) {
+  if (method == CouplingMethod::sharp) return std::make_unique<SharpSheet<ExecutionSpace>>(arguments...);
+  return std::make_unique<ImmersedSheet<ExecutionSpace>>(arguments...);
+}
 
 /// A step of flow and cloth, and the state that it saves at its beginning. Steps neither wait for the host
 /// nor copy to it nor allocate, on several ranks if `flow::Step::is_asynchronous`.
@@ -166,7 +174,7 @@ class CoupledStep {
   [[nodiscard]] FailureReason reason() const { return read(_reason); }
   [[nodiscard]] int failed_line() const { return read(_strength.failed()); }
   void set_reason(FailureReason reason) const {
-    device::copy_in(_space, _reason, &reason, 1);
+    Kokkos::deep_copy(_space, _reason, reason);
     _space.fence("drogue::coupling::set_reason");
   }
 
@@ -183,7 +191,7 @@ class CoupledStep {
   template <class View>
   [[nodiscard]] typename View::non_const_value_type read(const View& view) const {
     typename View::non_const_value_type value{};
-    device::copy_out(_space, &value, view, 1);
+    Kokkos::deep_copy(_space, value, view);
     _space.fence("drogue::coupling::read");
     return value;
   }

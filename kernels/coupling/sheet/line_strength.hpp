@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "kernels/coupling/sheet/parameters.hpp"
-#include "kernels/device/copy.hpp"
 #include "kernels/device/launch.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/mesh/edges.hpp"
@@ -79,9 +78,10 @@ class LineStrength {
 
   /// Sets E A of every line of the mesh, N. Blocks.
   void set_stiffness(const ExecutionSpace& space, std::span<const double> of_lines) {
-    std::vector<double> stiffness;
-    for (const int number : _numbers) stiffness.push_back(of_lines[static_cast<std::size_t>(number)]);
-    device::copy_in(space, _lines.stiffness, stiffness.data(), stiffness.size());
+    const auto mirror = Kokkos::create_mirror_view(_lines.stiffness);
+    for (std::size_t k = 0; k < _numbers.size(); ++k)
+      mirror(k) = of_lines[static_cast<std::size_t>(_numbers[k])];
+    Kokkos::deep_copy(space, _lines.stiffness, mirror);
     space.fence("drogue::coupling::set_stiffness");
   }
 

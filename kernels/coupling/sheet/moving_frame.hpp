@@ -11,7 +11,6 @@
 #include "kernels/device/copy.hpp"
 #include "kernels/device/launch.hpp"
 #include "kernels/fabric/state.hpp"
-#include "kernels/fabric/views.hpp"
 #include "kernels/spatial/points.hpp"
 
 namespace drogue::coupling {
@@ -58,7 +57,7 @@ class MovingFrame {
               const fabric::Parameters& cloth)
       : _parameters(parameters),
         _list("drogue::coupling::guide_state", 6),
-        _vertices(fabric::list_view(space, "drogue::coupling::guide_vertices", parameters.vertices)) {
+        _vertices("drogue::coupling::guide_vertices", parameters.vertices.size()) {
     if (!follows()) return;
     double weight = 0.0;
     for (const WeightedVertex& each : parameters.vertices) {
@@ -80,6 +79,10 @@ class MovingFrame {
         is_fixed = is_fixed || motion.axis == static_cast<int>(axis);
       if (is_fixed) throw std::invalid_argument("moving frame: all vertices must move freely along its axes");
     }
+    const auto host = Kokkos::create_mirror_view(_vertices);
+    for (std::size_t k = 0; k < parameters.vertices.size(); ++k) host(k) = parameters.vertices[k];
+    Kokkos::deep_copy(space, _vertices, host);
+    space.fence("drogue::coupling::moving_frame");
   }
 
   /// True if there is a point to follow. Does not throw.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -18,10 +17,8 @@
 #include "kernels/coupling/spread.hpp"
 #include "kernels/device/backend_list.hpp"
 #include "kernels/fabric/material.hpp"
-#include "kernels/fabric/points_transfer.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/surface/surface.hpp"
-#include "kernels/fabric/views.hpp"
 #include "kernels/flow/face_views.hpp"
 #include "kernels/stepping/state_list.hpp"
 
@@ -167,8 +164,12 @@ class Sheet {
       const ExecutionSpace& space, const std::string& name, const std::vector<T>& each, const T& all) const {
     if (!each.empty() && each.size() != rows())
       throw std::invalid_argument("sheet: there must be one " + name + " per vertex, or none");
-    return fabric::list_view(space, "drogue::coupling::" + name,
-                             each.empty() ? std::vector<T>(rows(), all) : each);
+    const Kokkos::View<T*, typename ExecutionSpace::memory_space> result("drogue::coupling::" + name, rows());
+    const auto mirror = Kokkos::create_mirror_view(result);
+    for (std::size_t i = 0; i < rows(); ++i) mirror(i) = each.empty() ? all : each[i];
+    Kokkos::deep_copy(space, result, mirror);
+    space.fence("drogue::coupling::of_vertices");
+    return result;
   }
 
   /// Sets the acceleration of the air beside a closing sheet to that of what drives it.
@@ -232,12 +233,16 @@ class Sheet {
   [[nodiscard]] Vectors cloth_masses(const ExecutionSpace& space, const fabric::Mesh& mesh,
                                      std::span<const fabric::Vector> inverse_mass) const {
     const Vectors result = vectors("inverse_mass");
+    const auto mirror = Kokkos::create_mirror_view(result);
+    for (std::size_t i = 0; i < rows(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) mirror(i, axis) = inverse_mass[i][axis];
     for (const auto& corners : mesh.triangles)
       for (const int i : corners)
-        for (const double along_axis : inverse_mass[static_cast<std::size_t>(i)])
-          if (_parameters.method == CouplingMethod::sharp && along_axis > 0.0)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          if (_parameters.method == CouplingMethod::sharp && mirror(static_cast<std::size_t>(i), axis) > 0.0)
             throw std::invalid_argument("sheet: a sharp sheet needs prescribed motion");
-    fabric::copy_to_points(space, inverse_mass, result);
+    Kokkos::deep_copy(space, result, mirror);
+    space.fence("drogue::coupling::inverse_masses");
     return result;
   }
 
@@ -269,13 +274,5 @@ const typename Sheet<ExecutionSpace>::Vectors& Sheet<ExecutionSpace>::air_veloci
 }
 
 DROGUE_EXTERN_INSTANCES(class Sheet)
-
-/// Sheet by the method of the parameters, on the faces of this rank. Arguments and errors as of the
-/// constructor of `Sheet`. One translation unit per backend compiles it.
-template <class ExecutionSpace>
-[[nodiscard]] std::unique_ptr<Sheet<ExecutionSpace>> make_sheet(
-    const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Mesh& mesh,
-    std::span<const fabric::Vector> inverse_mass, const SheetParameters& parameters, double density,
-    const linear::DeviceCommunicator<ExecutionSpace>& communicator, const FaceWindow& own_faces);
 
 }  // namespace drogue::coupling

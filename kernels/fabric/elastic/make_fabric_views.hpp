@@ -6,6 +6,25 @@
 
 namespace drogue::fabric {
 
+/// Number of vertices padded to whole slices.
+[[nodiscard]] constexpr int padded_vertices(int vertices) { return (vertices + slice - 1) / slice * slice; }
+
+/// Vectors of all vertices in any unit, zero, with the padding of the last slice. Throws std::runtime_error
+/// if memory runs out.
+template <class ExecutionSpace>
+[[nodiscard]] PointsView<ExecutionSpace> make_points(const std::string& label, std::size_t vertices) {
+  return PointsView<ExecutionSpace>(label,
+                                    static_cast<std::size_t>(padded_vertices(static_cast<int>(vertices))));
+}
+
+/// Positions at rest, m. Blocks. Throws std::runtime_error if memory runs out.
+template <class ExecutionSpace>
+[[nodiscard]] PointsView<ExecutionSpace> make_rest_positions(const ExecutionSpace& space, const Mesh& mesh) {
+  const auto rest = make_points<ExecutionSpace>("drogue::fabric::rest_positions", mesh.rest.size());
+  copy_to_points<ExecutionSpace>(space, mesh.rest, rest);
+  return rest;
+}
+
 /// Inverse masses, 1/kg, and fixed axes of all vertices. Vertices that pad the last slice have no inverse
 /// mass and no free axis: they stay. Blocks. Throws std::runtime_error if memory runs out.
 template <class ExecutionSpace>

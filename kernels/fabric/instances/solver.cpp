@@ -1,11 +1,10 @@
 #include "kernels/device/own_instance.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
 #include "kernels/fabric/host_threads.hpp"
-#include "kernels/fabric/make_forces.hpp"
 
 namespace drogue::fabric {
 
-template FabricForces<DROGUE_INSTANCE_SPACE>::FabricForces(const DROGUE_INSTANCE_SPACE&, const Parameters&);
+template struct FabricForces<DROGUE_INSTANCE_SPACE>;
 template class FabricSolver<DROGUE_INSTANCE_SPACE>;
 
 template <class ExecutionSpace>

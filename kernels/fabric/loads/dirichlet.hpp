@@ -1,6 +1,7 @@
 #pragma once
 
-#include "kernels/fabric/loads/external.hpp"
+#include "kernels/fabric/loads/make_loads.hpp"
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
 
 namespace drogue::fabric {
@@ -12,6 +13,28 @@ struct DirichletConditions {
   ProgramsView<ExecutionSpace> displacement;
   ListView<ExecutionSpace, int> vertex, axis, program;
 };
+
+/// Motions of `Parameters`, which may not be empty. Blocks.
+template <class ExecutionSpace>
+[[nodiscard]] DirichletConditions<ExecutionSpace> make_dirichlet(const ExecutionSpace& space,
+                                                                 const std::vector<Motion>& motions,
+                                                                 const PointsView<ExecutionSpace>& rest) {
+  std::vector<device::ExpressionProgram> displacement;
+  std::vector<int> vertex, axis, program;
+  for (const Motion& motion : motions) {
+    for (const int i : motion.vertices) {
+      vertex.push_back(i);
+      axis.push_back(motion.axis);
+      program.push_back(static_cast<int>(displacement.size()));
+    }
+    displacement.push_back(motion.displacement);
+  }
+  return {.rest = rest,
+          .displacement = make_programs(space, displacement),
+          .vertex = list_view(space, "drogue::fabric::dirichlet_vertices", vertex),
+          .axis = list_view(space, "drogue::fabric::dirichlet_axes", axis),
+          .program = list_view(space, "drogue::fabric::dirichlet_programs", program)};
+}
 
 /// Applies Dirichlet conditions: sets positions and their velocities, from central differences of fourth
 /// order over a step. Within the first step the differences are one-sided and of second order, since an

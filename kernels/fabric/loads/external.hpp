@@ -10,14 +10,6 @@ namespace drogue::fabric {
 template <class ExecutionSpace>
 using ProgramsView = ListView<ExecutionSpace, device::ExpressionProgram>;
 
-/// Forces that do not change with the state.
-template <class ExecutionSpace>
-struct DeadLoads {
-  PointsView<ExecutionSpace> rest_forces;  ///< N, of Model::linear_vector springs at rest; may be empty
-  PointsView<ExecutionSpace> total;        ///< N, with `Parameters::load`; empty if all are zero
-  double rest_energy = 0.0;                ///< J, of these springs
-};
-
 /// Loads other than elastic and dead forces. Views of absent loads are empty.
 template <class ExecutionSpace>
 struct External {

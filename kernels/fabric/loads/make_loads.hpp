@@ -4,10 +4,18 @@
 #include <span>
 
 #include "kernels/fabric/elastic/make_fabric_views.hpp"
-#include "kernels/fabric/loads/dirichlet.hpp"
+#include "kernels/fabric/loads/external.hpp"
 #include "kernels/fabric/parameters.hpp"
 
 namespace drogue::fabric {
+
+/// Forces that do not change with the state.
+template <class ExecutionSpace>
+struct DeadLoads {
+  PointsView<ExecutionSpace> rest_forces;  ///< N, of Model::linear_vector springs at rest; may be empty
+  PointsView<ExecutionSpace> total;        ///< N, with `Parameters::load`; empty if all are zero
+  double rest_energy = 0.0;                ///< J, of these springs
+};
 
 /// Blocks.
 template <class ExecutionSpace>
@@ -105,28 +113,6 @@ void make_pressures(const ExecutionSpace& space, const Parameters& p, External<E
   }
   device::copy(space, external.weight, weight);
   external.pressure = make_programs(space, strength);
-}
-
-/// Motions of `Parameters`, which may not be empty. Blocks.
-template <class ExecutionSpace>
-[[nodiscard]] DirichletConditions<ExecutionSpace> make_dirichlet(const ExecutionSpace& space,
-                                                                 const std::vector<Motion>& motions,
-                                                                 const PointsView<ExecutionSpace>& rest) {
-  std::vector<device::ExpressionProgram> displacement;
-  std::vector<int> vertex, axis, program;
-  for (const Motion& motion : motions) {
-    for (const int i : motion.vertices) {
-      vertex.push_back(i);
-      axis.push_back(motion.axis);
-      program.push_back(static_cast<int>(displacement.size()));
-    }
-    displacement.push_back(motion.displacement);
-  }
-  return {.rest = rest,
-          .displacement = make_programs(space, displacement),
-          .vertex = list_view(space, "drogue::fabric::dirichlet_vertices", vertex),
-          .axis = list_view(space, "drogue::fabric::dirichlet_axes", axis),
-          .program = list_view(space, "drogue::fabric::dirichlet_programs", program)};
 }
 
 }  // namespace drogue::fabric

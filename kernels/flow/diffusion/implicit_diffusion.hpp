@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "kernels/flow/axis_lines.hpp"
@@ -12,7 +13,10 @@
 #include "kernels/flow/prefers_transforms.hpp"
 #include "kernels/flow/views.hpp"
 #include "kernels/linear/device_communicator.hpp"
-#include "kernels/linear/poisson/direct_solver.hpp"
+#include "kernels/linear/poisson/diagonalization.hpp"
+#include "kernels/linear/poisson/fourier.hpp"
+#include "kernels/linear/poisson/pencil_solver.hpp"
+#include "kernels/linear/poisson/slab_solver.hpp"
 
 namespace drogue::flow {
 
@@ -240,6 +244,7 @@ class ImplicitDiffusion {
   ImplicitDiffusion(const ExecutionSpace& space, const Parameters& parameters,
                     const linear::DeviceCommunicator<ExecutionSpace>& communicator,
                     const linear::PencilRanks& ranks) {
+    const linear::RankGroup& group = communicator.group();
     for (std::size_t c = 0; c < 3; ++c) {
       const linear::PoissonProblem problem = diffusion_problem(parameters, c);
       _unknowns[c] = linear::unknowns_of(ranks, problem);
@@ -248,17 +253,31 @@ class ImplicitDiffusion {
       _solver_of[c] = same;
       if (same < _problems.size()) continue;
       _problems.push_back(problem);
-      const bool transforms = linear::DirectSolver<ExecutionSpace>::has_transforms(problem, ranks) &&
-                              prefers_transforms(parameters.pressure_solver);
-      _solvers.emplace_back(space, problem, communicator, ranks,
-                            transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization,
-                            linear::InvertedOperators::any, false);
+      const bool slabs = ranks.are_slabs();
+      const bool can =
+          slabs ? linear::SlabSolver<ExecutionSpace>::supports(problem, linear::AxisMethod::fourier)
+                : linear::FourierSolver<ExecutionSpace>::supports(problem);
+      const bool transforms = can && prefers_transforms(parameters.pressure_solver);
+      const auto method = transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization;
+      if (slabs)
+        _solvers.emplace_back(std::in_place_type<linear::SlabSolver<ExecutionSpace>>, space, problem,
+                              communicator, ranks, method);
+      else if (group.size() > 1)
+        _solvers.emplace_back(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space, problem, group,
+                              ranks, method);
+      else if (transforms)
+        _solvers.emplace_back(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem);
+      else
+        _solvers.emplace_back(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space,
+                              problem);
     }
   }
 
   /// True if solves neither block nor allocate. Does not throw.
   [[nodiscard]] bool is_asynchronous() const {
-    return std::ranges::all_of(_solvers, [](const auto& solver) { return solver.is_asynchronous(); });
+    return std::ranges::all_of(_solvers, [](const Solver& each) {
+      return std::visit([](const auto& solver) { return linear::is_asynchronous(solver); }, each);
+    });
   }
 
   /// Enqueues the implicit part of a step: replaces the predicted velocity, which holds the explicit part.
@@ -289,15 +308,22 @@ class ImplicitDiffusion {
           space, "drogue::flow::diffusion_source",
           DiffusionSourceFunctor<ExecutionSpace, component, is_stretched>{setup, march, from.data()});
     });
-    _solvers[_solver_of[component]].enqueue_solve(from, to, {dt, 0.5 * setup.nu});
+    std::visit(
+        [&](auto& solver) {
+          solver.enqueue_solve(from, to, {dt, 0.5 * setup.nu});
+        },
+        _solvers[_solver_of[component]]);
     launch_march(space, "drogue::flow::diffusion_update",
                  DiffusionUpdateFunctor<ExecutionSpace, component>{setup, march, to.data()});
   }
 
-  std::vector<linear::PoissonProblem> _problems;               ///< without repetitions
-  std::vector<linear::DirectSolver<ExecutionSpace>> _solvers;  ///< of each problem
-  std::array<std::size_t, 3> _solver_of{};                     ///< by component
-  std::array<linear::CellBox, 3> _unknowns{};                  ///< of this rank, by component
+  using Solver =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>, linear::SlabSolver<ExecutionSpace>>;
+  std::vector<linear::PoissonProblem> _problems;  ///< without repetitions
+  std::vector<Solver> _solvers;                   ///< of each problem
+  std::array<std::size_t, 3> _solver_of{};        ///< by component
+  std::array<linear::CellBox, 3> _unknowns{};     ///< of this rank, by component
 };
 
 }  // namespace drogue::flow

@@ -12,7 +12,10 @@
 #include "kernels/flow/state.hpp"
 #include "kernels/flow/views.hpp"
 #include "kernels/linear/device_communicator.hpp"
-#include "kernels/linear/poisson/direct_solver.hpp"
+#include "kernels/linear/poisson/diagonalization.hpp"
+#include "kernels/linear/poisson/fourier.hpp"
+#include "kernels/linear/poisson/pencil_solver.hpp"
+#include "kernels/linear/poisson/slab_solver.hpp"
 #if defined(DROGUE_HAVE_HYPRE)
 #include "kernels/linear/poisson/hypre_pfmg.hpp"
 #endif
@@ -41,7 +44,10 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
 /// std::invalid_argument if `parameters` request transforms that the backend lacks for them.
 template <class ExecutionSpace>
 bool uses_transforms(const Parameters& parameters, const linear::PencilRanks& ranks) {
-  const bool can = linear::DirectSolver<ExecutionSpace>::has_transforms(pressure_problem(parameters), ranks);
+  const linear::PoissonProblem problem = pressure_problem(parameters);
+  const bool can = ranks.are_slabs()
+                       ? linear::SlabSolver<ExecutionSpace>::supports(problem, linear::AxisMethod::fourier)
+                       : linear::FourierSolver<ExecutionSpace>::supports(problem);
   if (parameters.pressure_solver == PressureSolver::fft && !can)
     throw std::invalid_argument(
         "flow solver: this backend has fast transforms along periodic axes with equal cells alone");
@@ -61,19 +67,29 @@ class PressureEquation {
                    const linear::DeviceCommunicator<ExecutionSpace>& communicator,
                    const linear::PencilRanks& ranks, bool in_place) {
     const linear::PoissonProblem problem = pressure_problem(parameters);
+    const linear::RankGroup& group = communicator.group();
 #if defined(DROGUE_HAVE_HYPRE)
     if (parameters.pressure_solver == PressureSolver::hypre_pfmg) {
       _name = "hypre-pfmg";
-      _solver.emplace(std::in_place_type<linear::HyprePfmgSolver<ExecutionSpace>>, space, problem,
-                      communicator.group(), ranks, parameters.pressure_tolerance);
+      _solver.emplace(std::in_place_type<linear::HyprePfmgSolver<ExecutionSpace>>, space, problem, group,
+                      ranks, parameters.pressure_tolerance);
       return;
     }
 #endif
     const bool transforms = uses_transforms<ExecutionSpace>(parameters, ranks);
     _name = transforms ? "fft" : "diagonalization";
-    _solver.emplace(std::in_place_type<linear::DirectSolver<ExecutionSpace>>, space, problem, communicator,
-                    ranks, transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization,
-                    linear::InvertedOperators::laplacian, in_place);
+    const auto method = transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization;
+    if (ranks.are_slabs())
+      _solver.emplace(std::in_place_type<linear::SlabSolver<ExecutionSpace>>, space, problem, communicator,
+                      ranks, method, linear::InvertedOperators::laplacian, in_place);
+    else if (group.size() > 1)
+      _solver.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space, problem, group, ranks,
+                      method);
+    else if (transforms)
+      _solver.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem, in_place);
+    else
+      _solver.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space, problem,
+                      linear::InvertedOperators::laplacian);
   }
 
   /// Name of the solver: "fft" or "diagonalization" or "hypre-pfmg". Does not throw.
@@ -120,9 +136,14 @@ class PressureEquation {
 
  private:
 #if defined(DROGUE_HAVE_HYPRE)
-  using Solver = std::variant<linear::DirectSolver<ExecutionSpace>, linear::HyprePfmgSolver<ExecutionSpace>>;
+  using Solver =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>, linear::SlabSolver<ExecutionSpace>,
+                   linear::HyprePfmgSolver<ExecutionSpace>>;
 #else
-  using Solver = std::variant<linear::DirectSolver<ExecutionSpace>>;
+  using Solver =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>, linear::SlabSolver<ExecutionSpace>>;
 #endif
 
   const char* _name = "";

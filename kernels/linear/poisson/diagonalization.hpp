@@ -30,6 +30,12 @@ AxisBasis<ExecutionSpace> to_device(const ExecutionSpace& space, const AxisModes
   return basis;
 }
 
+/// Operators that a direct solver can invert.
+enum class InvertedOperators {
+  any,        ///< the Laplacian and operators of implicit diffusion
+  laplacian,  ///< the Laplacian alone, for which more can be prepared
+};
+
 /// Direct solver by diagonalization of the second differences along each axis (Lynch, Rice and Thomas 1964):
 /// six products with dense matrices of eigenvectors, 4 (nx + ny + nz) floating-point operations per cell, for
 /// any combination of boundary conditions and any size. If only the Laplacian is inverted and z has ends,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -12,6 +13,27 @@
 #include "kernels/linear/poisson/pencil_transpose.hpp"
 
 namespace drogue::linear {
+
+/// How a direct solver transforms along an axis.
+enum class AxisMethod {
+  fourier,          ///< `AxisTransforms`, on hosts
+  diagonalization,  ///< products with the matrices of eigenvectors
+};
+
+/// Unknowns of a rank in a problem: the cells of `box_of(ranks, problem.cells)`. Along an axis with unknowns
+/// on faces, those on the low faces of its cells in the grid of cells; the first face is no unknown. Does not
+/// throw.
+[[nodiscard]] inline CellBox unknowns_of(const PencilRanks& ranks, const PoissonProblem& problem) {
+  std::array<int, 3> cells = problem.cells;
+  for (std::size_t axis = 0; axis < 3; ++axis) cells[axis] += problem.axes[axis].on_inner_faces() ? 1 : 0;
+  CellBox box = box_of(ranks, cells);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!problem.axes[axis].on_inner_faces()) continue;
+    int& changed = box.begin[axis] == 0 ? box.cells[axis] : box.begin[axis];
+    --changed;
+  }
+  return box;
+}
 
 /// Direct solver on several ranks: transforms along x, y and z in turn, with transpositions between boxes
 /// that hold whole lines along each axis (pencils). Each rank holds `unknowns_of` itself.

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "kernels/linear/parallel/cell_box.hpp"
 #include "kernels/linear/poisson/axis_basis.hpp"
 
 namespace drogue::linear {
@@ -66,33 +65,6 @@ inline std::vector<double> axis_eigenvalues(const PoissonProblem& problem, std::
     for (int k = 0; k < n; ++k)
       values[static_cast<std::size_t>(k)] = axis_eigenvalue(problem.axes[axis], n, problem.spacing[axis], k);
   return values;
-}
-
-/// How a direct solver transforms along an axis.
-enum class AxisMethod {
-  fourier,          ///< `AxisTransforms`, on hosts
-  diagonalization,  ///< products with the matrices of eigenvectors
-};
-
-/// Operators that a direct solver can invert.
-enum class InvertedOperators {
-  any,        ///< the Laplacian and operators of implicit diffusion
-  laplacian,  ///< the Laplacian alone, for which more can be prepared
-};
-
-/// Unknowns of a rank in a problem: the cells of `box_of(ranks, problem.cells)`. Along an axis with unknowns
-/// on faces, those on the low faces of its cells in the grid of cells; the first face is no unknown. Does not
-/// throw.
-[[nodiscard]] inline CellBox unknowns_of(const PencilRanks& ranks, const PoissonProblem& problem) {
-  std::array<int, 3> cells = problem.cells;
-  for (std::size_t axis = 0; axis < 3; ++axis) cells[axis] += problem.axes[axis].on_inner_faces() ? 1 : 0;
-  CellBox box = box_of(ranks, cells);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!problem.axes[axis].on_inner_faces()) continue;
-    int& changed = box.begin[axis] == 0 ? box.cells[axis] : box.begin[axis];
-    --changed;
-  }
-  return box;
 }
 
 /// True if the solves of a solver neither block nor allocate, as all do that say nothing else. Does not
