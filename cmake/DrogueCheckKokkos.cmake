@@ -73,10 +73,11 @@ if(NOT DROGUE_UNTRIED_KOKKOS)
                         "${Kokkos_VERSION}: point KokkosKernels_ROOT at release ${Kokkos_VERSION}, or try it with "
                         "-DDROGUE_UNTRIED_KOKKOS=ON.")
   endif()
-elseif(NOT Kokkos_VERSION IN_LIST DROGUE_TRIED_KOKKOS)
+elseif(NOT Kokkos_VERSION IN_LIST DROGUE_TRIED_KOKKOS OR NOT KokkosKernels_VERSION STREQUAL Kokkos_VERSION)
   set(_views "")
   if(DROGUE_CUDA AND Kokkos_VERSION VERSION_GREATER_EQUAL 5)
     set(_views " Its View is of mdspan, which nvcc miscompiled in 4.7.0: wrong addresses, thus wrong numbers.")
   endif()
-  message(WARNING "Kokkos ${Kokkos_VERSION} in ${Kokkos_DIR} was not tried.${_views} Run the tests before you trust a number.")
+  message(WARNING "Kokkos ${Kokkos_VERSION} with Kokkos Kernels ${KokkosKernels_VERSION} was not tried.${_views} Run the tests before "
+                  "you trust a number.")
 endif()

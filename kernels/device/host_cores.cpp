@@ -54,8 +54,10 @@ int running_threads() {
 
 }  // namespace
 
-UnboundThread::UnboundThread() : _bound(cores_of_thread()) {
-  if (const auto cores = cores_of_process()) sched_setaffinity(0, sizeof *cores, &*cores);
+UnboundThread::UnboundThread() {
+  const auto cores = cores_of_process();  // some libraries of OpenMP bind the first thread here
+  _bound = cores_of_thread();
+  if (_bound) sched_setaffinity(0, sizeof *cores, &*cores);
 }
 
 UnboundThread::~UnboundThread() {

@@ -14,9 +14,9 @@ struct HostCores {
   int running = 1;  ///< threads of all processes that run or wait for a core, including the calling one
 };
 
-/// While it lives, the calling thread and the processes that it starts may use all cores of this process:
-/// OpenMP binds the first thread to one place before `main` if OMP_PROC_BIND or OMP_PLACES says so. Nothing
-/// throws.
+/// While it lives, the calling thread and the processes that it starts may use all cores of this process.
+/// GCC's OpenMP binds the first thread to one place before `main` if OMP_PROC_BIND or OMP_PLACES says so.
+/// Throws only std::bad_alloc.
 class UnboundThread {
  public:
   UnboundThread();

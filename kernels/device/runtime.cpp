@@ -96,7 +96,7 @@ int openmp_threads() {
 /// this, and the environment is read before `main`.
 class Runtime::ShortWaits {
  public:
-  explicit ShortWaits(int cores) : _thread([this, cores] { sleep_with_team(cores + 2); }) {
+  ShortWaits() : _thread([this] { sleep_with_team(); }) {
     std::unique_lock lock(_mutex);
     _changed.wait(lock, [this] { return _has_team; });
   }
@@ -112,9 +112,9 @@ class Runtime::ShortWaits {
   ShortWaits& operator=(const ShortWaits&) = delete;
 
  private:
-  void sleep_with_team([[maybe_unused]] int threads) {
+  void sleep_with_team() {
 #if defined(KOKKOS_ENABLE_OPENMP)
-#pragma omp parallel num_threads(threads)
+#pragma omp parallel num_threads(omp_get_num_procs() + 2)
     {
       // The team outlives the region that creates it.
       static_cast<void>(omp_get_thread_num());
@@ -162,7 +162,7 @@ Runtime::Runtime(const std::vector<std::string>& arguments, ThreadWaits waits) {
   if (!is_given) require_threads(std::min(default_threads(), most_threads) - 1);
   Kokkos::initialize(count, pointers.data());
   if (!adapts || !are_cores_shared(openmp_threads(), cores)) return;
-  _short_waits = std::make_unique<ShortWaits>(cores.allowed);
+  _short_waits = std::make_unique<ShortWaits>();
   shared_cores = true;
 }
 

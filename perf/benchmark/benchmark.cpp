@@ -245,11 +245,12 @@ void print_row(const Request& request, const Row& row, const Record& record, con
                 median_text(record, 1.0, 3),
                 record.passed() && record.samples.size() == 1 ? "one run" : interval_text(record, 1.0, 3),
                 figures_text(problem, figures), answer);
+  const bool local = row.ranks == 1 || request.launcher.empty();
   const int others = answers.cores.running - 1, online = answers.cores.online,
             threads = row.ranks * threads_of(request, row.ranks);
-  if (threads > online && request.launcher.empty())
-    std::printf("  too slow: %d threads on %d cores\n", threads, online);
-  else if (others > 0 && others + threads > online)
+  if (local && threads > answers.cores.allowed)
+    std::printf("  too slow: %d threads on %d cores\n", threads, answers.cores.allowed);
+  else if (local && others > 0 && others + threads > online)
     std::printf("  too slow: threads of other programs ran when it began, %d on %d cores\n", others, online);
   if (const std::string reason = answers.result.value("message", ""); !reason.empty())
     std::printf("  %s\n", reason.c_str());

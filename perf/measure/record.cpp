@@ -29,7 +29,7 @@ nlohmann::json provenance_of(const nlohmann::json& result) {
                                      .threads = result["threads"].get<int>()});
   for (const char* of_build : {"version", "git"})
     if (result.contains(of_build)) facts[of_build] = result[of_build];
-  for (const char* of_build : {"compiler", "flags"})
+  for (const char* of_build : {"compiler", "flags", "cpu"})
     if (from.contains(of_build)) facts[of_build] = from[of_build];
   return facts;
 }

@@ -61,9 +61,9 @@ def drum(cells, stretched):
 
 
 def porous(cells, stretched):
-    core = [[-4.8, 4.8], [-4.8, 4.8], [-7.2, 6.0]]
+    core = [[-4.8, 4.8], [-4.8, 4.8], [-7.6, 6.0]]
     return "porous-c9", [grid([[-7.2, 7.2], [-7.2, 7.2], [-9, 15]], core, STREAM_Z, cells, stretched),
-                         f"canopy[0].edge_length={0.7 / cells!r}", "canopy[0].perturbation={}",
+                         f"canopy[0].edge_length={0.67 / cells!r}", "canopy[0].perturbation={}",
                          "run={end_time=4,cfl=0.25,max_dt=0.02}", "output={history_every=5,fields=[]}", "verify={}"]
 
 

@@ -1,6 +1,7 @@
 """Reference results of docs/benchmark.md, from the records benchmark-*.jsonl."""
 
 import re
+import shlex
 import statistics
 import sys
 
@@ -43,7 +44,7 @@ def section(file):
     """Paragraph and table of a file."""
     records = passed(file)
     facts, here = records[0].facts, records[0].provenance
-    variables = "".join(f"{name}={value} " for name, value in facts.get("environment", {}).items())
+    variables = "".join(f"{name}={shlex.quote(value)} " for name, value in facts.get("environment", {}).items() if name != "OMP_NUM_THREADS")
     options = f"--size {facts['size']} --backend {facts['backend']}" + (f" --threads {facts['threads']}" if facts["backend"] == "openmp" else "")
     if (most := max(record.facts["ranks"] for record in records)) > 1:
         options += f"{' --weak' if records[0].case.endswith('/weak') else ''} --ranks {most}"
@@ -56,8 +57,9 @@ def section(file):
 def summary(evidence):
     """Paragraph of the README: figures of merit of the largest size on each backend, without weak scaling."""
     largest = {}
-    for file in sorted(evidence.glob("benchmark-*.jsonl"), key=lambda file: SIZES.index(passed(file)[0].facts["size"])):
-        if not (records := passed(file))[0].case.endswith("/weak"):
+    files = {file: passed(file) for file in sorted(evidence.glob("benchmark-*.jsonl"))}
+    for file, records in sorted(files.items(), key=lambda item: SIZES.index(item[1][0].facts["size"])):
+        if not records[0].case.endswith("/weak"):
             largest[records[0].facts["backend"]] = file, records
     return [f"{place(records)}, size {records[0].facts['size']} ([record](docs/evidence/{file.name})): "
             + ", ".join(f"{merit(record.facts)} (`{record.facts['problem']}`)" for record in records) + "."

@@ -92,8 +92,8 @@ void set_sides(Parameters& p, std::size_t axis, BoundaryKind low, BoundaryKind h
   }
 }
 
-/// 0.2 + t y + z / 10 along x, which changes along both axes that ranks divide, 0.2 + t y and 0.2 + t z. A
-/// solver samples each of them in its plane at all times before it starts, which takes longer than its steps.
+/// 0.2 + t y + z / 10 along x, which changes along both axes that ranks divide, 0.2 + t y and 0.2 + t z. Few
+/// terms: a solver samples them at its start, which takes longer than the steps of these tests.
 void set_expressions(Boundary& boundary) {
   for (int c = 0; c < 3; ++c) {
     device::ExpressionBuilder builder;
