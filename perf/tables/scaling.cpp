@@ -28,14 +28,19 @@ namespace drogue::perf {
 
 namespace {
 
-/// Runs a program of this suite on some units, such as "2 ranks". Returns the exit status of one that may
-/// have a result. Throws Failure as the program does, and interrupted after a signal.
-int run_on(const std::string& units, const std::vector<std::string>& words,
-           const std::filesystem::path& folder, const std::filesystem::path& log, bool log_output = false) {
+std::string described(int units, ScalingUnit unit) {
+  return "a run on " + std::to_string(units) + " " + name(unit);
+}
+
+/// Runs a program of this suite, `what` in words. Returns the exit status of one that may have a result.
+/// Throws Failure as the program does, and interrupted after a signal.
+int run_program(const std::string& what, const std::vector<std::string>& words,
+                const std::filesystem::path& folder, const std::filesystem::path& log,
+                bool log_output = false) {
   const int status = run_child(words, folder, log, log_output);
   if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted by a signal");
   if (status != 0 && status != static_cast<int>(ExitCode::verification_failed))
-    throw failed_run("a run on " + units, status, log);
+    throw failed_run(what, status, log);
   return status;
 }
 
@@ -66,7 +71,7 @@ std::vector<MeasuredCase> run_with_threads(const std::string& pattern, int threa
                                     "--out",
                                     file};
   if (quick) words.emplace_back("--quick");
-  run_on(std::to_string(threads) + " threads", words, folder.path(), log);
+  run_program(described(threads, ScalingUnit::threads), words, folder.path(), log);
   return read_records(file);
 }
 
@@ -132,22 +137,19 @@ std::vector<std::string> command_of(ScalingUnit unit, int units, const std::stri
                        program, arguments);
 }
 
-std::string text_of(int units, ScalingUnit unit) { return std::to_string(units) + " " + name(unit); }
-
 /// Runs the program once and adds a sample. Throws Failure as the program does.
 void run_point(const ScalingRequest& request, device::Backend backend, const std::filesystem::path& folder,
                ScalingPoint& point) {
   const std::filesystem::path out = folder / "out", log = folder / "log";
-  const std::string units = text_of(point.units, request.unit);
-  const int status = run_on(units,
-                            command_of(request.unit, point.units, "drogue-parachute",
-                                       {point.scene.string(), "--quiet", "--overwrite", "--backend",
-                                        std::string(device::name(backend)), "--out", out.string()}),
-                            folder, log, true);
+  const std::string what = described(point.units, request.unit);
+  const int status = run_program(what,
+                                 command_of(request.unit, point.units, "drogue-parachute",
+                                            {point.scene.string(), "--quiet", "--overwrite", "--backend",
+                                             std::string(device::name(backend)), "--out", out.string()}),
+                                 folder, log, true);
   std::ifstream file(out / "result.json");
   point.result = nlohmann::json::parse(file, nullptr, false);
-  if (point.result.is_discarded() || point.result.value("ranks", 0) < 1)
-    throw failed_run("a run on " + units, status, log);
+  if (point.result.is_discarded() || point.result.value("ranks", 0) < 1) throw failed_run(what, status, log);
   point.samples.push_back(point.result["timing"]["compute_s"].get<double>() /
                           point.result["steps"].get<double>());
   for (const nlohmann::json& check : point.result["checks"])
@@ -163,8 +165,8 @@ void measure_messages(device::Backend backend, const std::filesystem::path& fold
                                         "--out",    out.string(), "--cells"};
   for (const int cells : point.cells) arguments.push_back(std::to_string(cells));
   if (quick) arguments.emplace_back("--quick");
-  run_on(text_of(point.units, ScalingUnit::ranks),
-         command_of(ScalingUnit::ranks, point.units, "drogue-perf", arguments), folder, log);
+  run_program(described(point.units, ScalingUnit::ranks),
+              command_of(ScalingUnit::ranks, point.units, "drogue-perf", arguments), folder, log);
   const std::vector<MeasuredCase> records = read_records(out.string());
   const MeasuredCase &shortest = records.at(0), &exchange = records.at(1), &step = records.at(2);
   if (!step.passed) throw Failure(ExitCode::verification_failed, step.name + ": ranks received wrong values");
